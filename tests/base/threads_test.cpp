@@ -40,7 +40,7 @@ TEST(Threads, NameTheLimitThatKeepsThemFromStarting) {
     };
     const testing::ExitedWithCode told(0);
     EXPECT_EXIT(end_within(RLIMIT_AS), told, "no memory for its stack; .* \\(ulimit -v\\)$");
-    EXPECT_EXIT(end_within(RLIMIT_NPROC), told, "no further thread; raise its limit \\(ulimit -u, ");
+    EXPECT_EXIT(end_within(RLIMIT_NPROC), told, "no more threads; raise its limit \\(ulimit -u, ");
 }
 #endif
 

@@ -47,7 +47,7 @@ TEST(FewThreads, AreEnoughOrItSaysSoAndLeavesNothing) {
             }
             EXPECT_EQ(code, 4) << what << "\n" << message;
             EXPECT_TRUE(one_line(message)) << what << "\n" << message;
-            EXPECT_NE(message.find("no further thread"), std::string::npos) << what << "\n" << message;
+            EXPECT_NE(message.find("no more threads"), std::string::npos) << what << "\n" << message;
             EXPECT_TRUE(left_nothing(folder)) << what;
             EXPECT_LT(count, 1000) << what;
         }

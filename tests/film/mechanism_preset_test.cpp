@@ -132,7 +132,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
          "presets/x.toml:2:1: [system] links describes a chain, but [[system.particle]] describes another system; "
          "remove one of them"},
         {"[system]\nintegrator = \"gauss4\"\n[[system.particle]]\nname = \"a\"",
-         R"(presets/x.toml:2:1: [system] integrator "gauss4" serves angles, not a mechanism)"},
+         R"(presets/x.toml:2:1: [system] integrator "gauss4" supports angles, not a mechanism)"},
         {"[system]\nmodel = \"angles\"\n[[system.particle]]\nname = \"a\"",
          R"(presets/x.toml:2:1: [system] model must be "mechanism" or "auto" with particles, constraints or forces; it is "angles")"},
         {"[system]\nparticle = 3",

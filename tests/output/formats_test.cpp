@@ -102,10 +102,10 @@ TEST(Formats, HaveNoSizeThatLibavDoesNotTake) {
     const Size huge{16384, 16384};
     expect_error(
         ExitCode::bad_input,
-        {"size exceeds what libav encodes as H.264; it is [16384, 16384]; [16254, 16254] would do, and [8192, 4352] "
+        {"size exceeds what libav encodes as H.264; it is [16384, 16384]; [16254, 16254] is possible, and [8192, 4352] "
          "for players"},
         [&] { check_video({.size = huge}); });
-    expect_error(ExitCode::bad_input, {"as VP9", "[16254, 16254] would do"},
+    expect_error(ExitCode::bad_input, {"as VP9", "[16254, 16254] is possible"},
                  [&] { check_video({.format = FilmFormat::webm, .size = huge}); });
     EXPECT_NO_THROW(check_video({.size = {16254, 16254}}));
     EXPECT_NO_THROW(check_video({.size = {16384, 8192}}));
@@ -278,7 +278,7 @@ TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
     refused({.format = F::mp4, .codec = "vp9", .size = small}, {"codec of mp4 must be h264; it is \"vp9\""});
     refused({.format = F::gif, .codec = "lzw", .size = small}, {"gif has only one", "lzw"});
     refused({.format = F::webm, .size = {641, 360}},
-            {"size must be even for VP9 needs it in yuv420p; it is [641, 360]; [642, 360] would do"});
+            {"size must be even for VP9 in yuv420p; it is [641, 360]; [642, 360] is possible"});
     refused({.format = F::mp4, .size = {640, 361}, .pixel_format = yuv420_10}, {"in yuv420p10", "[640, 362]"});
     refused({.format = F::mp4, .size = {20000, 20}}, {"from 1 to 16384 of H.264; it is [20000, 20]"});
     refused({.format = F::gif, .size = {70000, 1}}, {"65535"});

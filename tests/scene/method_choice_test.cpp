@@ -315,7 +315,7 @@ TEST(Choice, SaysWhatIsWithinReach) {
         << beyond;
     EXPECT_NE(beyond.find("; precision = \"quad\" allows more"), std::string::npos) << beyond;
     // what it says is within reach for a swing, is
-    const auto at = beyond.find("within reach are ") + 17;
+    const auto at = beyond.find("possible: ") + 10;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);
     EXPECT_EQ(fault_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "");
     // of a regular motion, to the end as well
@@ -326,7 +326,7 @@ TEST(Choice, SaysWhatIsWithinReach) {
     EXPECT_EQ(fault_of(gentle + to_end.substr(start, end - start)), "") << to_end;
     // a spring whose ends meet has no direction: that is the method's fault, not the accuracy's
     EXPECT_NE(fault_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
-                  .find("breaks down within 0.0083 s: taylor:"),
+                  .find("fails within 0.0083 s: taylor:"),
               std::string::npos);
     EXPECT_EQ(fault_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
 }

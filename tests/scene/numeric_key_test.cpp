@@ -88,7 +88,7 @@ TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
     ASSERT_TRUE(line.key) << line.message;
     EXPECT_EQ(line.with(0.5).a.constraints[0].direction[1], Quad(0.5));
     // two springs: which one?
-    EXPECT_NE(Found("system.force.spring.stiffness_N_per_m", "", true).message.find("of no particle"),
+    EXPECT_NE(Found("system.force.spring.stiffness_N_per_m", "", true).message.find("no particle, constraint or force"),
               std::string::npos);
 }
 
@@ -121,14 +121,14 @@ TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
     };
     refused("gravity", "system.gravity_m_per_s2");
     refused("system.gravity", "there are links, mass_kg, length_m, angle_deg, omega_deg_per_s, rod_mass_kg, ");
-    refused("system.model", "is no number");
+    refused("system.model", "is not a number");
     refused("system.mass_kg[2]", "whose last is [1]");
     refused("system.mass_kg[x]", "must end like");
     refused("system.gravity_m_per_s2[0]", "is a number, not an array");
-    refused("system.force.wind.mass_kg", "of no particle, constraint or force");
-    refused("system.tolerance", "goes by step_s");
-    refused("system.step_s", "goes by tolerance", "[system]\nintegrator = \"dop853\"\n");
-    refused("system.accuracy", "where the preset gives an accuracy");
+    refused("system.force.wind.mass_kg", "names no particle, constraint or force");
+    refused("system.tolerance", "uses step_s");
+    refused("system.step_s", "uses tolerance", "[system]\nintegrator = \"dop853\"\n");
+    refused("system.accuracy", "needs an accuracy in the preset");
     refused("scene.duration_s", "must be a numeric key");
     refused("system.", "must be a numeric key");
 }

@@ -48,14 +48,14 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
     EXPECT_EQ(fault({"b.mass_kg=[1, -1]"}), "--set b.mass_kg: [b] mass_kg[1] must be > 0; it is -1");
     EXPECT_EQ(fault({"system.lenght_m=[1, 1]"}),
               R"(--set system.lenght_m: [system] has no "lenght_m"; did you mean "length_m"?)");
-    EXPECT_EQ(fault({"nonsense"}), R"(--set wants table.key=VALUE; it is "nonsense")");
+    EXPECT_EQ(fault({"nonsense"}), R"(--set must be table.key=VALUE; it is "nonsense")");
     EXPECT_EQ(fault({"video.crf=1", "video.crf=2"}), "video.crf is given twice: --set video.crf and --set video.crf");
     EXPECT_EQ(fault({"foo.bar=3"}),
               R"(--set foo.bar: a preset has no "foo"; it has a, b, scene, subtitle, system, title, video)");
     EXPECT_EQ(fault({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
     EXPECT_EQ(fault({"system.links=3", "system={}"}),
               "--set system: would remove --set system.links, which was given before; give the table first");
-    EXPECT_EQ(fault({"title.x=1"}), R"(--set title.x: "title" is no table)");
+    EXPECT_EQ(fault({"title.x=1"}), R"(--set title.x: "title" is not a table)");
     EXPECT_NE(fault({"video.theme=2dark"}).find("a string needs quotes: 'video.theme=\"2dark\"'"), std::string::npos);
     EXPECT_EQ(fault({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");
 }

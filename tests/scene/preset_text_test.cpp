@@ -83,7 +83,7 @@ TEST(PresetText, ANameThatWouldLeadElsewhereIsRefused) {
         {"a\xc2\x9b", "holds the control character U+009B"},
         {"a\xe2\x80\xae", "holds the control character U+202E"},
         {"a\xff", "is not UTF-8"},
-        {std::string(longest_preset_name + 1, 'n'), "has 192 bytes; 191 are possible"}};
+        {std::string(longest_preset_name + 1, 'n'), "has 192 bytes; at most 191 are possible"}};
     for (const auto& [name, words] : cases) {
         const auto path = folder / (name + ".toml");
         write_bytes(path, "");

@@ -66,13 +66,13 @@ inline const std::vector<RefusedPreset> refused_system{
                   "presets/x.toml:3:1: [system] tolerance must be > 0; it is 0"},
     RefusedPreset{
         "[system]\nmodel = \"angles\"\nintegrator = \"rattle\"",
-        R"(presets/x.toml:3:1: [system] integrator "rattle" serves constraints and mechanism, not model = "angles")"},
+        R"(presets/x.toml:3:1: [system] integrator "rattle" supports constraints and mechanism, not model = "angles")"},
     RefusedPreset{"[system]\nmodel = \"constraints\"\nintegrator = \"gauss6\"",
-                  R"(presets/x.toml:3:1: [system] integrator "gauss6" serves angles, not model = "constraints")"},
+                  R"(presets/x.toml:3:1: [system] integrator "gauss6" supports angles, not model = "constraints")"},
     RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nmodel = \"angles\"",
                   "presets/x.toml:2:1: [system] stabilise is for constraints; in angles rods have constant length"},
     RefusedPreset{"[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
-                  R"(presets/x.toml:2:1: [system] stabilise is not for "rattle6", which keeps the constraints itself)"},
+                  R"(presets/x.toml:2:1: [system] stabilise is not needed with "rattle6", which keeps the constraints itself)"},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nmodel = \"constraints\"",
                   "presets/x.toml:3:1: [system] model \"constraints\" does not support this chain: links with mass, "
                   "friction or a drive need angles"},
@@ -116,10 +116,10 @@ inline const std::vector<RefusedPreset> refused_rates{
     RefusedPreset{
         "[scene]\nsample_hz = 7",
         "presets/x.toml:2:1: [scene] sample_hz must divide the step rate, 30000 Hz on side a; it is 7; 6 or 8 "
-        "would do"},
+        "is possible"},
     RefusedPreset{
         "[b]\nstep_s = \"1/100\"",
-        "presets/x.toml: [scene] sample_hz must divide the step rate, 100 Hz on side b; it is 120; 100 would do"},
+        "presets/x.toml: [scene] sample_hz must divide the step rate, 100 Hz on side b; it is 120; use 100"},
     RefusedPreset{"[scene]\nduration_s = 0", "presets/x.toml:2:1: [scene] duration_s must be > 0; it is 0"},
     RefusedPreset{"[scene]\nduration_s = 0.01",
                   "presets/x.toml:2:1: [scene] duration_s must be a whole number of samples at 120 Hz; 0.01 s are 1.2"},
@@ -136,8 +136,8 @@ inline const std::vector<RefusedPreset> refused_rates{
 inline const std::vector<RefusedPreset> refused_video{
     RefusedPreset{
         "[video]\nsize = [641, 360]",
-        "presets/x.toml:2:1: [video] size must be even for H.264 needs it in yuv420p; it is [641, 360]; [642, "
-        "360] would do"},
+        "presets/x.toml:2:1: [video] size must be even for H.264 in yuv420p; it is [641, 360]; [642, "
+        "360] is possible"},
     RefusedPreset{"[video]\nsize = [0, 100]",
                   "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
     RefusedPreset{"[video]\nformat = \"avi\"",
@@ -157,10 +157,10 @@ inline const std::vector<RefusedPreset> refused_video{
                   "presets/x.toml:2:1: [video] side_colors must be an array of strings; 1 is a whole number"},
     RefusedPreset{
         "[video]\npanels = []",
-        R"(presets/x.toml:2:1: [video] panels must hold at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy")"},
+        R"(presets/x.toml:2:1: [video] panels must contain at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy")"},
     RefusedPreset{
         "[video]\npanels = [\"phase\"]",
-        R"(presets/x.toml:2:1: [video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "phase" is none of them)"},
+        R"(presets/x.toml:2:1: [video] panels may contain "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "phase" is none of them)"},
     RefusedPreset{"[video]\npanels = \"energy\"",
                   "presets/x.toml:2:1: [video] panels must be an array of strings; it is a string (\"energy\")"},
     RefusedPreset{"[video]\ntrail_s = -1",
@@ -174,22 +174,22 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{
         "layout = \"fan\"",
         R"([video] layout must be "side-by-side", "overlay", "ensemble", "phase" or "portrait"; it is "fan")"},
-    RefusedPreset{"members = 5", R"([video] members is of the layout "ensemble"; it is "side-by-side")"},
+    RefusedPreset{"members = 5", R"([video] members is for the layout "ensemble"; it is "side-by-side")"},
     RefusedPreset{"members = 1\nlayout = \"ensemble\"", "[video] members must be from 2 to 1000; it is 1"},
     RefusedPreset{"phase_link = 3\nlayout = \"phase\"",
                   "[video] phase_link must be from 1 to 2, as there are links; it is 3"},
     RefusedPreset{
         "panels = [\"distnce\"]",
-        R"([video] panels may hold "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "distnce" is none of them)"},
+        R"([video] panels may contain "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "distnce" is none of them)"},
     RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
                   R"([video] panels must hold "pendulums" for the layout "overlay")"},
     RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must rise; it is [1, 1]"},
     RefusedPreset{"size = [1280, 720]\nlayout = \"portrait\"",
                   R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},
     RefusedPreset{"size = [301, 200]",
-                  "[video] size must be even for H.264 needs it in yuv420p; it is [301, 200]; [302, 200] would do"},
+                  "[video] size must be even for H.264 in yuv420p; it is [301, 200]; [302, 200] is possible"},
     RefusedPreset{"size = [16384, 16384]",
-                  "[video] size exceeds what libav encodes as H.264; it is [16384, 16384]; [16254, 16254] would do, "
+                  "[video] size exceeds what libav encodes as H.264; it is [16384, 16384]; [16254, 16254] is possible, "
                   "and [8192, 4352] for players limited to level 6.2 of H.264"},
     RefusedPreset{
         "transparent = true\nformat = \"webm\"\ncodec = \"av1\"",
@@ -236,7 +236,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"colors.background = 3",
                   "[video.colors] background must be a colour such as \"#ff9f40\"; it is a whole number (3)"},
     RefusedPreset{"show = [\"titel\"]",
-                  R"([video] show are of title, subtitle, clock, labels, credit; "titel" is not)"},
+                  R"([video] show must be of title, subtitle, clock, labels, credit; "titel" is not)"},
     RefusedPreset{"fps = 1001",
                   "[video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is 1001"},
     RefusedPreset{

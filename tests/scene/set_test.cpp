@@ -80,15 +80,15 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
         {"video.theme=blue", "[video] theme must be \"dark\", \"light\" or \"high-contrast\"; it is \"blue\""},
         {"scene.duration_s=long",
          "[scene] duration_s must be a number or a fraction such as \"1/30000\"; it is \"long\""},
-        {"scene.duration_s=9s", "\"9s\" is no TOML value"},
-        {"title=a \"b", "strings want quotes"},
+        {"scene.duration_s=9s", "\"9s\" is not a TOML value"},
+        {"title=a \"b", "a string needs quotes"},
         {"system.mass_kg[2]=1", "mass_kg has 2 elements, whose last is [1]"},
         {"system.mass_kg[x]=1", "is written like system.mass_kg[1], the second"},
         {"system.mass_kg[0]=a", "an element must be a number; it is a string (\"a\")"},
         {"system.mass_kg[0]=-1", "[system] mass_kg[0] must be > 0; it is -1"},
         {"system.center_m[0]=1", "the preset has no center_m; give all of it: 'system.center_m=[…]'"},
         {"video.size[0]=1", "the preset has no size; give all of it: 'video.size=[…]'"},
-        {"system.model[0]=1", "an element is set of a list of numbers; it is a string (\"angles\")"},
+        {"system.model[0]=1", "only an element of a list of numbers can be set; it is a string (\"angles\")"},
     };
     for (const auto& [given, words] : cases) {
         const auto& set = given;  // clang 14 captures no structured binding
@@ -110,7 +110,7 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
     }
     // a list that is given whole drops what was given of it
     const auto twice = error_of([&] { with("", {"system.mass_kg[0]=2", "system.mass_kg=[1, 1]"}); }).second;
-    EXPECT_NE(twice.find("would drop --set system.mass_kg[0]"), std::string::npos) << twice;
+    EXPECT_NE(twice.find("would remove --set system.mass_kg[0]"), std::string::npos) << twice;
 }
 
 TEST(Set, DrivesHaveFrequenciesThatAPendulumFollows) {

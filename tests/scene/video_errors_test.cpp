@@ -118,7 +118,7 @@ TEST(VideoErrors, FractionsWhoseProductsWouldLeave64BitsAreRefused) {
         "presets/butterfly.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "
         "3/25000000");
     EXPECT_EQ(message({"video.fps=1000", "video.speed=\"1/1000\""}),
-              "--set video.speed: [video] speed makes a film of 3e+07 frames; at most 10000000");
+              "--set video.speed: [video] speed makes a film of 3e+07 frames; at most 10000000 are possible");
     EXPECT_EQ(message({"video.poster_s=30.5"}),
               "--set video.poster_s: [video] poster_s must be up to 30 s; it is 30.5");
 }
