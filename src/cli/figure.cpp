@@ -152,14 +152,11 @@ void add_figure(CLI::App& app) {
         "  doppel figure flip-map --tiles --set grid.x.points=8192 --set grid.y.points=8192\n"
         "A long figure that was interrupted goes on where it was when the same command is given again.");
     add_run_options(command, *options, "Threads that compute, one a core where not given; the numbers stay");
-    command.add_option("--size", options->size, "Size of the layout, px")->type_name("WxH");
-    command.add_option("--format", options->format, "What the picture is written as")
-        ->type_name("FORMAT")
-        ->check(CLI::IsMember({"png", "pdf", "svg"}));
-    command.add_option("--scale", options->scale, "Pixels of the picture to one of the layout: 2 for print")
-        ->type_name("N")
+    add_value(command, "--size", options->size, "WxH", "Size of the layout, px");
+    add_choice(command, "--format", options->format, "FORMAT", "What the picture is written as", {"png", "pdf", "svg"});
+    add_value(command, "--scale", options->scale, "N", "Pixels of the picture to one of the layout: 2 for print")
         ->check(CLI::Range(0.25, 8.0));
-    command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
+    add_value(command, "--shard", options->shard, "I/N", "Compute part I of N only, for --merge");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.add_flag("--tiles", options->tiles,
                      "Of a map: tiles, a pixel a cell, and a page to pan and zoom, NAME.html");

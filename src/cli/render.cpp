@@ -21,16 +21,14 @@ struct StillOptions : PresetOptions, OutOptions {
 };
 
 void add_beside_option(CLI::App& command, PresetOptions& options) {
-    command
-        .add_option("--beside", options.beside,
-                    "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
-                    "first two seconds, and runs as long")
-        ->type_name("TRACK");
+    add_value(command, "--beside", options.beside, "TRACK",
+              "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
+              "first two seconds, and runs as long");
 }
 
 void add_columns_option(CLI::App& command, std::string& columns) {
-    command.add_option("--columns", columns, "Only these columns of the CSV, time_s,a,distance; a, b: all of a side")
-        ->type_name("LIST");
+    add_value(command, "--columns", columns, "LIST",
+              "Only these columns of the CSV, time_s,a,distance; a, b: all of a side");
 }
 
 std::vector<std::string> columns_of_option(const std::string& text) {
@@ -161,20 +159,15 @@ void add_render(CLI::App& app) {
         "  doppel render butterfly --set video.layout=overlay --set 'video.contact_sheet=[4, 3]'\n"
         "  doppel render calm --format webm -o - | mpv -");
     add_run_options(command, *options, "Threads that compress PNGs, one a core where not given; the bytes stay");
-    command
-        .add_option("--frames", options->frames,
-                    "Only the frames A to B-1 of the motion, with the pixels of the whole film")
-        ->type_name("A:B");
-    command.add_option("--from", options->from, "Only from this time on, s")->type_name("SECONDS");
-    command.add_option("--to", options->to, "Only up to before this time, s: --to 20 makes 20 s")->type_name("SECONDS");
-    command.add_option("--size", options->size, "Size of the picture, px, even")->type_name("WxH");
-    command.add_option("--format", options->format, "Of the film; png: a sequence")
-        ->type_name("FORMAT")
-        ->check(CLI::IsMember(std::vector<std::string>(format_names.begin(), format_names.end())));
-    command
-        .add_option("--quality", options->quality, "A quarter of the pixels, what the preset says, or slow and best")
-        ->type_name("QUALITY")
-        ->check(CLI::IsMember({"draft", "standard", "best"}));
+    add_value(command, "--frames", options->frames, "A:B",
+              "Only the frames A to B-1 of the motion, with the pixels of the whole film");
+    add_value(command, "--from", options->from, "SECONDS", "Only from this time on, s");
+    add_value(command, "--to", options->to, "SECONDS", "Only up to before this time, s: --to 20 makes 20 s");
+    add_value(command, "--size", options->size, "WxH", "Size of the picture, px, even");
+    add_choice(command, "--format", options->format, "FORMAT", "Of the film; png: a sequence",
+               {format_names.begin(), format_names.end()});
+    add_choice(command, "--quality", options->quality, "QUALITY",
+               "A quarter of the pixels, what the preset says, or slow and best", {"draft", "standard", "best"});
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
@@ -202,13 +195,10 @@ void add_still(CLI::App& app) {
         "  doppel still butterfly --at 14 -o - > butterfly.png");
     add_preset_options(command, *options);
     add_beside_option(command, *options);
-    command.add_option("--at", options->at, "The time of the picture, s")->type_name("SECONDS")->required();
+    add_value(command, "--at", options->at, "SECONDS", "The time of the picture, s")->required();
     add_out_options(command, *options);
-    command.add_option("--size", options->size, "Size of the picture, px")->type_name("WxH");
-    command.add_option("--format", options->format, "What the picture is written as")
-        ->type_name("FORMAT")
-        ->check(CLI::IsMember({"png", "pdf", "svg"}))
-        ->capture_default_str();
+    add_value(command, "--size", options->size, "WxH", "Size of the picture, px");
+    add_choice(command, "--format", options->format, "FORMAT", "What the picture is written as", {"png", "pdf", "svg"});
     add_gl_option(command, options->gl);
     command.callback([options] {
         const auto at = seconds_of_option("--at", options->at);

@@ -98,9 +98,6 @@ void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
          physical.joint_viscous_N_m_s);
     list("joint_coulomb_N_m", "Coulomb friction", "N m", "friction at each joint, whatever its rate (Coulomb)",
          physical.joint_coulomb_N_m);
-    visit({"joint_coulomb_width_deg_per_s", "has no effect any more: a joint comes to rest where its rate is 0",
-           "deg/s", positive},
-          physical.joint_coulomb_width_deg_per_s);
     list("arm_drag_linear_N_m_s", "linear drag on arms", "N m s", "drag on each link, by its own rate",
          physical.arm_drag_linear_N_m_s);
     list("arm_drag_quadratic_N_m_s2", "drag on arms", "N m s²", "the same, by the square of its rate",
