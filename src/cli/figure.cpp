@@ -119,7 +119,7 @@ void make_figures(const FigureCommandOptions& options) {
         },
         [&](std::size_t k, const std::string& sentence) { reports(k, [&](auto& r) { r.note(sentence); }); },
         [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
-    outlive_readers();
+    ignore_sigpipe();
     try {
         run_figures(figures,
                     {.out = to.folder(),

@@ -26,7 +26,7 @@ void fit(const FitCommandOptions& options) {
     fit_options.out = options.out;
     fit_options.force = options.force;
     if (options.every_s > 0) fit_options.every_s = options.every_s;
-    outlive_readers();
+    ignore_sigpipe();
     const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
     const auto name = fit_name(files, fit_options);
     if (options.out == "-")

@@ -84,7 +84,7 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
                  const std::string& streamed,
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
     const auto style = progress_style(progress);
-    outlive_readers();
+    ignore_sigpipe();
     for (const auto& scene : scenes) {
         ProgressReport report(style, scene.preset.name, unit, streamed);
         try {

@@ -241,7 +241,7 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
 }
 
 void format_fields(KeyVisitor& visit, VideoSpec& video) {
-    static constexpr std::array<std::string_view, 2> codecs{"vp9", "av1"};
+    static const auto codecs = codecs_of(FilmFormat::webm);
     visit({"format", "the file; png: a picture a frame"}, video.format);
     const auto only = [&](bool holds, const char* what) {
         return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
