@@ -25,8 +25,8 @@ std::string replaced(std::string_view text, const Replace& replace) {
     return result;
 }
 
-/// Letters to add, drop or change to get from one to the other (Levenshtein 1965).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
+/// Letters to add, drop or change (Levenshtein 1965) to get from a to the first 0, 1, 2 … letters of b.
+std::vector<std::size_t> edit_distances(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), 0);
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -37,7 +37,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
             row[j + 1] = std::min({swap, row[j] + 1, diagonal + 1});
         }
     }
-    return row.back();
+    return row;
 }
 
 }  // namespace
@@ -125,10 +125,15 @@ std::string bytes_text(double bytes) {
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
     constexpr std::size_t longest = 100;  // more is no typing error
     if (word.size() > longest) return {};
-    const auto better = [&](auto a, auto b) { return edit_distance(word, a) < edit_distance(word, b); };
-    const auto best = std::min_element(candidates.begin(), candidates.end(), better);
-    if (best == candidates.end() || edit_distance(word, *best) > std::max<std::size_t>(2, word.size() / 3)) return {};
-    return std::string(*best);
+    const auto whole = [&](std::string_view one) { return edit_distances(word, one).back(); };
+    const auto start = [&](std::string_view one) { return std::ranges::min(edit_distances(word, one)); };
+    const auto best = std::ranges::min_element(candidates, {}, whole);
+    if (best == candidates.end()) return {};
+    if (whole(*best) <= std::max<std::size_t>(2, word.size() / 3)) return std::string(*best);
+    // "gravity" of "gravity_m_per_s2"
+    const auto longer = std::ranges::min_element(candidates, {}, start);
+    const bool is_start = word.size() > 2 && start(*longer) <= word.size() / 6;
+    return is_start ? std::optional<std::string>(*longer) : std::nullopt;
 }
 
 }  // namespace doppel

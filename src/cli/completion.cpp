@@ -25,24 +25,6 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
-/// A word of the command line without its quotes.
-std::string unquoted(std::string_view raw) {
-    std::string word;
-    char quote = 0;
-    for (std::size_t i = 0; i < raw.size(); ++i) {
-        const char c = raw[i];
-        if (c == '\\' && quote != '\'' && i + 1 < raw.size())
-            word += raw[++i];
-        else if (c == quote)
-            quote = 0;
-        else if (quote == 0 && (c == '"' || c == '\''))
-            quote = c;
-        else
-            word += c;
-    }
-    return word;
-}
-
 /// Presets that are built in, and those that lie here, of the kind that the command takes.
 void add_presets(const std::string& command, Candidates& all) {
     const bool films = command != "figure", figures = command == "figure" || command == "check" || command == "show";
@@ -113,10 +95,11 @@ void add_keys(const FieldTable& table, const std::string& above, const std::stri
         }
         for (const auto& choice : field.choices)
             all.push_back({key + choice});  // text needs no quotes, nor one of a list
-        if (field.type.takes == Takes::truth)
+        const auto example = field.example();
+        if (example == "true" || example == "false")
             all.insert(all.end(), {{key + "true"}, {key + "false"}});
         else if (field.choices.empty())
-            all.push_back({key + field.example()});
+            all.push_back({key + example});
     }
 }
 
@@ -190,10 +173,9 @@ Candidates candidates(CLI::App& app, const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string completions(CLI::App& app, const std::vector<std::string>& typed) {
-    if (typed.empty()) return "";
-    std::vector<std::string> words, lines;
-    for (const auto& word : typed) words.push_back(unquoted(word));
+std::string completions(CLI::App& app, const std::vector<std::string>& words) {
+    if (words.empty()) return "";
+    std::vector<std::string> lines;
     for (const auto& [text, help] : candidates(app, words))
         if (text.starts_with(words.back()))
             lines.push_back(fmt::format("{}\t{}\n", text, help.substr(0, help.find('\n'))));

@@ -14,6 +14,7 @@ _doppel() {
     if [[ $line == *[[:space:]] ]]; then words+=(''); fi
     word=${words[-1]} quote=${word%%[!\'\"]*}
     if [[ ! $quote ]]; then before=${word%"${word##*[=:]}"}; fi  # bash replaces what stands behind its last cut alone
+    words=("${words[@]//[\"\']/}")
     for _ in key value; do
         COMPREPLY=()
         while IFS=$'\t' read -r word _; do
@@ -37,7 +38,7 @@ inline constexpr std::string_view zsh_script = R"(#compdef doppel
 _doppel() {
     local line
     local -a open whole open_help whole_help
-    for line in "${(@f)$("${words[1]}" complete "${(@)words[2,CURRENT]}" 2>/dev/null)}"; do
+    for line in "${(@f)$("${words[1]}" complete "${(@)${(@Q)words[2,CURRENT]}//[\"\']/}" 2>/dev/null)}"; do
         [[ -n $line ]] || continue
         if [[ ${line%%$'\t'*} == *[=/] ]]; then
             open+=("${line%%$'\t'*}") open_help+=("${line/$'\t'/  }")
@@ -54,7 +55,7 @@ if [[ $funcstack[1] == _doppel ]]; then _doppel "$@"; else compdef _doppel doppe
 inline constexpr std::string_view fish_script = R"(# Completion of doppel for fish: doppel completion fish | source
 function __doppel_complete
     set -l words (commandline -opc) (commandline -ct)
-    $words[1] complete $words[2..-1] 2>/dev/null
+    $words[1] complete (string replace -ra '[\'"\\\\]' '' -- $words[2..-1]) 2>/dev/null
 end
 complete -c doppel -f -a '(__doppel_complete)'
 )";

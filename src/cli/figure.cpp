@@ -120,7 +120,7 @@ void make_figures(const FigureCommandOptions& options) {
         },
         [&](std::size_t k, const std::string& sentence) { reports(k, [&](auto& r) { r.note(sentence); }); },
         [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
-    outlive_readers();
+    ignore_sigpipe();
     try {
         run_figures(figures,
                     {.out = to.folder(),
@@ -153,14 +153,11 @@ void add_figure(CLI::App& app) {
         "  doppel figure flip-map --tiles --set grid.x.points=8192 --set grid.y.points=8192\n"
         "The same command resumes an interrupted figure.");
     add_run_options(command, *options, "Threads; default: one a core; same numbers for any N");
-    command.add_option("--size", options->size, "Size of the layout, px")->type_name("WxH");
-    command.add_option("--format", options->format, "Format of the picture")
-        ->type_name("FORMAT")
-        ->check(CLI::IsMember({"png", "pdf", "svg"}));
-    command.add_option("--scale", options->scale, "Scale: 2 draws four pixels for each pixel of the layout")
-        ->type_name("N")
+    add_value(command, "--size", options->size, "WxH", "Size of the layout, px");
+    add_choice(command, "--format", options->format, "FORMAT", "Format of the picture", {"png", "pdf", "svg"});
+    add_value(command, "--scale", options->scale, "N", "Scale: 2 draws four pixels for each pixel of the layout")
         ->check(CLI::Range(0.25, 8.0));
-    command.add_option("--shard", options->shard, "Compute part I of N only, for --merge")->type_name("I/N");
+    add_value(command, "--shard", options->shard, "I/N", "Compute part I of N only, for --merge");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.add_flag("--tiles", options->tiles,
                      "Of a map: tiles, one pixel a cell, and a page to pan and zoom, NAME.html");

@@ -26,7 +26,7 @@ void fit(const FitCommandOptions& options) {
     fit_options.out = options.out;
     fit_options.force = options.force;
     if (options.every_s > 0) fit_options.every_s = options.every_s;
-    outlive_readers();
+    ignore_sigpipe();
     const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
     const auto name = fit_name(files, fit_options);
     if (options.out == "-")
@@ -64,30 +64,22 @@ void add_fit(CLI::App& app) {
         "  doppel fit piece-*.csv --every 5.334      each with a clock of its own, so many seconds apart\n"
         "  doppel fit swing.csv --gravity 9.81 --mass 0.138");
     command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
-    command.add_option("--model", options->model, "Bodies: auto, point (masses on massless rods) or rigid (bodies)")
-        ->type_name("KIND")
-        ->check(CLI::IsMember({"auto", "point", "rigid"}))
-        ->capture_default_str();
-    command.add_option("--name", options->fit.name, "Name of the results; that of the first file where not given")
-        ->type_name("NAME");
-    command.add_option("--every", options->every_s, "Seconds from the beginning of a piece to that of the next")
-        ->type_name("S")
+    add_choice(command, "--model", options->model, "KIND",
+               "Bodies: auto, point (masses on massless rods) or rigid (bodies)", {"auto", "point", "rigid"});
+    add_value(command, "--name", options->fit.name, "NAME",
+              "Name of the results; that of the first file where not given");
+    add_value(command, "--every", options->every_s, "S", "Seconds from the beginning of a piece to that of the next")
         ->check(CLI::Range(1e-3, 1e6));
-    command
-        .add_option("--gravity", options->fit.convention.gravity,
-                    "Gravity of the preset, m/s²; angles do not determine it")
-        ->type_name("G")
+    add_value(command, "--gravity", options->fit.convention.gravity, "G",
+              "Gravity of the preset, m/s²; angles do not determine it")
         ->check(CLI::Range(1e-3, 1e4))
         ->capture_default_str();
-    command
-        .add_option("--mass", options->fit.convention.second_mass,
-                    "Mass of the second link in the preset, kg; angles do not determine it")
-        ->type_name("KG")
+    add_value(command, "--mass", options->fit.convention.second_mass, "KG",
+              "Mass of the second link in the preset, kg; angles do not determine it")
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();
     add_out_options(command, *options);
-    command.add_option("-j,--jobs", options->fit.jobs, "Threads; default: one a core; same numbers for any N")
-        ->type_name("N")
+    add_value(command, "-j,--jobs", options->fit.jobs, "N", "Threads; default: one a core; same numbers for any N")
         ->check(CLI::Range(1, 1024));
     command.callback([options] { fit(*options); });
 }

@@ -124,7 +124,7 @@ void write_preset(const fs::path& path, std::string_view kind) {
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(path, ignored)))
         throw bad_input("{}: exists already; give a new name", path.string());
-    outlive_readers();
+    ignore_sigpipe();
     const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
     const LoneFile file(path, "");

@@ -11,14 +11,18 @@
 
 namespace doppel {
 
+CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string& value, const std::string& type,
+                        const std::string& help, const std::vector<std::string>& choices) {
+    auto* option = add_value(command, names, value, type, help)->check(CLI::IsMember(choices));
+    return value.empty() ? option : option->capture_default_str();
+}
+
 void add_preset_options(CLI::App& command, PresetOptions& options) {
     command.add_option("PRESET", options.presets, "Names (see doppel list) or TOML files")->required();
-    command
-        .add_option("--set", options.sets,
-                    "Another value for a key, in TOML; text needs no quotes:\n"
-                    "--set video.theme=light --set 'system.mass_kg[1]=2'\n"
-                    "--set system.force.NAME.length_m=1.2")
-        ->type_name("KEY=VALUE")
+    add_value(command, "--set", options.sets, "KEY=VALUE",
+              "Another value for a key, in TOML; text needs no quotes:\n"
+              "--set video.theme=light --set 'system.mass_kg[1]=2'\n"
+              "--set system.force.NAME.length_m=1.2")
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -31,14 +35,12 @@ CLI::Option* refuse_dash(CLI::Option* option) {
 }
 
 void add_out_options(CLI::App& command, OutOptions& options) {
-    command.add_option("-o,--out", options.out, "Folder for the results, DIR/NAME/; - is standard output")
-        ->type_name("DIR")
+    add_value(command, "-o,--out", options.out, "DIR",
+              "Folder for the results, DIR/NAME/; -: standard output, at the end")
         ->capture_default_str();
     command.add_flag("--list-outputs", options.list_outputs, "Only list the files that would be written, a line each");
-    command.add_option("--progress", options.progress, "How to show progress; warnings are always shown")
-        ->type_name("STYLE")
-        ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
-        ->capture_default_str();
+    add_choice(command, "--progress", options.progress, "STYLE", "How to show progress; warnings are always shown",
+               {"auto", "bar", "plain", "json", "none"});
     command.add_flag("--force", options.force, "Replace files that were changed, or that another kind of run wrote");
 }
 
@@ -85,14 +87,11 @@ void list_outputs(const OutOptions& options, const std::string& name, const std:
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs) {
     add_preset_options(command, options);
     add_out_options(command, options);
-    command.add_option("-j,--jobs", options.jobs, jobs)->type_name("N")->check(CLI::Range(1, 1024));
+    add_value(command, "-j,--jobs", options.jobs, "N", jobs)->check(CLI::Range(1, 1024));
 }
 
 void add_gl_option(CLI::App& command, std::string& gl) {
-    command.add_option("--gl", gl, "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing")
-        ->type_name("NAME")
-        ->check(CLI::IsMember(gl_names()))
-        ->capture_default_str();
+    add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing", gl_names());
 }
 
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {

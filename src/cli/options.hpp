@@ -34,6 +34,16 @@ struct RunCommandOptions : PresetOptions, OutOptions {
     int jobs = 0;
 };
 
+/// An option with a value, which help calls `type`.
+template <class T>
+CLI::Option* add_value(CLI::App& command, const std::string& names, T& value, const std::string& type,
+                       const std::string& help) {
+    return command.add_option(names, value, help)->type_name(type);
+}
+/// The same of one of some names; help says which holds where none is given, if one does.
+CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string& value, const std::string& type,
+                        const std::string& help, const std::vector<std::string>& choices);
+
 void add_preset_options(CLI::App& command, PresetOptions& options);
 /// What --beside FILE puts on top of a preset and the overrides `given`, with these: side a shows the track, and side b starts
 /// as fitted to its first two seconds and runs for as long as it lasts. Throws Error as read_preset() does.
@@ -117,7 +127,7 @@ std::string with_schema_line(const std::string& text);
 std::optional<std::string> schema_line_fault(const PresetText& preset);
 
 /// What the scripts of "doppel completion" ask for, "doppel complete WORD…": what the last word may become, a line each,
-/// with a tab and a few words on it. The words are as they were typed, quotes included.
-std::string completions(CLI::App& app, const std::vector<std::string>& typed);
+/// with a tab and a few words on it. The words are without their quotes, whole or not.
+std::string completions(CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace doppel

@@ -21,16 +21,14 @@ struct StillOptions : PresetOptions, OutOptions {
 };
 
 void add_beside_option(CLI::App& command, PresetOptions& options) {
-    command
-        .add_option("--beside", options.beside,
-                    "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
-                    "first two seconds, and runs as long")
-        ->type_name("TRACK");
+    add_value(command, "--beside", options.beside, "TRACK",
+              "A measured track (CSV) as side a; side b starts as it does, fitted to its\n"
+              "first two seconds, and runs as long");
 }
 
 void add_columns_option(CLI::App& command, std::string& columns) {
-    command.add_option("--columns", columns, "Only these columns of the CSV, time_s,a,distance; a, b: all of a side")
-        ->type_name("LIST");
+    add_value(command, "--columns", columns, "LIST",
+              "Only these columns of the CSV, time_s,a,distance; a, b: all of a side");
 }
 
 std::vector<std::string> columns_of_option(const std::string& text) {
@@ -86,7 +84,7 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
                  const std::string& streamed,
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
     const auto style = progress_style(progress);
-    outlive_readers();
+    ignore_sigpipe();
     for (const auto& scene : scenes) {
         ProgressReport report(style, scene.preset.name, unit, streamed);
         try {
@@ -161,21 +159,15 @@ void add_render(CLI::App& app) {
         "  doppel render butterfly --set video.layout=overlay --set 'video.contact_sheet=[4, 3]'\n"
         "  doppel render calm --format webm -o - | mpv -");
     add_run_options(command, *options, "Threads that compress PNGs; default: one a core; same bytes for any N");
-    command
-        .add_option("--frames", options->frames,
-                    "Only the frames A to B-1 of the motion, with the pixels of the whole film")
-        ->type_name("A:B");
-    command.add_option("--from", options->from, "Start time, s")->type_name("SECONDS");
-    command.add_option("--to", options->to, "End time, s, not included: --to 20 makes 20 s")->type_name("SECONDS");
-    command.add_option("--size", options->size, "Size of the picture, px, even")->type_name("WxH");
-    command.add_option("--format", options->format, "Of the film; png: a sequence")
-        ->type_name("FORMAT")
-        ->check(CLI::IsMember(std::vector<std::string>(format_names.begin(), format_names.end())));
-    command
-        .add_option("--quality", options->quality,
-                    "draft: a quarter of the pixels; standard: as the preset; best: slow")
-        ->type_name("QUALITY")
-        ->check(CLI::IsMember({"draft", "standard", "best"}));
+    add_value(command, "--frames", options->frames, "A:B",
+              "Only the frames A to B-1 of the motion, with the pixels of the whole film");
+    add_value(command, "--from", options->from, "SECONDS", "Start time, s");
+    add_value(command, "--to", options->to, "SECONDS", "End time, s, not included: --to 20 makes 20 s");
+    add_value(command, "--size", options->size, "WxH", "Size of the picture, px, even");
+    add_choice(command, "--format", options->format, "FORMAT", "Of the film; png: a sequence",
+               {format_names.begin(), format_names.end()});
+    add_choice(command, "--quality", options->quality, "QUALITY",
+               "draft: a quarter of the pixels; standard: as the preset; best: slow", {"draft", "standard", "best"});
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
@@ -203,13 +195,10 @@ void add_still(CLI::App& app) {
         "  doppel still butterfly --at 14 -o - > butterfly.png");
     add_preset_options(command, *options);
     add_beside_option(command, *options);
-    command.add_option("--at", options->at, "The time of the picture, s")->type_name("SECONDS")->required();
+    add_value(command, "--at", options->at, "SECONDS", "The time of the picture, s")->required();
     add_out_options(command, *options);
-    command.add_option("--size", options->size, "Size of the picture, px")->type_name("WxH");
-    command.add_option("--format", options->format, "Format of the picture")
-        ->type_name("FORMAT")
-        ->check(CLI::IsMember({"png", "pdf", "svg"}))
-        ->capture_default_str();
+    add_value(command, "--size", options->size, "WxH", "Size of the picture, px");
+    add_choice(command, "--format", options->format, "FORMAT", "Format of the picture", {"png", "pdf", "svg"});
     add_gl_option(command, options->gl);
     command.callback([options] {
         const auto at = seconds_of_option("--at", options->at);

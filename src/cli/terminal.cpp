@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <vector>
 
 namespace doppel {
@@ -45,24 +46,23 @@ bool was_terminated() {
     return termination_requested;
 }
 
-void outlive_readers() {
+void ignore_sigpipe() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-std::error_code try_write_out(std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
-    return {errno, std::generic_category()};
-}
-
-void write_out(std::string_view text) {
-    if (const auto fault = try_write_out(text)) throw unwritten(fault);
-}
-
-Error unwritten(const std::error_code& why) {
-    return {code_of_errno(why.value()), fmt::format("standard output cannot be written: {}", why.message())};
-}
-
 namespace {
+
+/// To standard output, at once; the errno of a failure, or 0.
+int write_error(std::string_view text) {
+    return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 ? 0 : errno;
+}
+
+/// Throws the Error (exit 4) of such a failure.
+void check_written(int error) {
+    if (error != 0)
+        throw Error(code_of_errno(error),
+                    fmt::format("standard output cannot be written: {}", std::generic_category().message(error)));
+}
 
 std::string bar(double share) {
     constexpr int width = 28;
@@ -98,18 +98,22 @@ void stream_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::vector<char> bytes(1 << 20);
     while (file.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || file.gcount() > 0) {
-        const auto fault = try_write_out({bytes.data(), static_cast<std::size_t>(file.gcount())});
-        if (fault == std::errc::broken_pipe) return;
-        if (fault) throw unwritten(fault);
+        const int error = write_error({bytes.data(), static_cast<std::size_t>(file.gcount())});
+        if (error == EPIPE) return;
+        check_written(error);
     }
     if (!file.eof()) throw io_failed("{}: cannot be read", path.string());
 }
 
 }  // namespace
 
+void write_out(std::string_view text) {
+    check_written(write_error(text));
+}
+
 void tell_of_files(std::string_view text) {
-    const auto fault = try_write_out(text);
-    if (fault && fault != std::errc::broken_pipe && fault != std::errc::bad_file_descriptor) throw unwritten(fault);
+    const int error = write_error(text);
+    if (error != EPIPE && error != EBADF) check_written(error);
 }
 
 ProgressStyle progress_style(const std::string& name) {
@@ -176,9 +180,8 @@ void ProgressReport::warn(const std::string& sentence) {
 void ProgressReport::tell(const nlohmann::ordered_json& event) {
     const auto line = event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (!streamed_.empty()) return say(stderr, "{}", line);
-    const auto fault = try_write_out(line);
-    const bool left = fault == std::errc::broken_pipe;  // of their own accord
-    if (fault && !left) unheard_ = fault;
+    const int error = write_error(line);
+    if (error != 0 && error != EPIPE) write_error_ = error;  // a reader may leave
 }
 
 void ProgressReport::clear() {
@@ -199,8 +202,7 @@ void ProgressReport::done(const RunResult& result) {
         for (const auto& file : result.files)
             if (streamed_.empty()) line["files"].push_back(file.string());
         tell(line);
-        if (unheard_) throw unwritten(unheard_);
-        return;
+        return check_written(write_error_);
     }
     constexpr long few = 10;  // whose rate says nothing
     if (style_ != ProgressStyle::none && count < few)

@@ -12,7 +12,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace doppel {
@@ -25,15 +24,9 @@ const std::atomic<bool>& watch_interrupts();
 bool was_terminated();
 
 /// From now on, whoever reads the progress may go away, and the work goes on.
-void outlive_readers();
+void ignore_sigpipe();
 
-/// Writes to standard output, at once; tells why it could not.
-std::error_code try_write_out(std::string_view text);
-
-/// What such a failure is to the program: exit 4.
-Error unwritten(const std::error_code& why);
-
-/// As try_write_out(); throws that Error.
+/// Writes to standard output, at once. Throws Error (exit 4).
 void write_out(std::string_view text);
 
 /// As write_out(), of files that are there: what nobody reads, because standard output is closed or its reader went, is
@@ -81,7 +74,7 @@ private:
     Clock::time_point start_, shown_;
     std::optional<long> before_;  // done when first heard of, by an earlier run
     bool on_screen_ = false;
-    std::error_code unheard_;  // why a JSON line could not be written
+    int write_error_ = 0;  // errno: why a JSON line could not be written
 };
 
 }  // namespace doppel

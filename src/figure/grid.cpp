@@ -58,7 +58,7 @@ public:
                .help = "a second quantity of curves, on an axis at the right",
                .names = names_of<Quantity>},
               right_);
-        visit({"difference", "difference of the key of x between the two of a pair"}, difference_);
+        visit({"difference", "difference difference of the key of x between the two of a pair"}, difference_);
         const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
         visit({"exponent_duration_s",
                "duration of the motion from which an exponent is computed",
@@ -92,7 +92,7 @@ public:
                "",
                {.holds = quantity_ == Quantity::convergence, .hides = true}},
               mark_step_);
-        visit({"color_range", "range of the colours of a map, [lowest, highest]", "", {}, "that of the numbers"},
+        visit({"color_range", "range range of the colours of a map, [lowest, highest]", "", {}, "that of the numbers"},
               color_range_);
         visit.table("x", [&](auto& table) { x_.fields(table, key_help); });
         visit.table("y", [&](auto& table) { y_.fields(table, "the same upwards: a map, of cells"); });

@@ -14,7 +14,7 @@ std::string description_of(const ListedField& field) {
 }
 
 Json key_schema(const ListedField& field) {
-    auto schema = schema_of(field);
+    auto schema = field.type.schema(field);
     schema["title"] = field.unit.empty() ? std::string(field.key) : fmt::format("{}, {}", field.key, field.unit);
     schema["description"] = description_of(field);
     if (const auto value = field.default_value(); !value.empty())

@@ -38,9 +38,7 @@ Size largest_alike(Size size) {
 }
 
 std::optional<FormatFault> codec_fault(const VideoOptions& options) {
-    std::vector<std::string_view> codecs;
-    for (const auto& row : film_formats)
-        if (row.format == options.format && !row.codec.empty()) codecs.push_back(row.codec);
+    const auto codecs = codecs_of(options.format);
     if (options.codec.empty() || std::ranges::find(codecs, options.codec) != codecs.end()) return std::nullopt;
     if (codecs.empty())
         return FormatFault{"codec", fmt::format("must not be given: {} has only one, and no name for it; it is \"{}\"",
@@ -85,6 +83,13 @@ std::optional<FormatFault> alpha_fault(const VideoOptions& options, const Format
 }
 
 }  // namespace
+
+std::vector<std::string_view> codecs_of(FilmFormat format) {
+    std::vector<std::string_view> codecs;
+    for (const auto& row : film_formats)
+        if (row.format == format && !row.codec.empty()) codecs.push_back(row.codec);
+    return codecs;
+}
 
 const FormatRow& format_row(FilmFormat format, std::string_view codec) {
     const auto* found = std::ranges::find_if(

@@ -52,6 +52,9 @@ inline constexpr std::array film_formats{
     FormatRow{FilmFormat::png, "", "PNG sequence", 65535, 0, true},
 };
 
+/// The names of the codecs that a format has a choice of.
+std::vector<std::string_view> codecs_of(FilmFormat format);
+
 /// The row of the codec, or the first of the format: of its usual codec.
 const FormatRow& format_row(FilmFormat format, std::string_view codec);
 

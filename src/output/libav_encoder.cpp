@@ -49,15 +49,15 @@ Libav<T> owned(T* thing) {
     return Libav<T>(thing);
 }
 
-/// A muxer and its file, which is new: libav itself would follow a link there.
-Libav<AVFormatContext> open_format(const std::filesystem::path& place, const char* container) {
+/// A muxer that writes the file, which is open. libav opens files by their names, and follows links: this one is no
+/// name of any folder. (It opens an MP4 again, to put the index at the front.)
+Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, const char* container) {
     capture_libav_log();
-    create_file(place);
-    const auto address = "file:" + place.string();
+    const auto address = fmt::format("file:/proc/self/fd/{}", fileno(file));
     AVFormatContext* format = nullptr;
     avformat_alloc_output_context2(&format, nullptr, container, address.c_str());
     auto muxer = owned(format);
-    check_libav(avio_open(&muxer->pb, address.c_str(), AVIO_FLAG_WRITE), place.string(), "cannot be written");
+    check_libav(avio_open(&muxer->pb, address.c_str(), AVIO_FLAG_WRITE), path, "cannot be written");
     return muxer;
 }
 
@@ -168,7 +168,8 @@ Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const st
     : path_(place.string()),
       encoding_(std::move(encoding)),
       stop_(stop),
-      format_(open_format(place, encoding_.container)),
+      file_(create_file(place)),
+      format_(open_format(file_.get(), path_, encoding_.container)),
       packet_(owned(av_packet_alloc())) {
     for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
     frame_ = make_frame(encoding_.size, encoding_.pixels);

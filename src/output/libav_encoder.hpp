@@ -99,7 +99,8 @@ private:
     const std::string path_;
     Encoding encoding_;
     const std::atomic<bool>& stop_;
-    Libav<AVFormatContext> format_;  // and its file
+    Stream file_;
+    Libav<AVFormatContext> format_;  // which writes it
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;
     Libav<AVPacket> packet_;

@@ -29,9 +29,6 @@ std::string png_bytes(const Picture& picture, const PngOptions& options = {});
 /// file, a checksum is wrong, it cannot be decoded, or its colours are not sRGB.
 Picture read_png(const std::filesystem::path& place);
 
-/// The size that its header says. Throws as read_png().
-Size png_size(const std::filesystem::path& place);
-
 /// A numbered sequence: picture k = 0, 1, … is written to place_of(k), called by take(). `threads` compress, fed
 /// through a bounded queue. take() and finish() throw as write_png(), and exit 130 soon after `stop` is set.
 std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,

@@ -30,8 +30,6 @@ std::uint64_t big_endian(const unsigned char* bytes) {
     return std::uint64_t{bytes[0]} << 24 | bytes[1] << 16 | bytes[2] << 8 | bytes[3];
 }
 
-constexpr std::size_t head_bytes = 26;  // signature, length, type, width, height, bits, kind of colour
-
 Stream open_png(const std::filesystem::path& place) {
     std::error_code ignored;
     if (std::filesystem::status(place, ignored).type() == std::filesystem::file_type::not_found)
@@ -59,7 +57,7 @@ std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk
     constexpr std::uint64_t most_inflated = 1032, most_bytes = std::uint64_t{1} << 30;
     if (bytes > most_bytes) return fmt::format("it has more than {} MB", most_bytes >> 20);
-    unsigned char head[head_bytes];
+    unsigned char head[26];  // signature, length, type, width, height, bits, kind of colour
     if (std::fread(head, 1, sizeof head, file) == sizeof head) {
         const auto width = big_endian(head + 16), height = big_endian(head + 20);
         const std::uint64_t bits = head[24] * (head[25] == 2 ? 3U : head[25] == 4 ? 2U : head[25] == 6 ? 4U : 1U);
@@ -121,15 +119,6 @@ std::string other_colors(std::FILE* file) {
 }
 
 }  // namespace
-
-Size png_size(const std::filesystem::path& place) {
-    const auto file = open_png(place);
-    unsigned char head[head_bytes];
-    if (std::fread(head, 1, sizeof head, file.get()) != sizeof head ||
-        std::string_view(reinterpret_cast<const char*>(head), 8) != "\x89PNG\r\n\x1a\n")
-        throw io_failed("{}: cannot be decoded as PNG: not PNG", place.string());
-    return {static_cast<int>(big_endian(head + 16)), static_cast<int>(big_endian(head + 20))};
-}
 
 Picture read_png(const std::filesystem::path& place) {
     const auto file = open_png(place);

@@ -51,7 +51,7 @@ std::string ListedField::default_value() const {
 std::string ListedField::takes() const {
     std::string text(type.words);
     if (!choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(choices, "\"`, `\""));
-    if (!choices.empty() && is_list()) text = "list of " + text;
+    if (!choices.empty() && type.is_list) text = "list of " + text;
     if (most > 0) text = fmt::format("1 to {} {}", most, text);
     if (const auto range = range_text(); !range.empty()) text += ", " + range;
     if (is_drawn && choices.empty()) text += fmt::format(", at most {} letters", most_letters);
@@ -63,10 +63,11 @@ std::string ListedField::example() const {
     const auto first = by_default.substr(0, by_default.find_first_of("; "));  // of "1e-12; in quad 1e-28"
     const bool is_number = !first.empty() && first.find_first_not_of("0123456789.e-/") == std::string::npos;
     if (is_number) return first.find('/') == std::string::npos ? first : fmt::format("\"{}\"", first);
-    if (!choices.empty()) return fmt::format("{}\"{}\"{}", is_list() ? "[" : "", choices.front(), is_list() ? "]" : "");
-    if (type.takes == Takes::whole && bounds.has_low()) return fmt::format("{}", bounds.low);
+    if (!choices.empty())
+        return fmt::format("{}\"{}\"{}", type.is_list ? "[" : "", choices.front(), type.is_list ? "]" : "");
     if (unit == "cm") return "8.6";  // a column of a journal
-    return std::string(bounds.is_open ? type.positive_example : type.example);
+    const auto example = bounds.is_open ? type.positive_example : type.example;
+    return example.empty() ? fmt::format("{}", bounds.low) : std::string(example);
 }
 
 void FieldTable::append(const FieldTable& other) {

@@ -9,33 +9,15 @@
 
 namespace doppel {
 
-/// What a key takes.
-enum class Takes {
-    truth,
-    whole,
-    number,
-    ratio,
-    numbers,
-    pair,
-    whole_pair,
-    text,
-    texts,
-    some_texts,
-    chosen_text,
-    end,
-    color,
-    colors,
-    speed,
-    members,
-    values
-};
+struct ListedField;
 
-/// The same with its words; by the type of the member.
+/// What a key takes, by the type of its member.
 struct ValueType {
-    Takes takes;
     std::string_view words;                       // Markdown
-    std::string_view example = {};                // TOML, of a key without a default
+    Json (*schema)(const ListedField&);           // of its values: JSON schema (Draft 4)
+    std::string_view example = {};                // TOML, of a key without a default; of whole numbers the least
     std::string_view positive_example = example;  // of numbers > 0
+    bool is_list = false;                         // of text
 };
 ValueType value_type(const KeyMember& member);
 
@@ -48,7 +30,6 @@ struct ListedField : Field {
     std::string by_default;            // Markdown
     std::vector<std::string> choices;  // of text, or of a list's elements
 
-    bool is_list() const { return type.takes == Takes::texts || type.takes == Takes::some_texts; }
     bool is_needed() const { return by_default == must_be_given; }
     /// The range of a number: "> 0", "0 (none) to 100"; empty where there is none.
     std::string range_text() const;
@@ -60,9 +41,7 @@ struct ListedField : Field {
     std::string example() const;
 };
 
-/// Of its values: JSON schema (Draft 4).
-Json schema_of(const ListedField& field);
-/// A list of `least` to `most` items; 0 = of any number.
+/// JSON schema of a list of `least` to `most` items; 0 = of any number.
 Json list_schema(Json items, std::size_t least, std::size_t most);
 
 /// Markdown without its marks of code.

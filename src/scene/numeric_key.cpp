@@ -12,17 +12,6 @@
 namespace doppel {
 namespace {
 
-template <class T>
-constexpr bool holds_numbers =
-    std::is_same_v<T, Quad> || std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>;
-
-std::span<Quad> numbers_in(Quad& number) {
-    return {&number, 1};
-}
-std::span<Quad> numbers_in(auto& numbers) {
-    return numbers;
-}
-
 /// "force.spring.stiffness_N_per_m": the table's key, the entry's name and the entry's key; or the last alone.
 struct Place {
     std::string_view table, entry, key;
@@ -61,30 +50,19 @@ int entry_meant(SideSpec& side, const Place& place) {
 FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> put_whole = {}) {
     FoundNumber found;
     const int entry = entry_meant(side, place);
-    const auto is_meant = [&](const Field& field) {
-        found.names.push_back(field.key);
-        if (field.key == place.key) found.field = field;
-        return field.key == place.key;
-    };
     for_each_key(side, [&](const SideEntry& owner, const Field& field, const KeyMember& any) {
-        const auto look = [&]<class M>(const M& member) {
-            using T = std::remove_pointer_t<M>;
-            if constexpr (std::is_same_v<T, int>) {
-                if (!is_meant(field)) return;
-                *member = put_whole.value_or(*member);
-                found.is_whole = true;
-            } else if constexpr (std::is_same_v<T, std::optional<Rational>>) {
-                if (is_meant(field)) found.step = member;
-            } else if constexpr (holds_numbers<T>) {
-                if (is_meant(field)) found.values = numbers_in(*member);
-            } else if constexpr (is_optional<T>) {
-                if constexpr (holds_numbers<typename T::value_type>) {
-                    if (!*member && field.absent.empty()) return;  // no number holds in its place
-                    if (is_meant(field)) found.values = numbers_in(*member ? **member : member->emplace());
-                }
-            }
-        };
-        if (owner.table == place.table && owner.number == entry) std::visit(look, any);
+        if (owner.table != place.table || owner.number != entry) return;
+        const auto* whole = std::get_if<int*>(&any);
+        const auto* step = std::get_if<std::optional<Rational>*>(&any);
+        const auto values = numbers_of(any);
+        if (!whole && !step && (!values || (values->empty() && field.absent.empty()))) return;
+        found.names.push_back(field.key);
+        if (field.key != place.key) return;
+        found.field = field;
+        found.is_whole = whole;
+        if (whole) **whole = put_whole.value_or(**whole);
+        if (step) found.step = *step;
+        if (values) found.values = *numbers_of(any, true);
     });
     return found;
 }
@@ -93,10 +71,7 @@ FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> p
 std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
     std::vector<std::span<Quad>> all;
     for_each_key(side, [&](const SideEntry&, const Field&, const KeyMember& any) {
-        const auto add = [&]<class M>(const M& member) {
-            if constexpr (holds_numbers<std::remove_pointer_t<M>>) all.push_back(numbers_in(*member));
-        };
-        std::visit(add, any);
+        all.push_back(numbers_of(any).value_or(std::span<Quad>()));
     });
     return all;
 }
@@ -218,7 +193,7 @@ void NumericKey::set(Preset& preset, const Quad& value, const Quad& difference) 
 SideSpec between(SideSpec from, SideSpec to, const Quad& share) {
     const auto numbers = all_numbers(from), ends = all_numbers(to);
     for (std::size_t i = 0; i < numbers.size(); ++i)
-        for (std::size_t k = 0; k < numbers[i].size(); ++k)
+        for (std::size_t k = 0; k < std::min(numbers[i].size(), ends[i].size()); ++k)
             numbers[i][k] = Quad(numbers[i][k] + share * (ends[i][k] - numbers[i][k]));
     return from;
 }

@@ -100,7 +100,6 @@ struct PhysicalSpec {
     std::vector<Quad> rod_mass_kg{0, 0}, inertia_kg_m2{0, 0};
     std::vector<Quad> center_m;  // none: at the ends
     std::vector<Quad> joint_viscous_N_m_s{0, 0}, joint_coulomb_N_m{0, 0};
-    Quad joint_coulomb_width_deg_per_s = Quad(1) / 10;
     std::vector<Quad> arm_drag_linear_N_m_s{0, 0}, arm_drag_quadratic_N_m_s2{0, 0}, air_drag_quadratic_N_m_s2{0, 0};
     std::vector<Quad> drag_linear_N_s_per_m{0, 0}, drag_quadratic_N_s2_per_m2{0, 0};
     PivotSpec pivot;

@@ -99,9 +99,6 @@ void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
          physical.joint_viscous_N_m_s);
     list("joint_coulomb_N_m", "Coulomb friction", "N m", "Coulomb friction at each joint, independent of its rate",
          physical.joint_coulomb_N_m);
-    visit({"joint_coulomb_width_deg_per_s", "has no effect any more: a joint comes to rest where its rate is 0",
-           "deg/s", positive},
-          physical.joint_coulomb_width_deg_per_s);
     list("arm_drag_linear_N_m_s", "linear drag on links", "N m s", "drag on each link, proportional to its own rate",
          physical.arm_drag_linear_N_m_s);
     list("arm_drag_quadratic_N_m_s2", "drag on links", "N m s²",
@@ -244,7 +241,7 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
 }
 
 void format_fields(KeyVisitor& visit, VideoSpec& video) {
-    static constexpr std::array<std::string_view, 2> codecs{"vp9", "av1"};
+    static const auto codecs = codecs_of(FilmFormat::webm);
     visit({"format", "file format; png: one picture a frame"}, video.format);
     const auto only = [&](bool holds, const char* what) {
         return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),

@@ -13,26 +13,6 @@
 namespace doppel {
 namespace {
 
-/// What the key holds; whether it holds anything.
-template <class T>
-bool hold(const T& value, SideKey& key) {
-    if constexpr (std::is_same_v<T, ChosenName>)
-        key.text = toml_text(std::string(value.name));
-    else if constexpr (std::is_pointer_v<T>)
-        return hold(*value, key);
-    else if constexpr (is_optional<T>)
-        return value && hold(*value, key);
-    else if constexpr (std::is_same_v<T, EndSpec>)
-        return std::visit([&](const auto& end) { return hold(end, key); }, value);
-    else if constexpr (std::is_same_v<T, Quad>)
-        key.numbers = {value};
-    else if constexpr (std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>)
-        key.numbers.assign(value.begin(), value.end());
-    else
-        key.text = toml_value(value);
-    return true;
-}
-
 std::vector<SideKey> keys_of(SideSpec side) {
     side.step_s = side.step();
     side.tolerance = side.allowed_error();
@@ -59,7 +39,9 @@ std::vector<SideKey> keys_of(SideSpec side) {
                     .counts = field.only.holds,
                     .is_of_links = !field.each.empty() && field.symbol.empty() && place.empty(),
                     .is_of_part = is_part};
-        if (std::visit([&](const auto& value) { return hold(value, key); }, member)) all.push_back(std::move(key));
+        if (const auto numbers = numbers_of(member)) key.numbers.assign(numbers->begin(), numbers->end());
+        if (key.numbers.empty()) key.text = toml_value(member);
+        if (!key.numbers.empty() || !key.text.empty()) all.push_back(std::move(key));
     });
     return all;
 }
@@ -69,6 +51,30 @@ bool hold_the_same(const SideKey& one, const SideKey& other) {
 }
 
 }  // namespace
+
+std::optional<std::span<Quad>> numbers_of(const KeyMember& member, bool is_put) {
+    using Numbers = std::optional<std::span<Quad>>;
+    const auto in = []<class T>(T& value) -> Numbers {
+        if constexpr (std::is_same_v<T, Quad>) return std::span(&value, 1);
+        if constexpr (std::is_same_v<T, QuadPair> || std::is_same_v<T, std::vector<Quad>>) return std::span(value);
+        if constexpr (std::is_same_v<T, EndSpec>)
+            if (auto* place = std::get_if<QuadPair>(&value)) return std::span(*place);
+        return std::nullopt;
+    };
+    return std::visit(
+        [&]<class M>(const M& of) -> Numbers {
+            if constexpr (std::is_same_v<M, ChosenName>) {
+                return std::nullopt;
+            } else if constexpr (is_optional<std::remove_pointer_t<M>>) {
+                typename std::remove_pointer_t<M>::value_type none{};
+                if (!*of && !is_put) return in(none) ? Numbers(std::in_place) : std::nullopt;
+                return in(*of ? **of : of->emplace());
+            } else {
+                return in(*of);
+            }
+        },
+        member);
+}
 
 std::string caption_of(const Field& field) {
     if (!field.caption.empty()) return std::string(field.caption);

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "scene/field.hpp"
-#include "scene/preset.hpp"
+#include "scene/member.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +36,10 @@ struct KeyDifference {
 
 /// By all keys that decide how sides move: what hangs, what acts on it, how it is stepped.
 std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b);
+
+/// The numbers that a member of a side holds, where it is of such a type: none of an optional one that is not given;
+/// `is_put` gives it first.
+std::optional<std::span<Quad>> numbers_of(const KeyMember& member, bool is_put = false);
 
 /// What captions call a key: "stiffness" of "stiffness_N_per_m".
 std::string caption_of(const Field& field);

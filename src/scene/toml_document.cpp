@@ -1,6 +1,5 @@
 #include "base/text.hpp"
 #include "numeric/rational.hpp"
-#include "scene/field_table.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>
@@ -99,10 +98,11 @@ bool is_toml(const std::string& value) {
     }
 }
 
-/// Text as one types it without quotes: "light", "1/1000", "#ff8800", "fonts/mine.ttf".
+/// Text as one types it without quotes: "light", "1/1000", "#ff8800", "fonts/mine.ttf", "system.mass_kg[1]".
 bool is_bare_text(std::string_view value) {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    if (value.empty() || value.find_first_of("\"'[]{}=,\\\n\r\t") != std::string_view::npos) return false;
+    if (value.empty() || value[0] == '[' || value.find_first_of("\"'{}=,\\\n\r\t") != std::string_view::npos)
+        return false;
     const bool is_fraction = parse_rational(std::string(value)).has_value();
     return is_fraction || !(is_digit(value[0]) || value[0] == '-' || value[0] == '+' || value[0] == '.');
 }
@@ -124,55 +124,6 @@ toml::table given_by(const Override& change, TomlTexts& texts) {
 
 std::string text_in(const toml::table& table, std::string_view key) {
     return table[key].value_or(std::string());
-}
-
-/// The literals of a list of numbers; of a single one, which holds for all links, as often as there are links.
-std::vector<std::string> literals_of(const toml::node& node, std::size_t links, const Override& change,
-                                     const TomlTexts& texts) {
-    const auto literal = [&](const toml::node& number) {
-        const auto text = literal_of(number, texts);
-        if (!number.is_number() || !text)
-            throw bad_input("{}: only an element of a list of numbers can be set; {}", change.origin, found(node));
-        return *text;
-    };
-    std::vector<std::string> literals;
-    if (const auto* array = node.as_array())
-        for (const auto& element : *array) literals.push_back(literal(element));
-    else
-        literals.assign(links, literal(node));
-    return literals;
-}
-
-/// The literal of each number of a list of [system] where the preset has none; empty where there is none.
-std::string default_literal(std::string_view key) {
-    for (const auto& table : film_tables())
-        for (const auto& field : table.fields)
-            if (const auto value = field.default_value(); table.key() == "system" && field.key == key)
-                return value.starts_with('[') ? value.substr(1, value.find_first_of(",]") - 1) : "";
-    return {};
-}
-
-/// The list that `key` of a table has, with another number at `element`. What [a] or [b] does not say is as in [system].
-std::string list_with(const toml::table& root, const toml::table& table, const std::string& key, std::size_t element,
-                      const Override& change, const TomlTexts& texts) {
-    const auto* system = root["system"].as_table();
-    const bool is_of_side = &table == root["a"].as_table() || &table == root["b"].as_table();
-    const auto* node = table.get(key);
-    if (!node && is_of_side && system) node = system->get(key);
-    auto links = table["links"].value<long>();
-    if (!links && system) links = (*system)["links"].value<long>();
-    const auto count = static_cast<std::size_t>(std::clamp(links.value_or(2), 1L, 10'000L));
-    const bool has_default = &table == system || is_of_side;
-    const auto by_default = node || !has_default ? "" : default_literal(key);
-    if (!node && by_default.empty())
-        throw bad_input("{}: the preset has no {}; give all of it: '{}=[…]'", change.origin, key,
-                        change.key.substr(0, change.key.find('[')));
-    auto literals = node ? literals_of(*node, count, change, texts) : std::vector(count, by_default);
-    if (element >= literals.size())
-        throw bad_input("{}: {} has {} elements, whose last is [{}]", change.origin, key, literals.size(),
-                        literals.size() - 1);
-    literals[element] = change.value;
-    return fmt::format("[{}]", fmt::join(literals, ", "));
 }
 
 /// The entry of that name, or else the only one of that kind. An entry of [system] that a side says nothing of gets a
@@ -226,19 +177,15 @@ toml::table& table_of(toml::table& root, const Override& change, std::string& ke
     return *table;
 }
 
-/// Puts the value of `change` into the tables of `root`, in place of what is there.
+/// Puts the value of `change` into the tables of `root`, in place of what is there; that of an element, "mass_kg[1]", as a
+/// key of its own, for the reader of the list.
 void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     std::string key = change.key;
     auto& table = table_of(root, change, key);
     std::optional<std::size_t> element;
-    if (!take_element(key, element))
+    if (auto list = key; !take_element(list, element))
         throw bad_input("{}: an element of a list is written like system.mass_kg[1], the second", change.origin);
     auto given = given_by(change, texts);
-    if (element) {
-        if (const auto& value = *given.get("value"); !value.is_number())
-            throw bad_input("{}: an element must be a number; {}", change.origin, found(value));
-        given = parsed_value(change, list_with(root, table, key, *element, change, texts), texts);
-    }
     // moved, not copied: a copy would forget where it comes from
     std::move(*given.get("value")).visit([&]<class Node>(Node&& node) {
         table.erase(key);

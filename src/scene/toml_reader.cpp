@@ -103,6 +103,18 @@ const toml::node* TomlReader::find(std::string_view key) {
     return table_ ? table_->get(key) : nullptr;
 }
 
+std::vector<std::pair<std::string_view, std::size_t>> TomlReader::elements_of(std::string_view key) const {
+    std::vector<std::pair<std::string_view, std::size_t>> elements;
+    if (!table_) return elements;
+    for (auto&& [name, node] : *table_) {
+        std::string list(name.str());
+        std::optional<std::size_t> element;
+        if (name.str().starts_with(key) && is_typed(node) && take_element(list, element) && element && list == key)
+            elements.emplace_back(name.str(), *element);
+    }
+    return elements;
+}
+
 bool TomlReader::has(std::string_view key) {
     return find(key) != nullptr;
 }

@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -124,6 +125,8 @@ public:
 
 private:
     const toml::node* find(std::string_view key);
+    /// What the command line gives of elements of a list: the keys "mass_kg[1]", 1.
+    std::vector<std::pair<std::string_view, std::size_t>> elements_of(std::string_view key) const;
     std::optional<toml::source_region> source_of(std::string_view key) const;
     void note(std::string_view key, const Error& fault) const;
     bool counts(const Field& field);

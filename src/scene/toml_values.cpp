@@ -157,8 +157,32 @@ public:
     /// 1 to `most`.
     void read(const toml::node& node, TomlValues& into) const {
         into.texts.clear();
-        for (const auto& element : some_of(node, "values"))
-            into.texts.push_back(element.is_number() ? text_of(number(element, {}, Quad())) : written(element));
+        for (const auto& element : some_of(node, "values")) into.texts.push_back(text_in(element));
+    }
+
+    /// One of a list that is there; of its numbers, texts or colours.
+    template <class T>
+    void read_element(const toml::node& node, std::size_t element, T& into) const {
+        const auto check_size = [&](std::size_t size) {
+            if (element >= size)
+                throw size == 0 ? fault("is of a list that the preset has not; give all of it")
+                                : fault("is beyond the list, whose last is [{}]", size - 1);
+        };
+        if constexpr (std::is_same_v<T, TomlValues>) {
+            check_size(into.texts.size());
+            into.texts[element] = text_in(node);
+        } else if constexpr (std::is_same_v<T, Size>) {
+            check_size(2);
+            read(node, element == 0 ? into.width : into.height);
+        } else if constexpr (is_optional<T>) {
+            check_size(into ? element + 1 : 0);
+            read_element(node, element, *into);
+        } else if constexpr (requires { read(node, into[element]); } && !std::is_same_v<T, std::string>) {
+            check_size(into.size());
+            read(node, into[element]);
+        } else {
+            throw fault("is of no list of numbers");
+        }
     }
 
     void read(const toml::node& node, Members& into) const {
@@ -259,6 +283,10 @@ private:
         const auto& widest = field_.otherwise;
         const bool is_possible = widest && value >= widest->low && value <= widest->high;
         return is_possible ? fault.with(table_.beside(field_.only.beside)) : fault;
+    }
+
+    std::string text_in(const toml::node& value) const {
+        return value.is_number() ? text_of(number(value, {}, Quad())) : written(value);
     }
 
     template <class Number>
@@ -403,6 +431,17 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
     };
     try {
         std::visit(read, member);
+        for (const auto& [key, element] : elements_of(field.key)) {
+            auto one = field;
+            one.key = key;
+            const auto put = [&]<class M>(M into) {
+                if constexpr (!std::is_same_v<M, ChosenName>)
+                    ValueReader(*this, one).read_element(*find(key), element, *into);
+                else
+                    throw fault(key, "is of no list of numbers");
+            };
+            std::visit(put, member);
+        }
     } catch (const Error& fault) {
         if (!faults_ || fault.code() != ExitCode::bad_input) throw;
         note(field.key, fault);

@@ -48,6 +48,96 @@ Json any_of(std::initializer_list<Json> schemas) {
     return {{"anyOf", Json(schemas)}};
 }
 
+using L = const ListedField&;
+
+Json number_schema(L field) {
+    return within(field.bounds);
+}
+
+Json whole_schema(L field) {
+    auto schema = within(field.bounds);
+    schema["type"] = "integer";
+    return schema;
+}
+
+Json ratio_schema(L field) {
+    return ratio_within(field.bounds);
+}
+
+Json numbers_schema(L field) {
+    const auto number = within(field.bounds);
+    return field.most > 0 ? list_schema(number, 1, field.most) : any_of({number, list_schema(number, 1, 0)});
+}
+
+Json pair_schema(L field) {
+    return list_schema(within(field.bounds), 2, 2);
+}
+
+Json whole_pair_schema(L field) {
+    auto whole = within(field.bounds);
+    whole["multipleOf"] = 1;
+    return list_schema(whole, 2, 2);
+}
+
+template <int least>
+Json texts_schema(L field) {
+    return list_schema(text_schema(field), least, field.is_drawn ? most_texts : 0);
+}
+
+Json color_schema(L) {
+    return {{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
+}
+
+Json truth_schema(L) {
+    return {{"type", "boolean"}};
+}
+
+Json speed_schema(L field) {
+    const Json places{ratio_within(not_negative), ratio_within(changing_speeds)};
+    const Json change{{"type", "array"}, {"items", places}, {"minItems", 2}, {"additionalItems", false}};
+    return any_of({ratio_within(field.bounds), list_schema(change, 1, 0)});
+}
+
+Json members_schema(L field) {
+    return any_of({whole_schema(field), list_schema(list_schema(within({}), 1, 0), 2, Members::most_releases)});
+}
+
+template <class T>
+constexpr ValueType type_of() {
+    using std::is_same_v;
+    if constexpr (is_optional<T>) return type_of<typename T::value_type>();
+    if constexpr (is_same_v<T, bool>) return {"`true` or `false`", truth_schema, "true"};
+    if constexpr (is_same_v<T, int>) return {"whole number", whole_schema};
+    if constexpr (is_same_v<T, double> || is_same_v<T, Quad>) return {"number", number_schema, "1", "1e-6"};
+    if constexpr (is_same_v<T, Rational>) return {"number or \"a/b\"", ratio_schema, "1", "60"};
+    if constexpr (is_same_v<T, std::vector<double>> || is_same_v<T, std::vector<Quad>>)
+        return {"numbers", numbers_schema, "1"};
+    if constexpr (is_same_v<T, std::vector<std::string>>)
+        return {.words = "list of text", .schema = texts_schema<0>, .example = "[\"\"]", .is_list = true};
+    if constexpr (is_same_v<T, Panels>)
+        return {.words = "list of text, not empty", .schema = texts_schema<1>, .is_list = true};
+    if constexpr (is_same_v<T, Speed>) return {"number, \"a/b\", or list of [s, number]", speed_schema};
+    if constexpr (is_same_v<T, QuadPair>) return {"[x, y]", pair_schema, "[0, 0]"};
+    if constexpr (is_same_v<T, Members>) return {"whole number, or angles of 2 to 8 pendulums", members_schema};
+    if constexpr (is_same_v<T, ChosenText>)
+        return {"`true`, `false`, text or list of text", [](L field) {
+                    return any_of({truth_schema(field), text_schema(field), texts_schema<0>(field)});
+                }};
+    if constexpr (is_same_v<T, EndSpec>)
+        return {"text or [x, y]", [](L field) { return any_of({text_schema(field), pair_schema(field)}); }, "\"\""};
+    if constexpr (is_same_v<T, TomlValues>)
+        return {"values that the key takes", [](L field) { return list_schema(Json::object(), 1, field.most); },
+                "[0, 90]"};
+    if constexpr (is_same_v<T, Size> || is_same_v<T, std::array<int, 2>>)
+        return {"two whole numbers", whole_pair_schema, "[4, 3]"};
+    if constexpr (is_same_v<T, Range>) return {"two numbers", pair_schema, "[0, 10]", "[1e-6, 10]"};
+    if constexpr (is_same_v<T, Color>) return {"\"#rrggbb\"", color_schema, "\"#ff9f40\""};
+    if constexpr (is_same_v<T, std::array<Color, 2>>)
+        return {"two of \"#rrggbb\"", [](L field) { return list_schema(color_schema(field), 2, 2); },
+                "[\"#ff9f40\", \"#4fc3f7\"]"};
+    return {"text", text_schema, "\"\""};
+}
+
 }  // namespace
 
 Json list_schema(Json items, std::size_t least, std::size_t most) {
@@ -56,89 +146,6 @@ Json list_schema(Json items, std::size_t least, std::size_t most) {
     if (most > 0) schema["maxItems"] = most;
     return schema;
 }
-
-Json schema_of(const ListedField& field) {
-    const auto number = within(field.bounds);
-    const Json truth{{"type", "boolean"}}, color{{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
-    auto whole = number;
-    whole["type"] = "integer";
-    const auto texts = [&](std::size_t least) {
-        return list_schema(text_schema(field), least, field.is_drawn ? most_texts : 0);
-    };
-    switch (field.type.takes) {
-        case Takes::truth:
-            return truth;
-        case Takes::whole:
-            return whole;
-        case Takes::number:
-            return number;
-        case Takes::ratio:
-            return ratio_within(field.bounds);
-        case Takes::numbers:
-            return field.most > 0 ? list_schema(number, 1, field.most) : any_of({number, list_schema(number, 1, 0)});
-        case Takes::pair:
-            return list_schema(number, 2, 2);
-        case Takes::whole_pair:
-            whole = number;
-            whole["multipleOf"] = 1;
-            return list_schema(whole, 2, 2);
-        case Takes::text:
-            return text_schema(field);
-        case Takes::texts:
-            return texts(0);
-        case Takes::some_texts:
-            return texts(1);
-        case Takes::chosen_text:
-            return any_of({truth, text_schema(field), texts(0)});
-        case Takes::end:
-            return any_of({text_schema(field), list_schema(number, 2, 2)});
-        case Takes::color:
-            return color;
-        case Takes::colors:
-            return list_schema(color, 2, 2);
-        case Takes::speed: {
-            const Json places{ratio_within(not_negative), ratio_within(changing_speeds)};
-            const Json change{{"type", "array"}, {"items", places}, {"minItems", 2}, {"additionalItems", false}};
-            return any_of({ratio_within(field.bounds), list_schema(change, 1, 0)});
-        }
-        case Takes::members:
-            return any_of({whole, list_schema(list_schema(within({}), 1, 0), 2, Members::most_releases)});
-        case Takes::values:
-            return list_schema(Json::object(), 1, field.most);
-    }
-    return {};
-}
-
-namespace {
-
-template <class T>
-constexpr ValueType type_of() {
-    using std::is_same_v;
-    if constexpr (is_optional<T>) return type_of<typename T::value_type>();
-    if constexpr (is_same_v<T, bool>) return {Takes::truth, "`true` or `false`", "true"};
-    if constexpr (is_same_v<T, int>) return {Takes::whole, "whole number", "1"};
-    if constexpr (is_same_v<T, double> || is_same_v<T, Quad>) return {Takes::number, "number", "1", "1e-6"};
-    if constexpr (is_same_v<T, Rational>) return {Takes::ratio, "number or \"a/b\"", "1", "60"};
-    if constexpr (is_same_v<T, std::vector<double>> || is_same_v<T, std::vector<Quad>>)
-        return {Takes::numbers, "numbers", "1"};
-    if constexpr (is_same_v<T, std::vector<std::string>>) return {Takes::texts, "list of text", "[\"\"]"};
-    if constexpr (is_same_v<T, Panels>) return {Takes::some_texts, "list of text, not empty"};
-    if constexpr (is_same_v<T, Speed>) return {Takes::speed, "number, \"a/b\", or list of [s, number]"};
-    if constexpr (is_same_v<T, QuadPair>) return {Takes::pair, "[x, y]", "[0, 0]"};
-    if constexpr (is_same_v<T, Members>) return {Takes::members, "whole number, or angles of 2 to 8 pendulums"};
-    if constexpr (is_same_v<T, ChosenText>) return {Takes::chosen_text, "`true`, `false`, text or list of text"};
-    if constexpr (is_same_v<T, EndSpec>) return {Takes::end, "text or [x, y]", "\"\""};
-    if constexpr (is_same_v<T, TomlValues>) return {Takes::values, "values that the key takes", "[0, 90]"};
-    if constexpr (is_same_v<T, Size> || is_same_v<T, std::array<int, 2>>)
-        return {Takes::whole_pair, "two whole numbers", "[4, 3]"};
-    if constexpr (is_same_v<T, Range>) return {Takes::pair, "two numbers", "[0, 10]", "[1e-6, 10]"};
-    if constexpr (is_same_v<T, Color>) return {Takes::color, "\"#rrggbb\"", "\"#ff9f40\""};
-    if constexpr (is_same_v<T, std::array<Color, 2>>)
-        return {Takes::colors, "two of \"#rrggbb\"", "[\"#ff9f40\", \"#4fc3f7\"]"};
-    return {Takes::text, "text", "\"\""};
-}
-
-}  // namespace
 
 ValueType value_type(const KeyMember& member) {
     return std::visit([]<class M>(const M&) { return type_of<std::remove_pointer_t<M>>(); }, member);

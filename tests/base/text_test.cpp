@@ -66,5 +66,18 @@ TEST(Text, ShortenedEndsWithAWholeCharacter) {
     EXPECT_EQ(shortened("½", 0), "…");
 }
 
+TEST(Text, TheNearestWordIsATypingErrorAwayOrBeginsSo) {
+    const std::vector<std::string_view> keys{"mass_kg", "length_m", "gravity_m_per_s2", "rod_mass_kg", "fps"};
+    for (const auto& [word, meant] : std::vector<std::pair<const char*, const char*>>{{"mas_kg", "mass_kg"},
+                                                                                      {"mass", "mass_kg"},
+                                                                                      {"gravity", "gravity_m_per_s2"},
+                                                                                      {"grvity", "gravity_m_per_s2"},
+                                                                                      {"fsp", "fps"},
+                                                                                      {"zzzzzz", ""},
+                                                                                      {"colour", ""}})
+        EXPECT_EQ(nearest(word, keys).value_or(""), meant);
+    EXPECT_FALSE(nearest("x", {}));
+}
+
 }  // namespace text_test
 }  // namespace doppel

@@ -20,6 +20,7 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
              {{"still", "calm", "--at", "soon"}, "--at must be seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
              {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
              {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""}, "and still, which draws PNG"},
+             {{"render", "measured", "--to", "99"}, "--to 99: measured ends at 2.65 s"},
              {{"render", "calm", "--from", "-1"}, "--from wants seconds ≥ 0"},
              {{"render", "calm", "--from", "1", "--frames", "0:3"},
               "--frames counts frames, --from and --to seconds; give one"},

@@ -61,6 +61,13 @@ int open(const char* name, int flags, ...) {
     va_end(rest);
     return fails("open") ? -1 : next<int(const char*, int, ...)>("open")(name, flags, mode);
 }
+int open64(const char* name, int flags, ...) {  // of libraries
+    va_list rest;
+    va_start(rest, flags);
+    const auto mode = va_arg(rest, unsigned);
+    va_end(rest);
+    return fails("open64") ? -1 : next<int(const char*, int, ...)>("open64")(name, flags, mode);
+}
 int mkdir(const char* name, mode_t mode) noexcept {
     return fails("mkdir") ? -1 : next<int(const char*, mode_t)>("mkdir")(name, mode);
 }

@@ -1,6 +1,7 @@
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
 #include "output/sink.hpp"
+#include "output/system_calls.hpp"
 
 extern "C" {
 #include <libavformat/avformat.h>
@@ -19,6 +20,28 @@ using namespace test;
 namespace fs = std::filesystem;
 
 constexpr Size small{480, 270};
+
+// libav opens a file by its name, after it was made
+TEST(Video, IsWrittenThroughNoLinkThatTakesItsName) {
+    const auto folder = fresh_folder();
+    for (const auto& [format, name] : {std::pair{FilmFormat::mp4, "x.mp4"},
+                                       {FilmFormat::webm, "x.webm"},
+                                       {FilmFormat::gif, "x.gif"},
+                                       {FilmFormat::apng, "x.apng"}}) {
+        const auto place = folder / name;
+        write_bytes(folder / "thesis", "years of work");
+        watch_calls([&, is_done = false](const std::string& call) mutable {
+            if (is_done || call != "open64" || !fs::exists(place)) return 0;
+            is_done = true;
+            fs::remove(place);
+            fs::create_symlink("thesis", place);
+            return 0;
+        });
+        film(place, {.format = format, .size = {64, 36}, .fps_numerator = 25}, 3);
+        watch_calls({});
+        EXPECT_TRUE(bytes_of(folder / "thesis") == "years of work") << name;
+    }
+}
 
 TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     const auto folder = fresh_folder();

@@ -71,8 +71,9 @@ inline const std::vector<RefusedPreset> refused_system{
                   R"(presets/x.toml:3:1: [system] integrator "gauss6" supports angles, not model = "constraints")"},
     RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nmodel = \"angles\"",
                   "presets/x.toml:2:1: [system] stabilise is for constraints; in angles rods have constant length"},
-    RefusedPreset{"[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
-                  R"(presets/x.toml:2:1: [system] stabilise is not needed with "rattle6", which keeps the constraints itself)"},
+    RefusedPreset{
+        "[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
+        R"(presets/x.toml:2:1: [system] stabilise is not needed with "rattle6", which keeps the constraints itself)"},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nmodel = \"constraints\"",
                   "presets/x.toml:3:1: [system] model \"constraints\" does not support this chain: links with mass, "
                   "friction or a drive need angles"},
@@ -117,9 +118,8 @@ inline const std::vector<RefusedPreset> refused_rates{
         "[scene]\nsample_hz = 7",
         "presets/x.toml:2:1: [scene] sample_hz must divide the step rate, 30000 Hz on side a; it is 7; 6 or 8 "
         "is possible"},
-    RefusedPreset{
-        "[b]\nstep_s = \"1/100\"",
-        "presets/x.toml: [scene] sample_hz must divide the step rate, 100 Hz on side b; it is 120; use 100"},
+    RefusedPreset{"[b]\nstep_s = \"1/100\"",
+                  "presets/x.toml: [scene] sample_hz must divide the step rate, 100 Hz on side b; it is 120; use 100"},
     RefusedPreset{"[scene]\nduration_s = 0", "presets/x.toml:2:1: [scene] duration_s must be > 0; it is 0"},
     RefusedPreset{"[scene]\nduration_s = 0.01",
                   "presets/x.toml:2:1: [scene] duration_s must be a whole number of samples at 120 Hz; 0.01 s are 1.2"},
@@ -134,10 +134,9 @@ inline const std::vector<RefusedPreset> refused_rates{
         "3600"}};
 
 inline const std::vector<RefusedPreset> refused_video{
-    RefusedPreset{
-        "[video]\nsize = [641, 360]",
-        "presets/x.toml:2:1: [video] size must be even for H.264 in yuv420p; it is [641, 360]; [642, "
-        "360] is possible"},
+    RefusedPreset{"[video]\nsize = [641, 360]",
+                  "presets/x.toml:2:1: [video] size must be even for H.264 in yuv420p; it is [641, 360]; [642, "
+                  "360] is possible"},
     RefusedPreset{"[video]\nsize = [0, 100]",
                   "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
     RefusedPreset{"[video]\nformat = \"avi\"",
