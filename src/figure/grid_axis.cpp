@@ -39,6 +39,8 @@ const std::array<GridAxis::ReleaseParameter, 4> GridAxis::releases{
 
 void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset& pair) {
     if (!is_there()) return;
+    if (!labels.empty() && labels.size() != values->texts.size())
+        throw table.fault("labels", "must name the {} values; there are {}", values->texts.size(), labels.size());
     if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
     if (is_setting()) return find_settings(table, pair);
     find_number(reader, table, pair);
@@ -93,18 +95,24 @@ void GridAxis::settle(const Preset& pair) {
 }
 
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
-    if (key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
-    if (!key.starts_with("system.") && !key.starts_with("a.") && !key.starts_with("b."))
+    const bool is_all = key == "system";  // each value a table of some of its keys
+    if (!is_all && key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
+    if (!is_all && !key.starts_with("system.") && !key.starts_with("a.") && !key.starts_with("b."))
         throw table.fault("key", "must begin with \"system.\", \"a.\" or \"b.\"; it is \"{}\"", key);
-    demand_last_word(reader, table, key);
-    label = caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
+    if (!is_all) demand_last_word(reader, table, key);
+    label = is_all ? key : caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
     keeps_method = false;
     count = values->texts.size();
     const auto origin = fmt::format("{}: {} values", table.place("values"), key);
     for (const auto& text : values->texts) {
         table.demand_drawable("values", text);
         auto keys = fmt::format("{} = {}\n", key, text);
-        if (const auto slash = text.find('/'); key == "system.integrator" && slash != std::string::npos)
+        if (is_all && !text.starts_with('{'))
+            throw table.fault("values", "must be tables of keys of [system], {{ integrator = \"rk4\" }}; one is {}",
+                              text);
+        if (is_all)
+            keys = fmt::format("a = {0}\nb = {0}\n", text);
+        else if (const auto slash = text.find('/'); key == "system.integrator" && slash != std::string::npos)
             keys = fmt::format("a.integrator = {0}{2}\nb.integrator = {2}{1}\n", text.substr(0, slash),
                                text.substr(slash + 1), text[0]);
         else if (key.starts_with("system."))  // the sides have the last word
@@ -200,6 +208,7 @@ Quad GridAxis::even_value(std::size_t i) const {
 }
 
 std::string GridAxis::words(std::size_t i) const {
+    if (!labels.empty()) return labels[i];
     if (!levels.empty()) return unquoted(values->texts[i]);
     const auto comma = label.rfind(", ");
     auto what = label.substr(0, comma);
@@ -222,7 +231,7 @@ std::vector<std::string> GridAxis::columns() const {
 void GridAxis::write(std::size_t i, Csv& table) const {
     if (is_setting() && is_adaptive_) table.add_or_empty(NAN);
     if (!levels.empty())
-        table.add(std::string_view(unquoted(values->texts[i])));
+        table.add(std::string_view(words(i)));
     else if (is_there())
         table.add(static_cast<double>(value(i)));
     if (is_setting() && !is_adaptive_) table.add_or_empty(NAN);
@@ -263,7 +272,7 @@ PlotAxis GridAxis::plot_axis() const {
 std::string GridAxis::apart(const Quad& difference) const {
     if (difference == 0) return "";
     const auto far = text_of(difference < 0 ? Quad(-difference) : difference);
-    if (angle) return fmt::format("pairs {}° apart", far);
+    if (angle) return fmt::format("pair {}° apart", far);
     const auto comma = label.rfind(", ");
     if (comma == std::string::npos) {
         auto ratios = label;  // "mass ratio m₁/m₂"

@@ -16,6 +16,7 @@ namespace doppel {
 struct GridAxis {
     std::string key;                   // what the pairs differ in
     std::optional<TomlValues> values;  // in place of what follows
+    std::vector<std::string> labels;   // of the values, in their order
     Quad from = 0, to = 180, step = 1;
     Quad tolerance_from = parse_quad("1e-13"), tolerance_to = 1;  // of a setting, where the method takes one
     std::optional<int> tolerance_points;
@@ -57,7 +58,7 @@ struct GridAxis {
     void put_both(Preset& pair) const;
     PlotAxis plot_axis() const;
     CellRange cells() const { return {static_cast<double>(from), static_cast<double>(to), int(count), spacing}; }
-    /// What two of a pair are called that are so much apart: "twins 0.003° apart"; empty for 0.
+    /// What two of a pair are called that are so much apart: "pair 0.003° apart"; empty for 0.
     std::string apart(const Quad& difference) const;
     /// Throws Error (exit 2), of the table's key `of`, where a pair has no such key.
     void demand_in(const TomlReader& table, std::string_view of, const Preset& pair) const;
@@ -96,7 +97,7 @@ void GridAxis::fields(Visit& visit, std::string_view help) {
     visit({.key = "key",
            .help = help,
            .absent = is_there() ? "" : "no such axis",
-           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|setting|(system|a|b)\..+)$)"},
+           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|setting|system|(system|a|b)\..+)$)"},
           key);
     visit({.key = "values",
            .help = "one by one: numbers, or of any other key what it takes",
@@ -104,6 +105,12 @@ void GridAxis::fields(Visit& visit, std::string_view help) {
            .only = {is_there(), "is of an axis, which needs a key"},
            .most = most_values},
           values);
+    visit({.key = "labels",
+           .help = "names of the values in picture and table",
+           .absent = "the values",
+           .only = {values.has_value(), "is of values, a name each"},
+           .is_drawn = true},
+          labels);
     const bool are_even = is_there() && !values;
     const Only even{are_even,
                     is_there() ? "is for even values; give it, or values" : "is of an axis, which needs a key"};

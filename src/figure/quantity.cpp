@@ -327,6 +327,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
 
 std::size_t Measurement::together(bool shared) const {
     if (flips_in_lanes_) return 256;
+    if (quantity_ == Quantity::stability) return 128;
     if (!run_) return 1;
     // a pendulum that two neighbours share is stepped once
     const bool is_shared = shared || !is_of_distance(quantity_);
@@ -336,6 +337,7 @@ std::size_t Measurement::together(bool shared) const {
 void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const {
     if (flips_in_lanes_) return append_flips(pair, into, stop);
     if (run_) return append_in_lanes(pair, into, stop);
+    if (quantity_ == Quantity::stability) return append_energies(pair, into, stop);
     for (std::size_t i = 0; i < into.size(); ++i) {
         const auto numbers = found(pair(i), stop);
         into[i].insert(into[i].end(), numbers.begin(), numbers.end());
@@ -348,7 +350,6 @@ TrialNumbers Measurement::found(const Preset& pair, const std::atomic<bool>& sto
     if (quantity_ == Quantity::step_cost) return step_costs(a, stop);
     if (quantity_ == Quantity::convergence) return distance_and_steps(pair, stop);
     if (quantity_ == Quantity::stroboscopic) return stroboscope(make_scene(pair, stop), stroboscope_, stop);
-    if (quantity_ == Quantity::stability) return {energy_kept(pair, stop)};
     if (quantity_ != Quantity::exponent) return {watched(pair, stop)};
     const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
                                                : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
@@ -432,16 +433,28 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
     }
 }
 
-/// As greatest_energy_errors() finds it.
-double Measurement::energy_kept(const Preset& pair, const std::atomic<bool>& stop) const {
+/// As greatest_energy_errors() finds them, those of one setting at a time.
+void Measurement::append_energies(const PairAt& pair, std::span<TrialNumbers> into,
+                                  const std::atomic<bool>& stop) const {
     auto motion = motion_;
     motion.follows_turns = false;
-    motion.sample_interval = *quotient({1, 1}, pair.sample_hz);
-    motion.tolerance = pair.a.allowed_error();
-    if (pair.a.step_s) motion.steps_per_sample = std::lround(motion.sample_interval.value() / pair.a.step_s->value());
-    const auto chain = chain_of(pair.a);
-    const long samples = std::lround(pair.duration_s.value() * pair.sample_hz.value());
-    return greatest_energy_errors(motion, std::span(&chain, 1), samples, stop).front();
+    for (std::size_t first = 0; first < into.size();) {
+        const auto alike = pair(first);
+        motion.sample_interval = *quotient({1, 1}, alike.sample_hz);
+        motion.tolerance = alike.a.allowed_error();
+        if (const auto& step = alike.a.step_s)
+            motion.steps_per_sample = std::lround(motion.sample_interval.value() / step->value());
+        std::vector<Pendulum<Quad>> chains{chain_of(alike.a)};
+        for (auto i = first + 1; i < into.size(); ++i) {
+            const auto& next = pair(i);
+            if (next.sample_hz != alike.sample_hz || next.a.step_s != alike.a.step_s ||
+                next.a.tolerance != alike.a.tolerance || next.a.links() != alike.a.links())
+                break;
+            chains.push_back(chain_of(next.a));
+        }
+        const long samples = std::lround(alike.duration_s.value() * alike.sample_hz.value());
+        for (const double error : greatest_energy_errors(motion, chains, samples, stop)) into[first++].push_back(error);
+    }
 }
 
 bool Measurement::fits(std::span<const double> numbers) const {

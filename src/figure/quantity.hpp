@@ -136,9 +136,9 @@ public:
 private:
     void append_in_lanes(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
     void append_flips(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
+    void append_energies(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
     TrialNumbers found(const Preset& pair, const std::atomic<bool>& stop) const;
     double watched(const Preset& pair, const std::atomic<bool>& stop) const;
-    double energy_kept(const Preset& pair, const std::atomic<bool>& stop) const;
 
     Quantity quantity_;
     QuantityWords words_;

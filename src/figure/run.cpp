@@ -64,7 +64,7 @@ namespace {
 
 /// Throws Error (exit 2) where the trials of `header` are so many cells of maps that memory, or the disk of `folder`,
 /// does not hold them. Nothing of other figures.
-void demand_room(const FigurePreset& figure, const PartHeader& header, const fs::path& folder) {
+void demand_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
     const auto map = figure.experiment->map();
     if (!map) return;
     const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
@@ -74,8 +74,9 @@ void demand_room(const FigurePreset& figure, const PartHeader& header, const fs:
         return bad_input("{}: {} × {} cells take {} of {}, and there are {}; take fewer", figure.name,
                          grouped(map->columns), grouped(map->rows), bytes_text(needed), what, bytes_text(there));
     };
-    // the numbers of all trials, and where a picture is drawn twice a float
-    const double memory = cells * (8 * numbers + 8), owned = static_cast<double>(this_machine().memory);
+    // the numbers of all trials, and where a picture is drawn twice a float; of tiles their pixels
+    const double memory = cells * (8 * numbers + 8 + (tiles ? 6 : 0)),
+                 owned = static_cast<double>(this_machine().memory);
     if (memory > 0.8 * owned) throw refuse("memory", memory, owned);
     std::error_code unknown;
     const auto space = fs::space(folder, unknown);
@@ -198,7 +199,7 @@ public:
             const auto& figure = figures[k];
             const auto header = header_for(figure, options);
             const auto& folder = files[k]->folder();
-            demand_room(figure, header, folder);
+            demand_room(figure, header, options.tiles, folder);
             if (const auto others = other_resumes(folder, header);
                 !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
                 report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),

@@ -1,7 +1,10 @@
 #include "figure/series.hpp"
 
 #include "analysis/difference.hpp"
+#include "film/pair_table.hpp"
 #include "scene/captions.hpp"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,9 +13,10 @@
 namespace doppel {
 namespace {
 
-/// One pair, and how its distance is shown.
+/// One pair, and what of it is shown.
 struct PairCurve {
     std::string column, label;
+    std::optional<std::string> film_column;
     Preset pair;
 };
 
@@ -21,6 +25,54 @@ void curve_fields(Visit& visit, PairCurve& curve) {
     visit({"column", "its name in the CSV", "", {}, must_be_given}, curve.column);
     curve.label = curve.column;
     visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true}, curve.label);
+    visit({.key = "film_column", .help = "what of the pair is shown", .absent = "that of [series]"}, curve.film_column);
+}
+
+bool is_of_both(std::string_view film_column) {
+    return film_column == "distance" || film_column == "log_ratio";
+}
+
+/// A number of the table of a film (film/pair_table.hpp), by its column; NaN where it is empty.
+double film_value(const PairState& state, double start_distance, const std::string& column) {
+    if (column == "distance") return state.distance;
+    if (column == "log_ratio") return log_ratio(state.distance, start_distance).value_or(NAN);
+    const bool is_a = column.starts_with("a_");
+    const auto& seen = is_a ? state.a : state.b;
+    const auto name = std::string_view(column).substr(2);
+    if (name == "energy_J") return seen.energy;
+    if (name == "energy_error") return (is_a ? state.energy_error_a : state.energy_error_b).value_or(NAN);
+    if (name == "length_error_m") return seen.length_error;
+    if (name == "kinetic_J") return seen.kinetic_energy;
+    if (name == "potential_J") return seen.energy - seen.kinetic_energy;
+    if (name == "work_J") return seen.work;
+    if (name.starts_with("pivot_")) return name == "pivot_x_m" ? seen.pivot.x : seen.pivot.y;
+    using Member = std::pair<std::string_view, double Bob<double>::*>;
+    constexpr std::array members{Member{"theta", &Bob<double>::theta}, Member{"omega", &Bob<double>::omega},
+                                 Member{"x", &Bob<double>::x},         Member{"y", &Bob<double>::y},
+                                 Member{"vx", &Bob<double>::vx},       Member{"vy", &Bob<double>::vy}};
+    const auto digits = name.find_first_of("123456789");
+    const auto* member = std::ranges::find(members, name.substr(0, digits), &Member::first);
+    return seen.bobs[std::stoul(std::string(name.substr(digits))) - 1].*member->second;
+}
+
+/// "θ₁, rad", "energy, J": what columns of either side have in common.
+std::string column_words(const std::string& column) {
+    if (column == "distance") return "distance in state space, d";
+    if (column == "log_ratio") return "ln(d/d₀)";
+    using Words = std::array<std::string_view, 2>;
+    constexpr std::array units{Words{"_rad_per_s", "rad/s"}, Words{"_m_per_s", "m/s"}, Words{"_rad", "rad"},
+                               Words{"_J", "J"}, Words{"_m", "m"}};
+    constexpr std::array letters{Words{"theta", "θ"}, Words{"omega", "ω"}};
+    auto name = column.substr(2);
+    std::string_view unit;
+    for (const auto& [ending, of] : units)
+        if (unit.empty() && name.ends_with(ending)) unit = of, name.resize(name.size() - ending.size());
+    for (const auto& [latin, greek] : letters)
+        if (name.starts_with(latin)) name.replace(0, latin.size(), greek);
+    if (const auto digits = name.find_first_of("123456789"); digits != std::string::npos)
+        name = name.substr(0, digits) + subscript(std::stoul(name.substr(digits)));
+    std::ranges::replace(name, '_', ' ');
+    return unit.empty() ? name : fmt::format("{}, {}", name, unit);
 }
 
 /// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see how long
@@ -28,12 +80,10 @@ void curve_fields(Visit& visit, PairCurve& curve) {
 class PairSeries final : public Experiment {
 public:
     PairSeries(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
-        : is_distance_(keys.quantity == SeriesQuantity::distance),
-          logarithmic_(keys.logarithmic),
-          check_tolerance_(keys.check_tolerance) {
-        const auto quantity = name_of(keys.quantity);
+        : logarithmic_(keys.logarithmic), check_tolerance_(keys.check_tolerance) {
+        const auto shown = keys.film_column.value_or(std::string(name_of(keys.quantity)));
         auto entries = reader.entries("curve");
-        if (entries.empty()) curves_.push_back({std::string(quantity), "", reader.pair()});
+        if (entries.empty()) curves_.push_back({shown, "", shown, reader.pair()});
         for (auto& entry : entries) {
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
@@ -41,15 +91,21 @@ public:
             if (!entry.has("label")) entry.demand_drawable("column", curve.column);  // it serves as label
             if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
                 throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
+            if (!curve.film_column) curve.film_column = shown;
             curve.pair = reader.pair({&entry});
             entry.finish();
         }
         bool differ = false;
-        for (const auto& curve : curves_) {
+        for (auto& curve : curves_) {
+            curve.pair.energy_columns = true;
             const auto scene = make_scene(curve.pair);  // reports faults now
             samples_ = scene.samples;
-            differ |= !are_one(scene);
-            if (!is_distance_ && released_alike(curve.pair.a, curve.pair.b))
+            const auto known = columns_of(scene);
+            if (std::ranges::count(known, *curve.film_column) == 0)
+                throw table.fault("film_column", "must be one of {}; it is \"{}\"",
+                                  fmt::join(known.begin() + 2, known.end(), ", "), *curve.film_column);
+            differ |= !is_of_both(*curve.film_column) || !are_one(scene);
+            if (curve.film_column == "log_ratio" && released_alike(curve.pair.a, curve.pair.b))
                 throw table.fault("quantity",
                                   "\"log_ratio\" takes sides that are released differently: there is no "
                                   "ratio to a distance of 0");
@@ -58,16 +114,17 @@ public:
         }
         if (!differ)
             throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
-                              quantity);
+                              shown);
         settings_ = resolved_settings(resolved);
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
     std::string unit() const override { return "pairs"; }
 
-    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        const bool is_distance = curves_[trial % curves_.size()].film_column == "distance";
         return numbers.size() == static_cast<std::size_t>(samples_) + 1 &&
-               (is_distance_ ? all_finite(numbers) : finite_or_none(numbers));
+               (is_distance ? all_finite(numbers) : finite_or_none(numbers));
     }
 
     std::vector<std::string> columns() const override {
@@ -89,7 +146,7 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         Plot plot;
         plot.x = {.label = "time, s", .low = 0, .high = time(samples_)};
-        plot.y = {.label = is_distance_ ? "distance in state space, d" : "ln(d/d₀)", .logarithmic = logarithmic_};
+        plot.y = {.label = shown_words(), .logarithmic = logarithmic_};
         for (std::size_t i = 0; i < curves_.size(); ++i) {
             Curve curve{.label = curves_[i].label, .y = numbers[i], .hue = static_cast<int>(i)};
             for (long n = 0; n <= samples_; ++n) curve.x.push_back(time(n));
@@ -130,22 +187,37 @@ private:
         auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
                                 base.sample_hz.text(), own);
         for (const auto& curve : curves_)
-            text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\n{}", toml_text(curve.column),
-                                toml_text(curve.label), resolved_sides(curve.pair, "curve."));
+            text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\nfilm_column = {}\n{}", toml_text(curve.column),
+                                toml_text(curve.label), toml_text(*curve.film_column),
+                                resolved_sides(curve.pair, "curve."));
         return text;
     }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto scene = make_scene(pair_of(trial));
         PairRun run(scene);
+        const auto& shown = *curves_[trial % curves_.size()].film_column;
         TrialNumbers values;
         double start = 0;
         for (long n = 0; n <= samples_; ++n) {
-            const double distance = run.next(stop).distance;
-            if (n == 0) start = distance;
-            values.push_back(is_distance_ ? distance : log_ratio(distance, start).value_or(NAN));
+            const auto state = run.next(stop);
+            if (n == 0) start = state.distance;
+            values.push_back(film_value(state, start, shown));
         }
         return values;
+    }
+
+    /// What the curves show.
+    std::string shown_words() const {
+        std::vector<std::string> all;
+        bool of_a = true, of_b = true;
+        for (const auto& curve : curves_) {
+            of_a &= curve.film_column->starts_with("a_");
+            of_b &= curve.film_column->starts_with("b_");
+            if (auto words = column_words(*curve.film_column); std::ranges::count(all, words) == 0)
+                all.push_back(std::move(words));
+        }
+        return fmt::format("{}{}", fmt::join(all, "; "), of_a ? " (a)" : of_b ? " (b)" : "");
     }
 
     double time(long sample) const {
@@ -171,7 +243,7 @@ private:
         return time(samples_);
     }
 
-    bool is_distance_, logarithmic_;
+    bool logarithmic_;
     std::optional<Quad> check_tolerance_;
     std::vector<PairCurve> curves_;
     long samples_ = 0;

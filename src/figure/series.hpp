@@ -22,6 +22,7 @@ struct SeriesKeys {
 
     SeriesQuantity quantity = SeriesQuantity::distance;
     bool logarithmic = false;
+    std::optional<std::string> film_column;
     std::optional<Quad> check_tolerance;
     double duration_s = 500;
     int samples = 500, points_per_decade = 10;
@@ -37,6 +38,11 @@ struct SeriesKeys {
                "estimates settle; or the errors of its energy and rods by each method at the same cost"},
               quantity);
 
+        visit({.key = "film_column",
+               .help = "in place of `quantity`: a column of the table that a film of the pair has",
+               .only = {is_of_pairs(), "is of pairs"},
+               .is_drawn = true},
+              film_column);
         const Only of_pairs{is_of_pairs(), "is of pairs"};
         const Only of_exponents{quantity == SeriesQuantity::exponents, "is of exponents"};
         const Only of_errors{quantity == SeriesQuantity::errors, "is of errors"};

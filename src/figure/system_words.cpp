@@ -38,6 +38,11 @@ std::string number_words(std::size_t number) {
     return number < words.size() ? words[number] : grouped(static_cast<long>(number));
 }
 
+/// To three digits.
+std::string short_text(const Quad& number) {
+    return fmt::format("{:.3g}", static_cast<double>(number));
+}
+
 std::string degrees(const Quad& angle) {
     return angle == 0 ? "0" : text_of(angle) + "°";
 }
@@ -81,6 +86,22 @@ std::string release_words(const Scene& scene, const Varied& varied) {
             named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", name, value);
     }
     return named;
+}
+
+/// What a link has besides its mass, as numbers where they are few: "torque of 0.5 Hz, joint friction 0.459 N m s".
+std::string drive_words(const SideSpec& side, const Varied& varied) {
+    const auto& physical = side.physical;
+    if (physical.is_none()) return "";
+    std::vector<std::string> words;
+    for (const auto& torque : physical.torques)
+        words.push_back(fmt::format("torque of {} Hz", short_text(torque.frequency_hz)));
+    if (physical.pivot.amplitude_m != 0 && !is_varied(varied, "frequency_hz"))
+        words.push_back(fmt::format("pivot shaken at {} Hz", short_text(physical.pivot.frequency_hz)));
+    if (const auto& joints = physical.joint_viscous_N_m_s;
+        !joints.empty() && !is_varied(varied, "joint_viscous_N_m_s") && !is_zero(joints) &&
+        std::count(joints.begin(), joints.end(), joints[0]) == std::ssize(joints))
+        words.push_back(fmt::format("joint friction {} N m s", short_text(joints[0])));
+    return words.empty() ? physical_words(physical) : fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string rate_words(const SideSpec& a, const SideSpec& b) {
@@ -145,6 +166,7 @@ std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::s
     const auto add = [&](std::string words) {
         if (!words.empty()) parts.push_back(std::move(words));
     };
+    add(drive_words(scene.preset.a, varied));
     add(release_words(scene, varied));
     add(rate_words(scene.preset.a, scene.preset.b));
     add(apart);

@@ -24,11 +24,11 @@ std::string links_words(const std::vector<double>& length_m, const std::vector<d
                         double gravity_m_per_s2);
 std::string links_words(const SideSpec& side);
 
-/// What moves in a figure of pairs, and how it is stepped: "two links in angles, θ₂ = 0, twins 0.003° apart; explicit
+/// What moves in a figure of pairs, and how it is stepped: "two links in angles, θ₂ = 0, pair 0.003° apart; explicit
 /// Euler, 1/30 000 s". What sets the sides apart follows as "m₁ = 1 kg against m₁ = 1.01 kg".
 ///
 /// `varied`  what is not the same in all pairs and so is left out
-/// `apart`   what else sets the sides of all pairs apart, "twins 0.003° apart"; then it is not part of `scene`
+/// `apart`   what else sets the sides of all pairs apart, "pair 0.003° apart"; then it is not part of `scene`
 struct Varied {
     std::vector<std::size_t> angles;     // of release: links, from 0
     bool step = false;                   // and how finely to step

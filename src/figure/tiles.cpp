@@ -11,126 +11,60 @@
 namespace doppel {
 namespace {
 
-/// Draws the tiles of a map, each once, and writes them.
-class TileWriter {
-public:
-    TileWriter(const HeatMap& map, const Theme& theme, std::filesystem::path folder, const std::atomic<bool>& stop)
-        : map_(map),
-          theme_(theme),
-          pyramid_(static_cast<int>(map.columns), static_cast<int>(map.rows)),
-          folder_(std::move(folder)),
-          stop_(stop),
-          look_(look_of(map)) {}
+constexpr int tile = 256;  // pixels of a side
 
-    const Pyramid& pyramid() const { return pyramid_; }
-    /// The map without its numbers, and with both ends of its scale.
-    const HeatMap& look() const { return look_; }
+/// A part of a picture; what lies beyond it is transparent.
+Picture part_of(const Picture& picture, int left, int top, Size size) {
+    Picture part(size);
+    const int wide = std::min(size.width, picture.size.width - left);
+    for (int y = 0; y < std::min(size.height, picture.size.height - top); ++y)
+        std::copy_n(picture.at(left, top + y), 4 * static_cast<std::size_t>(wide), part.at(0, y));
+    return part;
+}
 
-    void write_all(int jobs) {
-        // threads take the tiles of a level with some; one thread the coarser ones
-        constexpr int shared = 3;
-        const int level = std::min(pyramid_.levels, shared), across = pyramid_.across(level);
-        std::vector<Picture> drawn(static_cast<std::size_t>(across) * static_cast<std::size_t>(pyramid_.down(level)));
-        parallel_for(drawn.size(), jobs, [&](std::size_t i) {
-            drawn[i] = written(level, static_cast<int>(i) / across, static_cast<int>(i) % across);
-        });
-        drawn_level_ = level;
-        drawn_ = std::move(drawn);
-        if (level > 0) written(0, 0, 0);
+/// From one that fits into a tile on, each with twice the pixels to a side of the one before.
+std::vector<Picture> levels_of(Picture cells) {
+    std::vector<Picture> levels{std::move(cells)};
+    while (std::max(levels[0].size.width, levels[0].size.height) > tile) {
+        const auto [width, height] = levels[0].size;
+        const Size half{(width + 1) / 2, (height + 1) / 2};
+        levels.insert(levels.begin(), downscaled(part_of(levels[0], 0, 0, {2 * half.width, 2 * half.height}), half));
     }
-
-private:
-    static HeatMap look_of(const HeatMap& map) {
-        auto look = map;
-        look.values.clear();
-        const auto [low, high] = color_range(map);
-        look.low = low;
-        look.high = high;
-        return look;
-    }
-
-    /// A tile, and all that it is made of.
-    Picture written(int level, int row, int column) const {
-        constexpr int tile = Pyramid::tile;
-        if (level == drawn_level_) return drawn_[static_cast<std::size_t>(row * pyramid_.across(level) + column)];
-        throw_if_set(stop_);
-        Picture picture({tile, tile});
-        if (level == pyramid_.levels) {
-            paste(cells(row, column), 0, 0, picture);
-        } else {
-            Picture four({2 * tile, 2 * tile});
-            for (int r = 2 * row; r < std::min(2 * row + 2, pyramid_.down(level + 1)); ++r)
-                for (int c = 2 * column; c < std::min(2 * column + 2, pyramid_.across(level + 1)); ++c)
-                    paste(written(level + 1, r, c), c % 2 * tile, r % 2 * tile, four);
-            picture = downscaled(four, {tile, tile});
-        }
-        write_png(folder_ / Pyramid::name(level, row, column), picture, {.with_alpha = !picture.is_opaque()}, stop_);
-        return picture;
-    }
-
-    Picture cells(int tile_row, int tile_column) const {
-        constexpr std::size_t tile = Pyramid::tile;
-        const auto left = static_cast<std::size_t>(tile_column) * tile, top = static_cast<std::size_t>(tile_row) * tile;
-        auto part = look_;
-        part.columns = std::min(tile, map_.columns - left);
-        part.rows = std::min(tile, map_.rows - top);
-        for (auto row = map_.rows - top - part.rows; row < map_.rows - top; ++row) {  // from the bottom up
-            const auto first = map_.values.begin() + static_cast<std::ptrdiff_t>(row * map_.columns + left);
-            part.values.insert(part.values.end(), first, first + static_cast<std::ptrdiff_t>(part.columns));
-        }
-        return cell_picture(part, theme_);
-    }
-
-    static void paste(const Picture& from, int left, int top, Picture& into) {
-        for (int y = 0; y < from.size.height; ++y)
-            std::copy_n(from.at(0, y), 4 * static_cast<std::size_t>(from.size.width), into.at(left, top + y));
-    }
-
-    const HeatMap& map_;
-    const Theme& theme_;
-    Pyramid pyramid_;
-    std::filesystem::path folder_;
-    const std::atomic<bool>& stop_;
-    HeatMap look_;
-    int drawn_level_ = -1;
-    std::vector<Picture> drawn_;  // the tiles of that level
-};
-
-std::string hexadecimal(Color color) {
-    const auto bytes = bytes_of(color);
-    return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
+    return levels;
 }
 
 Json axis_json(const PlotAxis& axis) {
     return {{"label", axis.label}, {"from", *axis.low}, {"to", *axis.high}, {"logarithmic", axis.logarithmic}};
 }
 
-Json scale_json(const HeatMap& look, const Theme& theme) {
-    constexpr int stops = 33;
-    Json colors = Json::array();
-    for (int i = 0; i < stops; ++i) colors.push_back(hexadecimal(map_color(static_cast<double>(i) / (stops - 1))));
-    return {{"label", look.label},
-            {"colors", colors},
-            {"from", *look.low},
-            {"to", *look.high},
-            {"logarithmic", look.logarithmic},
-            {"none", look.none_label},
-            {"none_color", hexadecimal(look.none_is_bad ? theme.bad : theme.none)}};
+/// The bar of colours with its numbers.
+std::string scale_markup(const HeatMap& map, const Theme& theme) {
+    const auto hexadecimal = [](Color color) {
+        const auto bytes = bytes_of(color);
+        return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
+    };
+    constexpr int stops = 64;
+    MapScale scale(map);
+    std::string colors, numbers;
+    for (int i = 0; i <= stops; ++i)
+        colors += (i == 0 ? "" : ",") + hexadecimal(scale.color(static_cast<double>(i) / stops));
+    scale.axis.to = 380;  // px on the page
+    for (const auto& tick : chart_ticks(scale.axis, {.size = 14, .across = false}, map.threshold))
+        numbers += fmt::format("<span style=\"--at:{:.1f}%\">{}</span>", 100 * scale.axis.share(tick.value), tick.text);
+    auto text = fmt::format("{}<div id=\"scale\" style=\"--colors:{}\">{}</div>", markup(map.label), colors, numbers);
+    if (map.none_label.empty()) return text;
+    return fmt::format("{}<div id=\"none\" style=\"border-color:{}\">{}</div>", text,
+                       hexadecimal(map.none_is_bad ? theme.bad : theme.none), markup(map.none_label));
 }
 
-/// The page, in which {title}, {subtitle} and {map} stand for what it shows.
-std::string page_text(const FigurePreset& figure, const Json& map) {
+/// The page, in which {title}, {subtitle}, {scale} and {map} stand for what it shows.
+std::string page_text(const std::array<std::pair<std::string_view, std::string>, 4>& values) {
     const auto files = figure_files();
     const auto file = std::ranges::find(files, "figure/tiles.html", &EmbeddedFile::name);
     if (file == files.end()) throw io_failed("the page of tiles was not built in");
-    const std::array<std::pair<std::string_view, std::string>, 3> values{
-        {{"{title}", markup(figure.title)},
-         {"{subtitle}", markup(figure.subtitle)},
-         {"{map}", in_script(map.dump(-1, ' ', false, Json::error_handler_t::replace))}}};
     std::string text;
     for (std::string_view rest = file->contents; !rest.empty();) {
-        const auto value = std::find_if(values.begin(), values.end(),
-                                        [&](const auto& entry) { return rest.starts_with(entry.first); });
+        const auto value = std::ranges::find_if(values, [&](const auto& v) { return rest.starts_with(v.first); });
         const auto taken = value == values.end() ? std::min(rest.find('{', 1), rest.size()) : value->first.size();
         text += value == values.end() ? rest.substr(0, taken) : std::string_view(value->second);
         rest.remove_prefix(taken);
@@ -139,19 +73,6 @@ std::string page_text(const FigurePreset& figure, const Json& map) {
 }
 
 }  // namespace
-
-Pyramid::Pyramid(int across_cells, int down_cells) : columns(across_cells), rows(down_cells), levels(0) {
-    while ((static_cast<long>(tile) << levels) < std::max(columns, rows)) ++levels;
-}
-
-int Pyramid::tiles(int cells, int level) const {
-    const long side = static_cast<long>(tile) << (levels - level);
-    return static_cast<int>((cells + side - 1) / side);
-}
-
-std::string Pyramid::name(int level, int row, int column) {
-    return fmt::format("{}-{}-{}.png", level, row, column);
-}
 
 void demand_map(const FigurePreset& figure) {
     const auto map = figure.experiment->map();
@@ -163,24 +84,32 @@ Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& th
                  const std::atomic<bool>& stop) {
     demand_map(figure);
     const auto& plot = page.panels.front();
-    const auto folder = figure.name + ".tiles", html = figure.name + ".html";
-    TileWriter tiles(*plot.map, theme, files.directory(folder), stop);
-    tiles.write_all(jobs);
-    files.finished(folder);
-    const auto& pyramid = tiles.pyramid();
-    write_file(files.file(html), page_text(figure, {{"folder", in_address(folder)},
-                                                    {"tile", Pyramid::tile},
-                                                    {"levels", pyramid.levels},
-                                                    {"columns", pyramid.columns},
-                                                    {"rows", pyramid.rows},
-                                                    {"x", axis_json(plot.x)},
-                                                    {"y", axis_json(plot.y)},
-                                                    {"scale", scale_json(tiles.look(), theme)}}));
+    const auto name = figure.name + ".tiles", html = figure.name + ".html";
+    const auto folder = files.directory(name);
+    const auto levels = levels_of(cell_picture(*plot.map, theme));
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+        const auto [width, height] = levels[level].size;
+        const int across = (width + tile - 1) / tile, down = (height + tile - 1) / tile;
+        parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), jobs, [&](std::size_t i) {
+            throw_if_set(stop);
+            const int row = static_cast<int>(i) / across, column = static_cast<int>(i) % across;
+            const auto picture = part_of(levels[level], column * tile, row * tile, {tile, tile});
+            write_png(folder / fmt::format("{}-{}-{}.png", level, row, column), picture,
+                      {.with_alpha = !picture.is_opaque()}, stop);
+        });
+    }
+    files.finished(name);
+    const Json map{{"folder", in_address(name)},   {"tile", tile},           {"levels", levels.size() - 1},
+                   {"columns", plot.map->columns}, {"rows", plot.map->rows}, {"x", axis_json(plot.x)},
+                   {"y", axis_json(plot.y)}};
+    write_file(files.file(html),
+               page_text({{{"{title}", markup(figure.title)},
+                           {"{subtitle}", markup(figure.subtitle)},
+                           {"{scale}", scale_markup(*plot.map, theme)},
+                           {"{map}", in_script(map.dump(-1, ' ', false, Json::error_handler_t::replace))}}}));
     files.finished(html);
-    return {{"folder", folder},
-            {"size_px", Pyramid::tile},
-            {"levels", pyramid.levels + 1},
-            {"cells", {pyramid.columns, pyramid.rows}}};
+    return {
+        {"folder", name}, {"size_px", tile}, {"levels", levels.size()}, {"cells", {plot.map->columns, plot.map->rows}}};
 }
 
 }  // namespace doppel

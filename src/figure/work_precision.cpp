@@ -35,13 +35,14 @@ public:
     }
     explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
         reader.chart(cost_field, cost_);
+        reader.chart(names_field, names_);
         auto table = reader.settings(*this);
         problems_ = scene_ ? problem_of(std::move(film_)) : standard_problems(problem_names_, table);
         references_ = std::make_unique<SharedReference[]>(problems_.all.size());
         find_solvers(table);
         for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
         settings_ = table.finish() + problems_.comment;
-        chart_settings_ = fmt::format("cost = {}\n", toml_value(cost_));
+        chart_settings_ = fmt::format("cost = {}\nnames = {}\n", toml_value(cost_), toml_value(names_));
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             for (const auto& solver : solvers_)
                 if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
@@ -69,12 +70,14 @@ public:
     static FieldTable other_table() {
         FieldTable chart{"[chart] kind = \"work-precision\"", "Besides those of all figures:\n"};
         chart(cost_field, Cost::time);
+        chart(names_field, NamedCurves::best);
         return chart;
     }
 
     static void read_others(FigureReader& reader) {
-        auto cost = Cost::time;
-        reader.chart(cost_field, cost);
+        WorkPrecision kind;
+        reader.chart(cost_field, kind.cost_);
+        reader.chart(names_field, kind.names_);
     }
 
     std::size_t trials() const override { return problems_.all.size() + ladders_.size() * repeats(); }
@@ -144,7 +147,7 @@ public:
         const auto named = names_in_colour(ladders);
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             figure.panels.push_back(work_plot({problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
-                                               ladders[p], cost_, named, has_libraries()}));
+                                               ladders[p], cost_, named, has_libraries(), names_}));
         figure.captions.push_back(color_words(ladders));
         figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
@@ -286,7 +289,10 @@ private:
 
     static constexpr std::size_t best_shown = 5;
     inline static const Field cost_field{.key = "cost", .help = "the cost axis"};
+    inline static const Field names_field{.key = "names",
+                                          .help = "whose names stand at their curves: the five best, or all"};
     Cost cost_ = Cost::time;
+    NamedCurves names_ = NamedCurves::best;
     std::optional<std::string> scene_;
     Preset film_;  // of the scene
     std::vector<std::string> problem_names_, model_names_, methods_;

@@ -8,6 +8,11 @@ namespace doppel {
 template <>
 inline constexpr auto names_of<Cost> = std::to_array<std::string_view>({"time", "evaluations"});
 
+/// Whose names stand at their curves.
+enum class NamedCurves { best, all };
+template <>
+inline constexpr auto names_of<NamedCurves> = std::to_array<std::string_view>({"best", "all"});
+
 /// The problems that a preset's [work_precision] asks for.
 struct WorkProblems {
     std::vector<WorkProblem> all;
@@ -29,6 +34,7 @@ struct WorkDiagram {
     Cost cost;
     const std::vector<std::string>& named;  // what is in colour, the best first: Solver::name()
     bool of_libraries;                      // what is faint is theirs, else Doppel's
+    NamedCurves names = NamedCurves::best;
 };
 
 /// Error over cost, a curve for each method in its best model: those that are named in colour, the others faint. Behind

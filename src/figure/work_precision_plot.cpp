@@ -53,7 +53,10 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
     Curve curve;
     if (!named) {
         curve.quiet = true;
-        curve.background = Background::line;
+        if (diagram.names == NamedCurves::all)
+            curve.label = external ? external->name : method;
+        else
+            curve.background = Background::line;
     } else if (external) {
         curve.label = external->name;
         curve.hue = static_cast<int>(rank - diagram.named.begin());

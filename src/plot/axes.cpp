@@ -64,12 +64,11 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
     }
     if (plot.x.label.empty() || !words) return;
     const Weight weight = Weight::regular;
-    const float size = fitting_size(plot.x.label, style.axis, weight, held.width());
-    const float half = text_width(plot.x.label, size, weight) / 2;
+    const float half = text_width(plot.x.label, style.axis, weight) / 2;
     const float middle =
         std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
-    list.push_back(
-        Label{plot.x.label, {middle, baseline + 1.5f * style.axis}, size, Align::center, weight, style.theme.text});
+    list.push_back(Label{
+        plot.x.label, {middle, baseline + 1.5f * style.axis}, style.axis, Align::center, weight, style.theme.text});
 }
 
 /// A vertical axis: its ticks point to `side`, −1 or 1, from `at`.
@@ -130,16 +129,22 @@ float axis_labels_height(const Plot& plot, float width, const AxisWords& words, 
     return side_by_side(all, width, style) ? line : line * static_cast<float>(all.size());
 }
 
+void fit_labels(const Plot& plot, float width, PlotStyle& style) {
+    style.axis = fitting_size(plot.x.label, style.axis, Weight::regular, width);
+    for (const Heading& heading : headings(plot, {}, style))
+        style.axis = fitting_size(heading.text, style.axis, Weight::regular, width);
+    style.heading = fitting_size(plot.title, style.heading, Weight::bold, width);
+}
+
 void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
                    const AxisWords& words, const PlotStyle& style, PageList& list) {
     // above the panel, and above the words beside it that are its own
     const bool own_words = plot.right || (plot.map && !plot.map->shares_bar);
-    const float width = held.width(), left = words.y ? held.left : area.left;
+    const float left = words.y ? held.left : area.left;
     const float right = own_words ? held.right : area.right;
     const auto write = [&](const Heading& heading, float baseline, float em, Weight weight) {
-        const float size = fitting_size(heading.text, em, weight, width);
         const float x = heading.align == Align::left ? left : right;
-        list.push_back(Label{heading.text, {x, baseline}, size, heading.align, weight, heading.color});
+        list.push_back(Label{heading.text, {x, baseline}, em, heading.align, weight, heading.color});
     };
     const float first = held.top + 0.95f * style.heading;
     if (!plot.title.empty()) write({plot.title, Align::left, style.theme.text}, first, style.heading, Weight::bold);
@@ -147,7 +152,7 @@ void draw_headings(const Plot& plot, const Area& area, const Area& held, float t
     if (!plot.note.empty() && text_width(plot.note, style.tick) <= room)
         write({plot.note, Align::right, style.theme.quiet_text}, first, style.tick, Weight::regular);
     const auto all = headings(plot, words, style);
-    const bool together = !all.empty() && side_by_side(all, width, style);
+    const bool together = !all.empty() && side_by_side(all, held.width(), style);
     float baseline = held.top + title + labels - 0.35f * style.axis;
     // from the line next to the panel up
     for (std::size_t i = all.size(); i-- > 0;) {

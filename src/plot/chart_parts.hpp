@@ -23,6 +23,14 @@ struct PlotStyle {
     float marker = unit > 0.4f ? 5.2f * unit : 2.1f;  // its radius
 };
 
+/// What the labels of a panel's curves take, which all panels of a figure then have alike.
+struct LabelNeeds {
+    bool small = false;  // labels smaller, and on the curves
+    float legend = 0;    // px on the right of the panel, for names that have no place in it
+
+    friend bool operator==(const LabelNeeds&, const LabelNeeds&) = default;
+};
+
 /// The ranges of a panel's axes.
 struct PlotRanges {
     Axis x, y;
@@ -31,9 +39,6 @@ struct PlotRanges {
 
 /// What was asked for; the rest holds all that is drawn, with a little margin (none around a map, none below a zero).
 PlotRanges fitted_ranges(const Plot& plot);
-
-/// The range of a map's colours.
-Axis fitted_scale(const HeatMap& map);
 
 /// Throws bad_input where a figure cannot be drawn: series of unequal length, a logarithm of nothing, …
 void check(const Figure& figure);
@@ -53,6 +58,9 @@ void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right
 
 /// px that the labels above a panel `width` px wide take: one line if all fit side by side, else one each.
 float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style);
+
+/// Makes the sizes of labels and titles in `style` so small that those of the panel, `width` px wide with its labels, fit.
+void fit_labels(const Plot& plot, float width, PlotStyle& style);
 
 /// The panel's title in the uppermost `title` px of `held`; in the `labels` px below, the labels of the vertical axes
 /// and of the map's bar.
@@ -89,9 +97,10 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 /// The larger of each.
 Gutters united(const Gutters& a, const Gutters& b);
 
-/// The panel in its cell. Nothing where the labels leave it no room.
-void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
-                const AxisWords& words, const PlotStyle& style, PageList& list);
+/// The panel in its cell, of which `given` is for the labels of its curves; and what these would need in all. Nothing where
+/// the labels leave it no room.
+LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
+                      const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list);
 
 /// Of panels.
 struct Grid {
@@ -130,8 +139,9 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
 void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
                const PlotStyle& style, PageList& list);
 
-/// Discs around many points as an image for the pixels that `scale` makes of each px: cheaper than paths. They do not add
-/// up where they overlap, and are cut off at the edges of `area`.
-Image scatter_image(const std::vector<Point>& points, float radius, Color color, const Area& area, float scale);
+/// Discs around many points as an image for the pixels that `scale` makes of each px: cheaper than paths. Discs of the
+/// given opacity add up where they overlap, opaque ones do not; they are cut off at the edges of `area`.
+Image scatter_image(const std::vector<Point>& points, float radius, Color color, float opacity, const Area& area,
+                    float scale);
 
 }  // namespace doppel

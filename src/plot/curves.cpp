@@ -135,7 +135,7 @@ DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& a
             thinner.lift();
             continue;
         }
-        if (curve.mark != Mark::points) dense ? thinner.add(at) : clipper.move(at);
+        if (curve.mark == Mark::line || curve.mark == Mark::both) dense ? thinner.add(at) : clipper.move(at);
         const bool inside = at.x >= area.left && at.x <= area.right && at.y >= area.top && at.y <= area.bottom;
         // a value between two gaps shows as a dot, or it would not show at all
         const auto gap = [&](std::size_t k) {
@@ -151,7 +151,7 @@ DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& a
 Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
     if (over_map && curve.quiet) return rgb(0xffffff);
     const Theme& theme = over_map ? themes.front() : style.theme;
-    if (curve.quiet) return theme.cursor;
+    if (curve.quiet) return curve.mark == Mark::points ? theme.quiet_text : theme.cursor;
     return theme.palette[static_cast<std::size_t>(curve.hue) % theme.palette.size()];
 }
 
@@ -200,18 +200,20 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
     const bool thin = (curve.quiet && !over_map) || curve.x.size() > many;
     const float width = thin ? style.thin : style.curve;
     const float casing = std::max(1.6f * style.unit, 1.0f);
-    if (over_map) draw_line(drawn.lines, width + 2 * casing, curve.dashed, edge, style, list);
+    if (over_map) draw_line(drawn.lines, width + 2 * casing, false, edge, style, list);
     draw_line(drawn.lines, width, curve.dashed, color, style, list);
 
     float radius = curve.quiet ? 0.75f * style.marker : style.marker;
     if (curve.mark == Mark::line) radius = 0.8f * width;
     if (drawn.marks_in_panel > many) {
-        constexpr float wide = 450, least = 0.3f;  // px where the unit is 1: a panel of which so many marks are many
+        // px where the unit is 1: a panel of which so many marks are many, and marks that pixels do not turn into a pattern
+        constexpr float wide = 450, least = 1;
         const float side = std::sqrt(std::max(area.width(), 0.0f) * std::max(area.height(), 0.0f)) / style.unit;
         const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);
         radius = std::max(radius * std::sqrt(share) * std::min(side / wide, 1.0f), least * style.unit);
-        if (over_map) list.push_back(scatter_image(drawn.points, radius + casing, edge, area, style.scale));
-        list.push_back(scatter_image(drawn.points, radius, color, area, style.scale));
+        const float opacity = curve.mark == Mark::density ? 0.4f : 1;
+        if (over_map) list.push_back(scatter_image(drawn.points, radius + casing, edge, 1, area, style.scale));
+        list.push_back(scatter_image(drawn.points, radius, color, opacity, area, style.scale));
         return;
     }
     for (const Point& at : drawn.points) {

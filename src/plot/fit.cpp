@@ -120,10 +120,17 @@ PlotRanges fitted_ranges(const Plot& plot) {
     return ranges;
 }
 
-Axis fitted_scale(const HeatMap& map) {
+MapScale::MapScale(const HeatMap& map) {
     Extent values(map.logarithmic);
-    for (const float value : map.values) values.add(static_cast<double>(value));
-    return values.range({.low = map.low, .high = map.high, .logarithmic = map.logarithmic}, 0);
+    if (!map.low || !map.high)
+        for (const float value : map.values) values.add(static_cast<double>(value));
+    axis = values.range({.low = map.low, .high = map.high, .logarithmic = map.logarithmic}, 0);
+    if (map.threshold) step = axis.share(*map.threshold);
+}
+
+Color MapScale::color(double share) const {
+    constexpr double below = 0.3, above = 0.93;
+    return map_color(!step ? share : share > *step ? above : below);
 }
 
 void check(const Figure& figure) {

@@ -25,6 +25,21 @@ AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t column
     return words;
 }
 
+/// Gives axes that are alike the range of them all.
+void share_ranges(const std::vector<Plot>& panels, std::vector<PlotRanges>& ranges) {
+    for (const auto& [axis, range] : {std::pair(&Plot::x, &PlotRanges::x), {&Plot::y, &PlotRanges::y}})
+        for (const auto& one : panels) {
+            std::vector<Axis*> alike;
+            for (std::size_t i = 0; i < panels.size(); ++i)
+                if (panels[i].*axis == one.*axis) alike.push_back(&(ranges[i].*range));
+            Axis all = *alike.front();
+            for (const Axis* each : alike)
+                if (all.low < all.high)
+                    all.low = std::min(all.low, each->low), all.high = std::max(all.high, each->high);
+            for (Axis* each : alike) *each = all;
+        }
+}
+
 /// The cells of all panels, and what around the panels is for words.
 struct Cells {
     std::vector<Gutters> columns, rows;
@@ -95,23 +110,41 @@ void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageLi
     const float width = body.width() - across * static_cast<float>(grid.columns - 1);
     const float height = body.height() - down * static_cast<float>(grid.rows - 1);
     std::vector<PlotRanges> ranges;
-    std::vector<AxisWords> words;
-    std::vector<Gutters> own;
-    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        ranges.push_back(fitted_ranges(figure.panels[i]));
-        words.push_back(axis_words(figure, i, columns));
-        own.push_back(gutters(figure.panels[i], ranges[i], std::floor(width / static_cast<float>(grid.columns)),
-                              std::floor(height / static_cast<float>(grid.rows)), words[i], style));
-    }
-    const Cells cells = cells_of(own, grid, width, height, figure.shares_axes, style);
-    float left = body.left, top = body.top;
-    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        const Gutters around = cells.around(i % columns, i / columns);
-        const float right = left + around.left + cells.width + around.right;
-        const float bottom = top + around.top(style) + cells.height + around.bottom;
-        draw_panel(figure.panels[i], ranges[i], {left, top, right, bottom}, around, words[i], style, list);
-        left = right + across;
-        if ((i + 1) % columns == 0) left = body.left, top = bottom + down;
+    for (const auto& panel : figure.panels) ranges.push_back(fitted_ranges(panel));
+    if (figure.shares_axes) share_ranges(figure.panels, ranges);
+    // once more where labels take what they do not have
+    const std::size_t before = list.size();
+    for (LabelNeeds given;;) {
+        std::vector<Gutters> own;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            own.push_back(gutters(figure.panels[i], ranges[i], std::floor(width / static_cast<float>(grid.columns)),
+                                  std::floor(height / static_cast<float>(grid.rows)), axis_words(figure, i, columns),
+                                  style));
+            own.back().right += given.legend;
+        }
+        const Cells cells = cells_of(own, grid, width, height, figure.shares_axes, style);
+        PlotStyle fitted = style;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const auto& panel = figure.panels[i];
+            const Gutters around = cells.around(i % columns, i / columns);
+            const float wide = panel.square ? std::min(cells.width, cells.height) : cells.width;
+            fit_labels(panel, around.left + wide + around.right, fitted);
+        }
+        LabelNeeds needs = given;
+        float left = body.left, top = body.top;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const Gutters around = cells.around(i % columns, i / columns);
+            const float right = left + around.left + cells.width + around.right;
+            const float bottom = top + around.top(style) + cells.height + around.bottom;
+            const auto own_needs = draw_panel(figure.panels[i], ranges[i], {left, top, right, bottom}, around,
+                                              axis_words(figure, i, columns), given, fitted, list);
+            needs = {needs.small || own_needs.small, std::max(needs.legend, own_needs.legend)};
+            left = right + across;
+            if ((i + 1) % columns == 0) left = body.left, top = bottom + down;
+        }
+        if (needs == given) return;
+        given = needs;
+        list.resize(before);
     }
 }
 

@@ -19,18 +19,19 @@ constexpr float heading_width = 7.5f;  // em
 
 /// A bar before it has a place: top 0, left 0.
 struct Bar {
-    Axis axis;  // from its bottom up, px below the top of the panel
-    std::vector<Tick> ticks;
-    std::vector<std::string> none;  // lines
-    float thickness, text_left, width, none_top;
+    MapScale scale;
+    Axis axis = {};  // from its bottom up, px below the top of the panel
+    std::vector<Tick> ticks = {};
+    std::vector<std::string> none = {};  // lines
+    float thickness = 0, text_left = 0, width = 0, none_top = 0;
 };
 
 Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
-    Bar bar;
+    Bar bar{.scale = MapScale(map)};
     const float em = style.tick;
     bar.thickness = std::round(0.95f * em);
     bar.text_left = bar.thickness + 0.5f * em;
-    bar.axis = fitted_scale(map);
+    bar.axis = bar.scale.axis;
     float none_height = 0;
     if (!map.none_label.empty()) {
         bar.none = wrapped(map.none_label, em, Weight::regular, 6.2f * em);
@@ -39,7 +40,8 @@ Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     bar.none_top = height - none_height;
     bar.axis.from = std::round(bar.none.empty() ? height : std::max(bar.none_top - 0.8f * em, 0.3f * height));
     bar.axis.to = 0;
-    bar.ticks = chart_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false});
+    bar.ticks =
+        chart_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false}, map.threshold);
     bar.width = bar.text_left + std::max(widest(bar.ticks, em), widest(bar.none, em));
     return bar;
 }
@@ -47,9 +49,7 @@ Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
 Image colors(const Bar& bar, float left, float top, float scale) {
     const int rows = std::max(1, static_cast<int>(std::lround(bar.axis.from * scale)));
     auto pixels = std::make_shared<Picture>(Size{1, rows});
-    for (int row = 0; row < rows; ++row) {
-        set_pixel(*pixels, 0, row, map_color(1 - (row + 0.5) / rows));
-    }
+    for (int row = 0; row < rows; ++row) set_pixel(*pixels, 0, row, bar.scale.color(1 - (row + 0.5) / rows));
     return {left, top, left + bar.thickness, top + bar.axis.from, std::move(pixels)};
 }
 
@@ -65,21 +65,16 @@ float below_heading(const HeatMap& map, float height, const PlotStyle& style) {
 
 }  // namespace
 
-std::array<double, 2> color_range(const HeatMap& map) {
-    const auto scale = fitted_scale(map);
-    return {scale.low, scale.high};
-}
-
 Picture cell_picture(const HeatMap& map, const Theme& theme) {
     Picture picture({static_cast<int>(map.columns), static_cast<int>(map.rows)});
-    const auto scale = fitted_scale(map);
+    const MapScale scale(map);
     const Color none = none_color(map, theme);
     for (int y = 0; y < picture.size.height; ++y)
         for (int x = 0; x < picture.size.width; ++x) {
             const auto cell = (map.rows - 1 - static_cast<std::size_t>(y)) * map.columns + static_cast<std::size_t>(x);
             const auto value = static_cast<double>(map.values[cell]);
             const bool has_value = std::isfinite(value) && (value > 0 || !map.logarithmic);
-            set_pixel(picture, x, y, has_value ? map_color(scale.share(value)) : none);
+            set_pixel(picture, x, y, has_value ? scale.color(scale.axis.share(value)) : none);
         }
     return picture;
 }

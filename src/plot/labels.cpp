@@ -222,13 +222,14 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
 
 }  // namespace
 
-void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  const LabelPlacer& placer, PageList& list) {
+LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const LabelNeeds& given,
+                        const Area& beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list) {
     constexpr int many = 10;  // curves that leave little room beside each
     const auto& curves = plot.curves;
     const bool over_map = plot.map.has_value();
     const float small = 0.8f * style.text;
-    bool dense = std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
+    bool dense = given.small ||
+                 std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
     const auto tried = [&](float size, const LabelPlacer& left) {
         return written(curves, drawn, size, dense, others, style, over_map, left);
@@ -238,8 +239,8 @@ void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const 
     // rather small words at all curves than a legend, and rather on the curves than a legend over them
     if (!dense && !made.left_over.empty()) {
         Written fine = tried(small, placer);
-        const auto legend = fitted_legend(curves, made.left_over, style, placer);
-        dense = !fine.left_over.empty() && (plot.needs_no_legend || !legend || placer.ink(legend->box) > 0);
+        const auto legend = fitted_legend(curves, made.left_over, size, placer);
+        dense = !fine.left_over.empty() && (plot.needs_no_legend || !legend);
         if (dense) fine = tried(small, placer);
         if (dense || fine.left_over.empty()) made = std::move(fine), size = small;
     }
@@ -247,10 +248,16 @@ void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const 
     std::optional<Legend> legend;
     while (!made.left_over.empty()) {
         others.insert(others.end(), made.left_over.begin(), made.left_over.end());
-        legend = fitted_legend(curves, others, style, placer);
+        legend = fitted_legend(curves, others, size, placer);
         LabelPlacer left = placer;
         if (legend) left.add_text(legend->box);
         made = tried(size, left);
+    }
+    const LabelNeeds needs{given.small || size == small,
+                           others.empty() || legend ? given.legend : legend_gutter(curves, size)};
+    if (!others.empty() && !legend && given.legend > 0) {
+        const bool covers_map = false;
+        draw_legend(legend_in(beside, curves, others, size), curves, style, covers_map, list);
     }
     if (legend) draw_legend(*legend, curves, style, over_map, list);
     const Color background = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
@@ -258,6 +265,7 @@ void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const 
         list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
     for (const Capsule& leader : made.leaders) list.push_back(leader);
     for (const Label& label : made.labels) write(label, over_map, list);
+    return needs;
 }
 
 }  // namespace doppel

@@ -47,10 +47,14 @@ struct Legend {
     float size;  // of text, px an em
 };
 
-/// In the emptiest place of the panel, preferably a corner, away from all labels; shrunk if need be. Nothing where it
-/// does not fit.
-std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which,
-                                    const PlotStyle& style, const LabelPlacer& placer);
+/// In a place of the panel where nothing is drawn, preferably a corner, away from all labels; nothing where there is none.
+std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which, float size,
+                                    const LabelPlacer& placer);
+
+/// px that the names of all curves take beside a panel.
+float legend_gutter(const std::vector<Curve>& curves, float size);
+/// In the upper left corner of `area`, text of at most so many px an em.
+Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float most);
 
 void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
                  PageList& list);
@@ -59,10 +63,11 @@ void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const P
 void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
                  LabelPlacer& placer, PageList& list);
 
-/// Labels the curves: at the line where a label touches nothing, smaller if need be, else in a legend in the emptiest
-/// place; where curves are many, or a legend would cover them, on their lines. Curve i has drawn in `placer` as number i.
-void label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const PlotStyle& style,
-                  const LabelPlacer& placer, PageList& list);
+/// Labels the curves: at the line where a label touches nothing, smaller if need be, else in a legend that covers nothing;
+/// where curves are many, or there is no place for a legend, on their lines; what then is left in a legend in `beside`, the
+/// room on the right of the panel that is `given`. Curve i has drawn in `placer` as number i. Returns what they need.
+LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const LabelNeeds& given,
+                        const Area& beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list);
 
 /// Where the ink of a line of text may be, with the tallest accents and the deepest tails of the font.
 Area text_area(const Label& label);

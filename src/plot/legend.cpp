@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace doppel {
 namespace {
 
-/// The emptiest place for a box of this size.
-std::optional<Point> emptiest(float width, float height, float margin, const LabelPlacer& placer) {
+/// A place for a box of this size where nothing is drawn, preferably a corner.
+std::optional<Point> empty_place(float width, float height, float margin, const LabelPlacer& placer) {
     constexpr int steps = 20;
     const Area& area = placer.area();
     const float across = area.width() - width - 2 * margin, down = area.height() - height - 2 * margin;
@@ -21,9 +22,9 @@ std::optional<Point> emptiest(float width, float height, float margin, const Lab
             const float left = area.left + margin + across * static_cast<float>(column) / steps;
             const float top = area.top + margin + down * static_cast<float>(row) / steps;
             const Area box{left, top, left + width, top + height};
-            if (!placer.is_free(box)) continue;
+            if (!placer.is_free(box) || placer.ink(box) > 0) continue;
             const bool side = column == 0 || column == steps, end = row == 0 || row == steps;
-            const float cost = static_cast<float>(placer.ink(box)) + (side && end ? 0 : side || end ? 6.0f : 15.0f);
+            const float cost = side && end ? 0 : side || end ? 6.0f : 15.0f;
             if (!best || cost < least) best = Point{left, top}, least = cost;
         }
     }
@@ -43,19 +44,37 @@ void draw_sample(const Curve& curve, float left, float right, float y, const Plo
 // of a legend's parts, em
 constexpr float row = 1.4f, pad = 0.5f, sample = 1.7f, gap = 0.5f;
 
+float legend_width(const std::vector<Curve>& curves, const std::vector<std::size_t>& which, float size) {
+    float widest = 0;
+    for (const std::size_t i : which) widest = std::max(widest, text_width(curves[i].label, size));
+    return (2 * pad + sample + gap) * size + widest;
+}
+/// The height, em.
+float legend_rows(std::size_t count) {
+    return 2 * pad - 0.35f + row * static_cast<float>(count);
+}
+
 }  // namespace
 
-std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which,
-                                    const PlotStyle& style, const LabelPlacer& placer) {
-    for (float size = 0.95f * style.text; size > 0.6f * style.text; size *= 0.9f) {
-        float widest = 0;
-        for (const std::size_t i : which) widest = std::max(widest, text_width(curves[i].label, size));
-        const float width = (2 * pad + sample + gap) * size + widest;
-        const float height = (2 * pad - 0.35f + row * static_cast<float>(which.size())) * size;
-        if (const auto at = emptiest(width, height, 0.5f * size, placer))
-            return Legend{std::move(which), {at->x, at->y, at->x + width, at->y + height}, size};
-    }
-    return {};
+std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which, float size,
+                                    const LabelPlacer& placer) {
+    const float width = legend_width(curves, which, size);
+    const float height = legend_rows(which.size()) * size;
+    const auto at = empty_place(width, height, 0.5f * size, placer);
+    if (!at) return {};
+    return Legend{std::move(which), {at->x, at->y, at->x + width, at->y + height}, size};
+}
+
+float legend_gutter(const std::vector<Curve>& curves, float size) {
+    std::vector<std::size_t> all(curves.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return legend_width(curves, all, size);
+}
+
+Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float most) {
+    const float width = legend_width(curves, which, 1), height = legend_rows(which.size());
+    const float size = std::min({most, area.width() / width, area.height() / height});
+    return {std::move(which), {area.left, area.top, area.left + width * size, area.top + height * size}, size};
 }
 
 void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,

@@ -38,13 +38,16 @@ void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer,
         const float at = std::floor((level ? panel.y : panel.x).at(rule.at)) + 0.5f;
         const Point from = level ? Point{panel.area.left, at} : Point{at, panel.area.bottom};
         const Point to = level ? Point{panel.area.right, at} : Point{at, panel.area.top};
+        const float width = std::max(std::round(1.3f * style.unit), 1.0f);
         const Color color = panel.plot.map ? rgb(0xffffff) : style.theme.quiet_text;
-        draw_line({{from, to}}, std::max(std::round(1.3f * style.unit), 1.0f), true, color, style, list);
+        if (panel.plot.map) draw_line({{from, to}}, width + 2, false, rgb(0x0b0e13).with_alpha(0.75f), style, list);
+        draw_line({{from, to}}, width, true, color, style, list);
         placer.add_line(from, to, LabelPlacer::no_owner - 1);
     }
 }
 
-void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, PageList& list) {
+LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& beside, const PlotStyle& style,
+                       LabelPlacer& placer, PageList& list) {
     const auto& curves = panel.plot.curves;
     const bool over_map = panel.plot.map.has_value();
     std::vector<DrawnCurve> all;
@@ -67,7 +70,7 @@ void draw_curves(const Panel& panel, const PlotStyle& style, LabelPlacer& placer
         for (std::size_t i = 0; i < curves.size(); ++i)
             if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
     label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, placer, list);
-    label_curves(panel.plot, all, style, placer, list);
+    return label_curves(panel.plot, all, given, beside, style, placer, list);
 }
 
 }  // namespace
@@ -99,8 +102,8 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     return made;
 }
 
-void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
-                const AxisWords& words, const PlotStyle& style, PageList& list) {
+LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
+                      const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list) {
     Area area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
     Area held = cell;
@@ -111,7 +114,7 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
         held = held.grown(-right, -down);
         area = {area.left + right, area.top + down, area.left + right + side, area.top + down + side};
     }
-    if (area.width() < 8 || area.height() < 8) return;
+    if (area.width() < 8 || area.height() < 8) return given;
     const Panel panel = make_panel(plot, ranges, area);
     if (plot.map) {
         list.push_back(map_cells(*plot.map, panel.x, panel.y, area, style.theme));
@@ -123,7 +126,8 @@ void draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, co
     draw_headings(plot, area, held, around.title, around.labels, words, style, list);
     LabelPlacer placer(area);
     draw_rules(panel, style, placer, list);
-    draw_curves(panel, style, placer, list);
+    const Area beside{held.right - given.legend, area.top, held.right, area.bottom};
+    return draw_curves(panel, given, beside, style, placer, list);
 }
 
 }  // namespace doppel

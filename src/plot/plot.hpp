@@ -2,9 +2,9 @@
 
 #include "image/color.hpp"
 #include "image/picture.hpp"
+#include "plot/axis.hpp"
 #include "plot/page.hpp"
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,8 +21,8 @@ struct PlotAxis {
     friend bool operator==(const PlotAxis&, const PlotAxis&) = default;
 };
 
-/// What a line of data looks like.
-enum class Mark { line, points, both };
+/// What a line of data looks like. Many points of a density add up where they overlap.
+enum class Mark { line, points, both, density };
 
 /// A curve behind the others: pale and thin, or a wide pale band along it.
 enum class Background { none, line, band };
@@ -56,7 +56,8 @@ struct HeatMap {
     bool none_is_bad = false;                             // shown in the colour of what is bad
     std::optional<double> low, high;                      // of the scale; fitted to the values where not given
     bool logarithmic = false;
-    bool shares_bar = false;  // with all maps of the figure: one bar, on the right of them
+    std::optional<double> threshold;  // two colours, up to it and above it
+    bool shares_bar = false;          // with all maps of the figure: one bar, on the right of them
 };
 
 /// One pair of axes and what is drawn between them.
@@ -81,15 +82,21 @@ struct Figure {
     std::vector<std::string> captions;  // paragraphs, broken into lines
 };
 
-/// The ends of a map's scale of colours: its own, or those of its numbers.
-std::array<double, 2> color_range(const HeatMap& map);
+/// A map's scale of colours.
+struct MapScale {
+    explicit MapScale(const HeatMap& map);
+
+    Axis axis;                        // from its own ends, or those of its numbers
+    std::optional<double> step = {};  // share of the axis at which the one of two colours ends
+    Color color(double share) const;
+};
 /// A map by itself, a pixel a cell, the first row at the bottom.
 Picture cell_picture(const HeatMap& map, const Theme& theme);
 
 /// Composes a figure for a picture of `size` px. `scale` = 2 gives every length twice as many pixels: the same layout
 /// as a picture of half the size, for print. Text of labels is 20 px times `unit` and scale, the rest in proportion; by the
-/// size where it is not given. Text never overlaps: what does not fit is shrunk, moved to the legend or left out (tick
-/// labels).
+/// size where it is not given. Text never overlaps: what does not fit is shrunk, in all panels alike, moved to the legend,
+/// which covers no data, or left out (tick labels).
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale = 1, std::optional<float> unit = {});
 
 }  // namespace doppel

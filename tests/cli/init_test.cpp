@@ -95,7 +95,7 @@ TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
     // those that are for other values of other keys, and what the figure gives itself
     std::map<std::string_view, std::set<std::string>> beside{
         {"grid",
-         {"color_range", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right", "step_s",
+         {"threshold", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right", "step_s",
           "tolerance", "transient_periods", "mark_step_s", "x.tolerance_from", "x.tolerance_to", "x.tolerance_points"}},
         {"series",
          {"integrator", "step_s", "tolerance", "check_tolerance", "duration_s", "samples", "points_per_decade",

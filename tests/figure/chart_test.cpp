@@ -34,7 +34,7 @@ TEST(Chart, APdfIsAsWideAsThePaperAsksFor) {
 
 TEST(Chart, AnSvgIsWrittenWithoutOpenGl) {
     const auto svg = file_of(small_sweep({"chart.format=\"svg\""}), ".svg");
-    EXPECT_NE(svg.find("How far twins part"), std::string::npos);
+    EXPECT_NE(svg.find("Mean divergence of a pair"), std::string::npos);
     EXPECT_NE(svg.find("width=\"240pt\" height=\"135pt\""), std::string::npos);  // 320 × 180 px of 3/4 pt
 }
 
@@ -69,12 +69,12 @@ TEST(Chart, WordsMayGoOrBeOnesOwn) {
         return std::any_of(all.begin(), all.end(), [&](const auto& text) { return text.starts_with(start); });
     };
     const auto as_is = labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5"}));
-    EXPECT_TRUE(has(as_is, "How far twins part"));
+    EXPECT_TRUE(has(as_is, "Mean divergence of a pair"));
     EXPECT_TRUE(has(as_is, "two links"));
     EXPECT_TRUE(has(as_is, "Erratum"));
     const auto bare = labels_of(
         figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=false", "chart.captions=false"}));
-    EXPECT_FALSE(has(bare, "How far twins part") || has(bare, "two links") || has(bare, "Erratum"));
+    EXPECT_FALSE(has(bare, "Mean divergence of a pair") || has(bare, "two links") || has(bare, "Erratum"));
     EXPECT_EQ(bare.size(), as_is.size() - 3);
     const auto own = labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=\"Mine\"",
                                                         "chart.captions=[\"One\", \"Two\"]"}));

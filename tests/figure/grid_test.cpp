@@ -96,8 +96,8 @@ TEST(Grid, SaysOfItselfByWhatItIsFound) {
                    {"grid.x.points=4", "grid.y.points=3", "scene.duration_s=1", "grid.quantity=\"" + quantity + "\""});
         return figure_of("parting-map", all).subtitle;
     };
-    EXPECT_EQ(subtitle("divergence"), "two links in angles, θ₂ = 0, twins 0.001° apart; Runge–Kutta 4, 1/480 s");
-    EXPECT_EQ(subtitle("energy_error"), "two links in angles, θ₂ = 0; Runge–Kutta 4, 1/480 s");
+    EXPECT_EQ(subtitle("divergence"), "two links in angles, θ₂ = 0, pair 0.001° apart; Runge–Kutta 4, 1/240 s");
+    EXPECT_EQ(subtitle("energy_error"), "two links in angles, θ₂ = 0; Runge–Kutta 4, 1/240 s");
     EXPECT_EQ(subtitle("exponent"), "two links in angles, θ₂ = 0; tangent equations by Dormand–Prince 8");
     EXPECT_EQ(subtitle("flip_time"), "two links in angles, θ₂ = 0; Taylor series, tolerance 1.0 × 10⁻⁸");
     // what is varied is no number of all
@@ -277,6 +277,69 @@ TEST(Grid, OfLinksHasTheExponentsOfTheChains) {
         EXPECT_GT(row[3], 0);
         EXPECT_GT(row[4], 0);
     }
+}
+
+/// The page as it is composed, and its panels.
+Figure page_of(const FigurePreset& figure) {
+    Figure page;
+    figure.experiment->draw(computed(figure), page);
+    return page;
+}
+
+TEST(Grid, WhatIsComparedHasOneRange) {
+    for (const char* name : {"fig2-right", "fig4-right", "fig8", "true-fig2-right"}) {
+        const auto axis = page_of(figure_of(name, {"grid.x.to=2", "scene.duration_s=1"})).panels.at(0).y;
+        EXPECT_EQ(axis.low, 0) << name;
+        EXPECT_EQ(axis.high, 12) << name;
+    }
+}
+
+TEST(Grid, LeavesEquilibriaOutOfTheCurveNotOutOfTheTable) {
+    const auto figure = figure_of("fig3-left", {"grid.x.step=90", "scene.duration_s=1"});
+    const auto page = page_of(figure);
+    const auto& curve = page.panels.at(0).curves.at(0);
+    ASSERT_EQ(curve.y.size(), 3u);
+    EXPECT_TRUE(std::isnan(curve.y[0]) && std::isfinite(curve.y[1]) && std::isnan(curve.y[2]));
+    EXPECT_EQ(page.captions.at(0), "Not drawn: θ₁ = 0° and θ₁ = 180°, where both pendulums rest in equilibrium.");
+    const auto table = table_of(figure);
+    EXPECT_EQ(table.rows[0][1], 0);
+    EXPECT_EQ(table.rows.size(), 3u);
+    // twins that differ in their angle do not rest
+    EXPECT_TRUE(page_of(figure_of("fig2-right", {"grid.x.step=90", "scene.duration_s=1"})).captions.empty());
+}
+
+TEST(Grid, DrawsTheConvergedCurveOverTheStudys) {
+    const auto figure = figure_of("true-fig2-right", {"grid.x.from=90", "grid.x.to=91", "scene.duration_s=2"});
+    const auto table = table_of(figure);
+    EXPECT_EQ(table.columns, (std::vector<std::string>{"system", "theta1_deg", "average_log_ratio"}));
+    ASSERT_EQ(table.rows.size(), 4u);
+    EXPECT_EQ(table.words[2][0], "converged in double precision");
+    const auto study = table_of(figure_of("fig2-right", {"grid.x.from=90", "grid.x.to=91", "scene.duration_s=2"}));
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(table.rows[i].back(), study.rows[i][1]);
+    const auto curves = page_of(figure).panels.at(0).curves;
+    EXPECT_EQ(curves.at(1).label, "converged in double precision");
+}
+
+TEST(Grid, NamesDriveAndDamping) {
+    EXPECT_EQ(figure_of("bifurcation").subtitle,
+              "one link in angles, torque of 0.5 Hz, joint friction 0.459 N m s, 10°; Dormand–Prince 8(5,3), tolerance "
+              "1e-10");
+    EXPECT_EQ(figure_of("kapitza-map").subtitle,
+              "one link in angles, a moving pivot, 177°; Dormand–Prince 8(5,3), tolerance 1e-06");
+}
+
+TEST(Grid, TwoToneMapsNameBothBranches) {
+    const auto page = page_of(figure_of(
+        "kapitza-map", {"grid.x.points=4", "grid.y.points=3", "scene.duration_s=1", "system.integrator=\"rk4\""}));
+    const auto& plot = page.panels.at(0);
+    EXPECT_EQ(plot.map->threshold, 90);
+    ASSERT_EQ(plot.curves.size(), 2u);
+    for (const auto& curve : plot.curves) EXPECT_NE(curve.label, "");
+}
+
+TEST(Grid, SaysWhatIsDashed) {
+    const auto page = page_of(figure_from(three_angles, {"grid.right=\"distance_at_end\"", "grid.color.values=[30]"}));
+    EXPECT_EQ(page.captions, std::vector<std::string>{"Dashed: distance after 2 s."});
 }
 
 TEST(Grid, TheChoiceOfItsMethodHeedsAnInterruption) {

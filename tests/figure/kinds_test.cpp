@@ -234,6 +234,50 @@ TEST(FlipMap, LeavesCellsEmptyThatBreakDown) {
     EXPECT_LT(findings_of(figure).at("share_without"), 1);
 }
 
+TEST(Curves, ShowAnyColumnOfAFilmOfSeveralRuns) {
+    const std::string text = R"(
+[scene]
+kind = "series"
+duration_s = 1
+[system]
+angle_deg = [90, 90]
+[series]
+film_column = "a_theta2_rad"
+[[curve]]
+column = "calm"
+system.angle_deg = [30, 30]
+[[curve]]
+column = "wild"
+[[curve]]
+column = "kinetic"
+film_column = "b_kinetic_J"
+)";
+    const auto figure = figure_from(text);
+    const auto table = table_of(figure);
+    EXPECT_EQ(table.columns, (std::vector<std::string>{"sample", "time_s", "calm", "wild", "kinetic"}));
+    const auto scene =
+        make_scene(read_preset({"x", "x.toml", "[scene]\nduration_s = 1\n[system]\nangle_deg = [90, 90]\n"}));
+    PairRun run(scene);
+    for (const auto& row : table.rows) {
+        const auto state = run.next(false);
+        EXPECT_EQ(row[3], state.a.bobs[1].theta);
+        EXPECT_EQ(row[4], state.b.kinetic_energy);
+    }
+    EXPECT_NEAR(table.rows[0][2], pi / 6, 1e-15);
+    Figure page;
+    figure.experiment->draw(computed(figure), page);
+    EXPECT_EQ(page.panels.at(0).y.label, "θ₂, rad; kinetic, J");
+    // each column of the film has a number
+    for (const auto& column : {"a_theta1_rad", "b_omega2_rad_per_s", "a_x1_m", "a_y2_m", "b_vx1_m_per_s",
+                               "b_vy2_m_per_s", "a_energy_J", "a_energy_error", "b_length_error_m", "a_potential_J"})
+        EXPECT_TRUE(std::isfinite(table_of(figure_from("[scene]\nkind = \"series\"\nduration_s = 0.1\n",
+                                                       {fmt::format("series.film_column=\"{}\"", column)}))
+                                      .rows.back()[2]))
+            << column;
+    test::expect_error(ExitCode::bad_input, {"film_column", "must be one of a_theta1_rad", "\"a_theta3_rad\""},
+                       [&] { figure_from(text, {"series.film_column=\"a_theta3_rad\""}); });
+}
+
 TEST(Curves, CheckToleranceTellsUntilWhenTheyStand) {
     const auto found = findings_of(figure_of("fig2-left", {"scene.duration_s=2", "system.integrator=\"dop853\"",
                                                            "system.tolerance=1e-10", "series.check_tolerance=1e-12"}));

@@ -134,32 +134,32 @@ std::string subtitle_of(const std::string& preset, const std::vector<std::string
 
 TEST(FigurePreset, OfASweepSaysWhatItIs) {
     for (const auto& [name, words] : std::vector<std::pair<const char*, const char*>>{
-             {"fig2-right", "two links in angles, θ₂ = 0, twins 0.003° apart; explicit Euler, 1/30 000 s"},
+             {"fig2-right", "two links in angles, θ₂ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"},
              {"fig3-left", "two links in angles, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
              {"fig3-right",
               "two links in angles, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
-             {"fig4-right", "two particles on rods, θ₂ = 0, twins 0.003° apart; explicit Euler, 1/30 000 s"},
+             {"fig4-right", "two particles on rods, θ₂ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"},
              {"fig5-left", "two particles on rods, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
              {"fig5-right",
               "two particles on rods, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
-             {"fig8", "three particles on rods, θ₂ = θ₃ = 0, twins 0.003° apart; explicit Euler, 1/30 000 s"}})
+             {"fig8", "three particles on rods, θ₂ = θ₃ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"}})
         EXPECT_EQ(subtitle_of(name), words) << name;
 }
 
 TEST(FigurePreset, OfASweepSaysWhatWasSet) {
     for (const auto& [set, words] : std::vector<std::pair<std::string, std::string>>{
-             {"grid.difference=0.25", "two links in angles, θ₂ = 0, twins 0.25° apart; explicit"},
-             {"grid.difference=-0.25", ", twins 0.25° apart; explicit"},
+             {"grid.difference=0.25", "two links in angles, θ₂ = 0, pair 0.25° apart; explicit"},
+             {"grid.difference=-0.25", ", pair 0.25° apart; explicit"},
              {"grid.quantity=\"energy_error\"", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
-             {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, twins"},
-             {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, twins"},
+             {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, pair"},
+             {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, pair"},
              {"system.integrator=\"rk4\"", "; "},
              {"system.step_s=\"1/1200\"", "; explicit Euler, 1/1200 s"},
              {"system.precision=\"quad\"", "; explicit Euler, 1/30 000 s, in quad"},
-             {"b.model=\"constraints\"", "two links, θ₂ = 0, twins 0.003° apart, angles against constraints; explicit"},
+             {"b.model=\"constraints\"", "two links, θ₂ = 0, pair 0.003° apart, angles against constraints; explicit"},
              {"b.length_m=[1, 2]", ", l₂ = 1 m against l₂ = 2 m; explicit"},
-             {"b.integrator=\"rk4\"", "twins 0.003° apart, explicit Euler against "},
-             {"grid.x.key=\"theta2_deg\"", "two links in angles, θ₁ = 0, twins 0.003° apart"},
+             {"b.integrator=\"rk4\"", "pair 0.003° apart, explicit Euler against "},
+             {"grid.x.key=\"theta2_deg\"", "two links in angles, θ₁ = 0, pair 0.003° apart"},
              {"subtitle=\"mine\"", "mine"}})
         EXPECT_NE(subtitle_of("fig2-right", {set}).find(words), std::string::npos)
             << set << ": " << subtitle_of("fig2-right", {set});

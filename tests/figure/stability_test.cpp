@@ -96,7 +96,7 @@ TEST(Stability, HasWholeStepsNearThoseAskedFor) {
 }
 
 TEST(Stability, SharesItsAxes) {
-    EXPECT_EQ(figure_of("stability").experiment->trials(), 12u * 72 * 100);
+    EXPECT_EQ(figure_of("stability").experiment->trials(), 12u * 100);
     const auto page_of = [](const std::string& methods) {
         const auto figure = figure_of(
             "stability", {"grid.x.points=2", "grid.y.points=2", "scene.duration_s=1", "grid.panel.values=" + methods});

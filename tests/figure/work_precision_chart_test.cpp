@@ -51,6 +51,14 @@ TEST(WorkPrecisionChart, HasFiveInColour) {
     EXPECT_TRUE(page.captions[0].starts_with("In colour the five best, by the mean rank")) << page.captions[0];
 }
 
+TEST(WorkPrecisionChart, NamesAllOnDemand) {
+    auto arguments = quick;
+    arguments.insert(arguments.end(), {"work_precision.problems=[\"P1\"]", "chart.names=\"all\""});
+    const auto page = page_of(figure_of("speed-accuracy", arguments));
+    EXPECT_EQ(faint_ones(page.panels[0]), 0);
+    EXPECT_EQ(labels_of(page.panels[0]).size(), 10u + 1);  // methods in angles, and the study's point
+}
+
 TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
     auto arguments = quick;
     arguments.insert(arguments.end(),

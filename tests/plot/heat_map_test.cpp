@@ -58,6 +58,18 @@ TEST(HeatMap, ShowsTheMeanWhereCellsAreSmallerThanPixels) {
         EXPECT_NEAR(picture.at(x, 10)[1], 255 * (map_color(0.2).g + map_color(1).g) / 2, 12) << x;
 }
 
+TEST(HeatMap, OfAThresholdHasTwoColors) {
+    auto map = strip({0, 0.25f, 0.5f, 1});
+    map.threshold = 0.5;
+    const auto picture = cell_picture(map, themes[1]);
+    const auto same = [&](int one, int other) {
+        return std::equal(picture.at(one, 0), picture.at(one, 0) + 4, picture.at(other, 0));
+    };
+    EXPECT_TRUE(same(0, 1));
+    EXPECT_TRUE(same(1, 2));
+    EXPECT_FALSE(same(2, 3));
+}
+
 TEST(HeatMap, ShowsWhatIsBadInItsColor) {
     auto map = strip({0.5f, std::nanf("")});
     for (const auto& theme : themes) {

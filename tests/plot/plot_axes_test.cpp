@@ -75,6 +75,18 @@ TEST(Plot, AxesThatDifferAreNotShared) {
     EXPECT_EQ(words["angle, °"], 2);  // of the first, and of the one beside it
 }
 
+TEST(Plot, CurvesOnSharedAxesHaveOneRange) {
+    Figure figure{.columns = 2, .shares_axes = true};
+    for (const double most : {3.0, 40.0})
+        figure.panels.push_back({.x = {.label = "x"}, .y = {.label = "y"}, .curves = {{.x = {0, 1}, .y = {0, most}}}});
+    auto words = words_in(composed(figure, size, light));
+    EXPECT_EQ(words["y"], 1);
+    EXPECT_EQ(words["40"], 1);
+    EXPECT_EQ(words["3"], 0);
+    figure.shares_axes = false;
+    EXPECT_EQ(words_in(composed(figure, size, light))["y"], 2);
+}
+
 TEST(Plot, ANoteStandsBesideTheTitleWhereThereIsRoom) {
     EXPECT_EQ(words_in(composed(four_maps(true, false), size, light))["17 s"], 4);
     auto figure = four_maps(true, false);

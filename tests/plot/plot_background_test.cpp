@@ -66,6 +66,61 @@ TEST(Plot, WordsOfManyCurvesStandUponThem) {
     for (const auto* label : labels) EXPECT_NE(label->color, light.text) << label->text;
 }
 
+/// Labels of curves, by their words.
+std::vector<Label> labels_of(const PageList& list, std::string_view begin) {
+    std::vector<Label> labels;
+    for (const PageItem& item : list)
+        if (const auto* label = std::get_if<Label>(&item); label && label->text.starts_with(begin))
+            labels.push_back(*label);
+    return labels;
+}
+
+TEST(Plot, LabelsHaveOneSizeInAllPanels) {
+    auto figure = fan(16);
+    figure.panels.push_back(fan(2).panels[0]);
+    figure.panels[0].title = "a title that is a good deal longer than one half of the picture is wide, and so shrinks";
+    figure.panels[1].title = "title";
+    for (const auto* begin : {"method", "title"}) {
+        const auto labels = labels_of(composed(figure, size, light), begin);
+        ASSERT_FALSE(labels.empty());
+        for (const auto& label : labels) EXPECT_EQ(label.size, labels[0].size) << label.text;
+    }
+    EXPECT_LT(labels_of(composed(figure, size, light), "title")[0].size,
+              labels_of(composed({.panels = {{.title = "title"}, {.title = "title"}}}, size, light), "title")[0].size);
+}
+
+TEST(Plot, ALegendCoversNoData) {
+    // clouds all over the panel leave no place beside them
+    auto figure = sections(1);
+    auto& curves = figure.panels[0].curves;
+    for (int k = 1; k < 3; ++k) curves.push_back(curves[0]), curves.back().hue = k;
+    for (auto& curve : curves)
+        for (std::size_t i = 0; i < curve.x.size(); ++i)
+            curve.x[i] = static_cast<double>(i % 27), curve.y[i] = static_cast<double>(i / 27);
+    const auto list = composed(figure, size, light);
+    const auto names = labels_of(list, "one orbit");
+    ASSERT_EQ(names.size(), 3u);
+    float right = 0;
+    for (const PageItem& item : list)
+        if (const auto* image = std::get_if<Image>(&item)) right = std::max(right, image->right);
+    ASSERT_GT(right, 0);
+    for (const auto& name : names) EXPECT_GT(name.anchor.x, right);
+}
+
+TEST(Plot, ARuleOverAMapIsSeenOnAllColors) {
+    Figure figure = map(false);
+    figure.panels[0].rules = {{Rule::Orientation::vertical, 60, ""}};
+    std::vector<const Polylines*> upright;
+    const auto list = composed(figure, size, light);
+    for (const PageItem& item : list)
+        if (const auto* line = std::get_if<Polylines>(&item); line && line->lines[0].size() == 2)
+            upright.push_back(line);
+    ASSERT_EQ(upright.size(), 2u);
+    EXPECT_EQ(upright[0]->dash, 0);  // dark, below the white dashes
+    EXPECT_LT(upright[0]->color.r, 0.1f);
+    EXPECT_GT(upright[1]->dash, 0);
+}
+
 TEST(Plot, AMarkAmongManyCurvesIsLedTo) {
     auto figure = fan(12);
     auto& curves = figure.panels[0].curves;

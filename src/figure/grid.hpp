@@ -1,0 +1,181 @@
+#pragma once
+
+#include "figure/grid_axis.hpp"
+#include "figure/overlay.hpp"
+#include "figure/quantity.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+inline constexpr std::string_view grid_key_help =
+    "key that is varied: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
+    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
+    "method";
+
+/// A quantity of pairs over the values of one to four keys: curves over x, of several colours; maps over x and y; panels of
+/// either. A trial is a value of x of a curve, or some cells of a map side by side; of a mirrored map in the lower half of it.
+class Grid final : public Experiment {
+public:
+    static constexpr std::string_view table_key = "grid";
+    Grid() { x_.key = "theta1_deg"; }
+    explicit Grid(FigureReader& reader);
+
+    template <class Visit>
+    void fields(Visit& visit) {
+        visit({"quantity", quantity_help}, quantity_);
+        visit({.key = "right",
+               .help = "a second quantity of curves, on an axis at the right",
+               .names = names_of<Quantity>},
+              right_);
+        visit({"difference", "difference of the key of x between the two of a pair"}, difference_);
+        const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
+        visit({"exponent_duration_s",
+               "duration of the motion from which an exponent is computed",
+               "s",
+               positive,
+               "",
+               {.holds = has(Quantity::exponent), .hides = true}},
+              options_.exponent_duration_s);
+        const Only of_flips{has(Quantity::flip_time), "is of flip_time"};
+        visit({"flip_tolerance",
+               "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
+               "rad/s",
+               {.low = 1e-15, .is_positive = true},
+               "1e-8 up to 20 s, for longer times less",
+               of_flips},
+              options_.flip_tolerance);
+        const Only strobed{.holds = quantity_ == Quantity::stroboscopic, .hides = true};
+        auto& strobe = options_.stroboscope;
+        visit({"link", "whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
+        visit({"transient_periods", "transient, in periods of the drive", "", from_to(0, 1'000'000), "", strobed},
+              strobe.transient_periods);
+        visit({"periods", "periods of the drive that are shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
+        visit({"overlay",
+               "lines of theory on a map: where a vibrating pivot keeps one link upright, where two links released at "
+               "rest have the energy to flip, or the linear stability limit of a method"},
+              overlay_);
+        visit({"mark_step_s",
+               "a step marked by a line",
+               "s",
+               positive,
+               "",
+               {.holds = quantity_ == Quantity::convergence, .hides = true}},
+              mark_step_);
+        const Only of_this{!visit.from_command_line("quantity") || visit.from_command_line("range"),
+                           "is of the preset's quantity", true};
+        visit({"range",
+               "of the quantity: its axis, or the colours of a map; [lowest, highest]",
+               "",
+               {},
+               "that of the numbers",
+               of_this},
+              range_);
+        visit({"threshold", "of a map: two colours, up to it and above it", "", {}, "colours for all numbers"},
+              threshold_);
+        visit.table("x", [&](auto& table) { x_.fields(table, grid_key_help); });
+        visit.table("y", [&](auto& table) { y_.fields(table, "the same upwards: a map, of cells"); });
+        visit.table("color", [&](auto& table) { color_.fields(table, "a curve for each value"); });
+        visit.table("panel", [&](auto& table) { panel_.fields(table, "a panel for each value"); });
+    }
+
+    std::size_t trials() const override { return groups_.back().first + trials_of(groups_.back()); }
+    std::size_t together() const override;
+    std::string unit() const override { return "pairs"; }
+    double units(std::size_t trial) const override;
+    std::string subtitle() const override { return subtitle_; }
+    std::optional<MapCells> map() const override;
+    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override;
+    bool fits(std::size_t trial, std::span<const double> numbers) const override;
+    std::vector<std::string> columns() const override;
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override;
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override;
+    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override;
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override;  // figure/grid_plot.cpp
+
+private:
+    /// The pairs of one panel and colour, which differ along x and y alone.
+    struct Group {
+        Preset pair;
+        GridAxis x;
+        std::size_t first = 0;                  // trial
+        std::vector<Measurement> measurements;  // of the quantity, and of the one at the right
+    };
+    struct Cell {
+        std::size_t group, row, column;
+    };
+
+    // reading
+    void find_axes(FigureReader& reader);
+    void check(const TomlReader& table) const;
+    void check_overlay(const TomlReader& table) const;
+    void check_range(const TomlReader& table) const;
+    void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
+    void make_map();
+    void make_subtitle();
+
+    bool is_map() const { return y_.is_there(); }
+    bool is_of_releases() const;
+    const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
+    const QuantityWords& words() const { return measurements().front().words(); }
+    /// Of an exponent's first number among those of a curve's value.
+    std::optional<std::size_t> exponent_place() const;
+    Preset pair_at(const Cell& cell) const;
+
+    // trials and cells
+    std::size_t lines_computed(const Group& group) const;
+    std::size_t line_cells(const Group& group) const { return are_columns_ ? y_.count : group.x.count; }
+    std::size_t trials_of_line(const Group& group) const { return (line_cells(group) + piece_ - 1) / piece_; }
+    std::size_t trials_of(const Group& group) const { return lines_computed(group) * trials_of_line(group); }
+    Cell place_of(std::size_t trial) const;
+    std::size_t cells_of(std::size_t trial) const;
+    void find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const;
+    /// The numbers of a cell, computed or those of its mirror image.
+    std::span<const double> at(std::span<const TrialNumbers> numbers, const Cell& cell) const;
+    /// What is drawn of it.
+    double value_at(std::span<const TrialNumbers> numbers, const Cell& cell) const {
+        return at(numbers, cell)[words().drawn];
+    }
+    template <class Visit>
+    void for_each_cell(const Visit& visit) const {
+        for (std::size_t group = 0; group < groups_.size(); ++group)
+            for (std::size_t row = 0; row < y_.count; ++row)
+                for (std::size_t column = 0; column < groups_[group].x.count; ++column) visit(Cell{group, row, column});
+    }
+    bool is_missing(const Cell& cell, double number) const;
+    /// Whether both of the pair rest in an equilibrium: their distance is that of the start, whatever the motions beside.
+    bool is_at_rest(const Cell& cell) const;
+    /// "rk4, θ₂ = 30°"; empty where there is one group.
+    std::string joined_words(std::size_t group, const char* between) const;
+    double slope(std::span<const TrialNumbers> numbers, std::size_t group) const;
+
+    // figure/grid_plot.cpp
+    Curve curve(std::span<const TrialNumbers> numbers, std::size_t group, std::size_t column) const;
+    void draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const;
+    std::string rest_words() const;
+    void finish_convergence(std::span<const TrialNumbers> numbers, Figure& figure) const;
+    void add_limit(std::size_t p, Plot& plot) const;
+    HeatMap heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const;
+    void finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const;
+
+    Preset pair_;
+    GridAxis x_, y_, color_, panel_;
+    Quantity quantity_ = Quantity::divergence;
+    std::optional<std::string> right_;
+    Quad difference_ = 0;
+    QuantityOptions options_;
+    Overlay overlay_ = Overlay::none;
+    std::optional<Rational> mark_step_;
+    std::optional<Range> range_;
+    std::optional<double> threshold_;
+    std::vector<Group> groups_;                 // panel by panel, of each its colours
+    std::size_t cell_numbers_ = 0, piece_ = 1;  // of a cell; cells of a trial
+    HeatMap look_;                              // of maps: all but the numbers
+    bool is_mirrored_ = false;                  // the cell at (−x, −y) has the same numbers
+    bool are_columns_ = false;                  // the cells of a trial stand above one another: of one setting
+    std::string subtitle_;
+};
+
+}  // namespace doppel

@@ -1,0 +1,208 @@
+#include "analysis/stability.hpp"
+#include "figure/grid.hpp"
+#include "scene/captions.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+// The plots and captions of a grid.
+
+namespace doppel {
+namespace {
+
+/// Whether some of the line lies inside the axes of the map.
+bool shows(const Plot& plot, const Curve& line) {
+    for (std::size_t i = 0; i < line.x.size(); ++i)
+        if (line.x[i] > *plot.x.low && line.x[i] < *plot.x.high && line.y[i] > *plot.y.low && line.y[i] < *plot.y.high)
+            return true;
+    return false;
+}
+
+}  // namespace
+
+void Grid::draw(std::span<const TrialNumbers> numbers, Figure& figure) const {
+    figure.shares_axes = panel_.is_there();
+    for (std::size_t p = 0; p < panel_.count; ++p) {
+        auto& plot = figure.panels.emplace_back(Plot{.x = groups_[p * color_.count].x.plot_axis()});
+        if (panel_.is_there()) plot.title = panel_.words(p);
+        if (is_map()) {
+            plot.y = y_.plot_axis();
+            plot.square = x_.angle && y_.angle;
+            plot.map = heat_map(numbers, p);
+            plot.curves = overlay_curves(overlay_, groups_[p].pair.a);
+            if (overlay_ == Overlay::linear_limit) add_limit(p, plot);
+        }
+        for (std::size_t c = 0; c < color_.count && !is_map(); ++c)
+            draw_curves(numbers, p * color_.count + c, plot, figure);
+    }
+    if (is_map()) finish_maps(numbers, figure);
+    if (quantity_ == Quantity::convergence) finish_convergence(numbers, figure);
+    if (const auto rest = rest_words(); !rest.empty()) figure.captions.push_back(rest);
+    if (quantity_ == Quantity::stroboscopic)
+        figure.captions.push_back(fmt::format("{} drive periods each, after a transient of {}.",
+                                              grouped(options_.stroboscope.periods),
+                                              grouped(options_.stroboscope.transient_periods)));
+}
+
+/// The curves of one panel and colour: of the quantity, and of the one at the right.
+void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const {
+    std::size_t column = words().drawn;
+    for (const auto& measurement : groups_[group].measurements) {
+        const auto& of = measurement.words();
+        const bool is_right = column > words().drawn;
+        (is_right ? plot.right.emplace() : plot.y) = {.label = of.label, .logarithmic = of.logarithmic};
+        if (range_ && !is_right) plot.y.low = range_->low, plot.y.high = range_->high;
+        for (std::size_t i = 0; i < std::max<std::size_t>(1, of.curves.size()); ++i) {
+            auto drawn = curve(numbers, group, column + i);
+            drawn.right = is_right;
+            drawn.hue = static_cast<int>(color_.is_there() ? group % color_.count : plot.curves.size());
+            drawn.dashed = color_.is_there() && column + i > words().drawn;
+            if (color_.is_there())
+                drawn.label = drawn.dashed ? "" : color_.words(group % color_.count);
+            else if (!of.curves.empty() || right_)
+                drawn.label = of.curves.empty() ? of.short_label : of.curves[i];
+            if (measurement.quantity() == Quantity::exponent) {
+                drawn.uncertainty = curve(numbers, group, column + 1).y;
+                const auto unsettled = curve(numbers, group, column + 2).y;
+                const auto said = joined_words(group, ", ");
+                figure.captions.push_back((said.empty() ? "" : said + ": ") +
+                                          exponent_words(drawn, unsettled, x_.angle ? "°" : ""));
+            }
+            if (const auto dashed = "Dashed: " + (of.curves.empty() ? of.short_label : of.curves[i]) + ".";
+                drawn.dashed && std::ranges::count(figure.captions, dashed) == 0)
+                figure.captions.push_back(dashed);
+            plot.curves.push_back(std::move(drawn));
+        }
+        column += measurement.numbers();
+    }
+}
+
+Curve Grid::curve(std::span<const TrialNumbers> numbers, std::size_t group, std::size_t column) const {
+    const bool is_one = words().rows == 1;
+    const auto in_row = words().columns.size();
+    Curve made{.mark = is_one ? Mark::line : Mark::density};
+    if (words().drawn > 0) made.mark = Mark::both;
+    const auto& x = groups_[group].x;
+    for (std::size_t i = 0; i < x.count; ++i) {
+        const auto all = at(numbers, {group, 0, i});
+        const auto value = words().drawn > 0 ? all[0] : static_cast<double>(x.value(i));
+        if (is_one) add_point(made, value, is_of_distance(quantity_) && is_at_rest({group, 0, i}) ? NAN : all[column]);
+        for (std::size_t n = in_row - 1; !is_one && n < all.size(); n += in_row) add_point(made, value, all[n]);
+    }
+    return made;
+}
+
+/// Where a curve has no point because both of its pair rest.
+std::string Grid::rest_words() const {
+    if (is_map() || right_ || words().drawn > 0 || !is_of_distance(quantity_)) return "";
+    std::vector<std::string> places;
+    for (std::size_t i = 0; i < groups_[0].x.count; ++i)
+        if (is_at_rest({0, 0, i})) places.push_back(groups_[0].x.words(i));
+    if (places.empty()) return "";
+    return fmt::format("Not drawn: {}, where both pendulums rest in equilibrium.", fmt::join(places, " and "));
+}
+
+void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& figure) const {
+    constexpr double steepest = 15;  // a slope beyond is that of a method without an order of its own
+    std::vector<std::string> slopes, least;
+    for (std::size_t p = 0; p < panel_.count; ++p) {
+        double nearest = NAN;
+        for (std::size_t c = 0; c < color_.count; ++c) {
+            const auto group = p * color_.count + c;
+            for (std::size_t i = 0; i < groups_[group].x.count; ++i) {
+                const double distance = value_at(numbers, {group, 0, i});
+                if (distance > 0) nearest = std::fmin(nearest, distance);
+            }
+            if (const double of = slope(numbers, group); p + 1 == panel_.count && of < steepest)
+                slopes.push_back(fmt::format("{} {:.2f}", color_.is_there() ? color_.words(c) : "", of));
+        }
+        least.push_back(scientific(nearest) + (panel_.is_there() ? " in " + panel_.words(p) : ""));
+    }
+    figure.captions.push_back(
+        fmt::format("The distance falls with the order of each method; slopes{}: {}. The smallest distance is {}.",
+                    panel_.is_there() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
+                    fmt::join(least, " and ")));
+    for (auto& plot : figure.panels) {
+        plot.x = {.label = "step, s (the mean step of adaptive methods)", .logarithmic = true};
+        if (mark_step_)
+            plot.rules.push_back(
+                {Rule::Orientation::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
+    }
+}
+
+/// The limit of linear theory in the map of panel p.
+void Grid::add_limit(std::size_t p, Plot& plot) const {
+    std::vector<Preset> pairs;
+    std::vector<double> y;
+    for (std::size_t row = 0; row < y_.count; ++row) {
+        pairs.push_back(pair_at({p, row, 0}));
+        y.push_back(static_cast<double>(y_.value(row)));
+    }
+    draw_linear_limit(pairs, y, plot);
+}
+
+HeatMap Grid::heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const {
+    HeatMap map = look_;
+    const auto axis = groups_[group].x.plot_axis();
+    map.columns = groups_[group].x.count;
+    map.x_low = *axis.low;
+    map.x_high = *axis.high;
+    map.values.reserve(map.columns * map.rows);
+    for (std::size_t row = 0; row < map.rows; ++row)
+        for (std::size_t column = 0; column < map.columns; ++column) {
+            const double number = at(numbers, {group, row, column})[0];
+            const double shown = words().range && number < words().range->low ? words().range->low : number;
+            map.values.push_back(static_cast<float>(std::isfinite(shown) ? shown : NAN));
+        }
+    return map;
+}
+
+/// What all panels have in common: one scale of colours, and words for cells without a number; then the captions.
+void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const {
+    HeatMap all = look_;
+    for (const auto& plot : figure.panels)
+        all.values.insert(all.values.end(), plot.map->values.begin(), plot.map->values.end());
+    if (std::none_of(all.values.begin(), all.values.end(), [](float cell) { return std::isnan(cell); }))
+        all.none_label = "";
+    const auto spec = measurements().front().flips_in_lanes();
+    long broken = 0;  // flips; where there is none the number is infinite
+    if (spec) for_each_cell([&](const Cell& cell) { broken += std::isnan(at(numbers, cell)[0]); });
+    if (broken > 0) all.none_label += ", or failed";
+    const auto scale = MapScale(all).axis;
+    for (auto& plot : figure.panels) {
+        plot.map->none_label = all.none_label;
+        if (figure.panels.size() > 1) plot.map->low = scale.low, plot.map->high = scale.high;
+    }
+    const auto& plot = figure.panels.front();
+    const bool has_outline = overlay_ == Overlay::energy_bound && shows(plot, plot.curves.front());
+    if (spec)
+        figure.captions.push_back(fmt::format(
+            "{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}.", x_.count, y_.count,
+            is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "",
+            has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance)));
+    if (broken > 0)
+        figure.captions.push_back(
+            fmt::format("{} of the releases failed (no step of 10⁻⁹ s met the tolerance): their cells are empty, as "
+                        "are those without a flip.",
+                        broken));
+    if (quantity_ != Quantity::stability) return;
+    // as many columns as leave methods of either sort rows of their own
+    constexpr std::size_t many = 6, few = 3;
+    const auto stepped = std::count_if(groups_.begin(), groups_.end(), [](const Group& group) {
+        return group.x.is_setting() && !find_method(group.pair.a.integrator)->adaptive;
+    });
+    if (groups_.size() > many) figure.columns = stepped % few == 0 ? few : few + 1;
+    figure.captions.push_back(
+        fmt::format("{}A run has failed if its error exceeds {:g} times the energy released, if it is NaN, or if gauss "
+                    "or rattle do not converge.",
+                    overlay_ == Overlay::linear_limit
+                        ? fmt::format("Dashed: the linear stability limit, where small oscillations gain {:g} times "
+                                      "their energy in {} s; Gauss collocation has none. ",
+                                      blow_up, seconds_text(pair_))
+                        : "",
+                    blow_up));
+}
+
+}  // namespace doppel
