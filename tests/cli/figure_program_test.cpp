@@ -162,7 +162,7 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
     const auto bytes = bytes_of(folder_ / record_);
     const auto other = doppel(folder_, with(long_map, {"--set", "scene.duration_s=0.1", "--progress", "plain"}));
     EXPECT_EQ(other.code, 0) << other.err;
-    EXPECT_TRUE(contains(other.err, "leaves " + record_ + ", of another preset or version")) << other.err;
+    EXPECT_TRUE(contains(other.err, "ignoring " + record_ + ", of another preset or version")) << other.err;
     EXPECT_EQ(bytes_of(folder_ / record_), bytes);
 }
 

@@ -46,7 +46,7 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
         const auto fault =
             error_of([&] { figure_from(system + "[scene]\nkind = \"grid\"\n[grid]\nquantity = \"exponent\"\n" + y); });
         EXPECT_EQ(fault.first, ExitCode::bad_input);
-        EXPECT_NE(fault.second.find("quantity is that of a smooth motion"), std::string::npos) << fault.second;
+        EXPECT_NE(fault.second.find("quantity needs a smooth motion"), std::string::npos) << fault.second;
     }
     // no mass at all
     const auto massless = error_of([&] {
@@ -138,11 +138,11 @@ TEST(FigurePreset, OfASweepSaysWhatItIs) {
              {"fig3-left", "two links in angles, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
              {"fig3-right",
               "two links in angles, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
-             {"fig4-right", "two particles on rods, θ₂ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"},
-             {"fig5-left", "two particles on rods, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
+             {"fig4-right", "two particles with constraints, θ₂ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"},
+             {"fig5-left", "two particles with constraints, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
              {"fig5-right",
-              "two particles on rods, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
-             {"fig8", "three particles on rods, θ₂ = θ₃ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"}})
+              "two particles with constraints, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
+             {"fig8", "three particles with constraints, θ₂ = θ₃ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"}})
         EXPECT_EQ(subtitle_of(name), words) << name;
 }
 

@@ -141,7 +141,7 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
         const auto figure = figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=80", "grid.x.step=5",
                                                      "scene.sample_hz=1", "scene.duration_s=3000", "system.step_s=1",
                                                      fmt::format("system.integrator=\"{}\"", method)});
-        expect_error(ExitCode::method_failed, {"fig2-right: all of the 5 pairs broke down", "a finer step"},
+        expect_error(ExitCode::method_failed, {"fig2-right: all of the 5 pairs failed", "a finer step"},
                      [&] { run_figure(figure, {.out = out}); });
         EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
     }
@@ -149,9 +149,9 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
     const auto alone =
         figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
                                  "system.step_s=1", "system.model=\"mechanism\""});
-    expect_error(ExitCode::method_failed, {"all of the 3 pairs broke down"}, [&] { run_figure(alone, {.out = out}); });
+    expect_error(ExitCode::method_failed, {"all of the 3 pairs failed"}, [&] { run_figure(alone, {.out = out}); });
     for (int i = 1; i <= 2; ++i) run_figure(alone, {.out = out, .shard = Shard{i, 2}});
-    expect_error(ExitCode::method_failed, {"all of the 3 pairs broke down"},
+    expect_error(ExitCode::method_failed, {"all of the 3 pairs failed"},
                  [&] { run_figure(alone, {.out = out, .merge = true}); });
     EXPECT_EQ(names_in(out / "fig2-right").size(), 2u);
 }
@@ -197,7 +197,7 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
          "none of the 4 × 4 pairs has a flip_time: no flip within 20 s"},
         {figure_of("stability", {"grid.panel.values=[\"euler\"]", "grid.y.points=2", "grid.x.points=2",
                                  "grid.x.from=0.5", "grid.x.to=1"}),
-         "all of the 2 × 2 pairs broke down"},
+         "all of the 2 × 2 pairs failed"},
         {figure_of("poincare", {"system.gravity_m_per_s2=1e-12", "section.energy_J=[1e-12]", "section.orbits=2",
                                 "section.exponent_duration_s=10"}),
          "no orbit comes back"},
@@ -207,7 +207,7 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
          "no run of any method"},
         {figure_of("drift", {"series.duration_s=10", "series.methods=[\"rk4\"]", "series.projected=[]",
                              "system.angle_deg=[0, 0]"}),
-         "no method makes an error"}};
+         "no method has an error"}};
     for (const auto& [figure, words] : all) {
         SCOPED_TRACE(words);
         // as one that took its time would have, a record of its trials
@@ -247,7 +247,7 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     const auto bytes = bytes_of(record);
     Said said;
     run_figure(small_sweep(), {.out = out}, said);
-    EXPECT_TRUE(said.has("leaves " + record.string() + ", of another preset or version"));
+    EXPECT_TRUE(said.has("ignoring " + record.string() + ", of another preset or version"));
     EXPECT_EQ(said.notes.size(), 1u);  // nothing of the other part's
     EXPECT_EQ(bytes_of(record), bytes);
     EXPECT_EQ(bytes_of(folder / "fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));

@@ -157,7 +157,7 @@ TEST(FitHorizon, SaysWhatNoneIsWorthAndWhatItUsed) {
     // 1 − 0.05^(1/4) = 0.527
     EXPECT_EQ(horizon_sentence(result),
               "Predictions from 1.1 to 1.9 s of data stay within 0.1 rad to the end of the track, 0.4 to 10.9 s. Of "
-              "the 4 seen for 6.4 s or more none left by then: at 95 % confidence at most 53 % would.");
+              "the 4 that ran for 6.4 s or more, none exceeded it: at 95 % confidence at most 53 % would.");
 }
 
 TEST(FitHorizon, TakesTheMedianOfTimesCutShort) {

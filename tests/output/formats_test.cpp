@@ -292,7 +292,7 @@ TEST(FormatsRefusals, AreMadeBeforeAnyWork) {
     refused({.format = F::apng, .size = small, .fps_numerator = 1, .fps_denominator = 65536}, {"65535", "1/65536"});
     refused({.format = F::mp4, .size = small, .fps_numerator = 0}, {"fps must be > 0; it is 0"});
     refused({.format = F::mp4, .size = small, .transparent = true},
-            {"transparent takes a format with opacity", "the format is \"mp4\""});
+            {"transparent needs a format with opacity", "the format is \"mp4\""});
     refused({.format = F::webm, .codec = "av1", .size = small, .transparent = true}, {"the codec is \"av1\""});
     refused({.format = F::gif, .size = small, .fps_numerator = 25, .transparent = true}, {"the format is \"gif\""});
     refused({.format = F::webm, .size = small, .pixel_format = yuv444, .transparent = true},
