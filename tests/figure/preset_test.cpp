@@ -139,7 +139,8 @@ TEST(FigurePreset, OfASweepSaysWhatItIs) {
              {"fig3-right",
               "two links in angles, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
              {"fig4-right", "two particles with constraints, θ₂ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"},
-             {"fig5-left", "two particles with constraints, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
+             {"fig5-left",
+              "two particles with constraints, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
              {"fig5-right",
               "two particles with constraints, 90°/90°, mass ratios m₁/m₂ apart by 0.01; explicit Euler, 1/30 000 s"},
              {"fig8", "three particles with constraints, θ₂ = θ₃ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"}})

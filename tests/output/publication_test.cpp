@@ -207,7 +207,8 @@ TEST(Publication, IsNotCompletedOverAFileThatSomebodyPutThere) {
     const auto old = bytes_of(folder / "x.mp4");
     write_bytes(folder / "x.mp4", "mine");
     for (int again = 0; again < 2; ++again)
-        expect_error(ExitCode::io_failed, {"x.mp4", "was changed since Doppel wrote it"}, [&] { Transaction next(folder); });
+        expect_error(ExitCode::io_failed, {"x.mp4", "was changed since Doppel wrote it"},
+                     [&] { Transaction next(folder); });
     EXPECT_EQ(bytes_of(folder / "x.mp4"), "mine");
     write_bytes(folder / "x.mp4", old);
     { Transaction next(folder); }
