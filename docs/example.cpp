@@ -77,7 +77,7 @@ void draw(const Bobs<double>& bobs, const Trail& trail, const View& view, Color 
 void run(const char* file) {
     const std::array motions{make_motion(release(90)), make_motion(release(Quad(90'003) / 1000))};
     std::array<Trail, 2> trails;
-    Parting parting;  // when the distance becomes 1 and stays there
+    Divergence parting;  // when the distance becomes 1 and stays there
     const std::atomic<bool> stop = false;
 
     // the outer loop: samples; advance() is the inner loop, of steps

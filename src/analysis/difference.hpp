@@ -57,7 +57,7 @@ private:
 };
 
 /// Finds when a pair that starts as one parts: from when on it is apart for a second of motion without a break.
-class Parting {
+class Divergence {
 public:
     static constexpr double apart_at = 1;                  // state-space distance from which the two count as apart
     static constexpr double together_at = 0.1 * apart_at;  // below it a pair starts as one, and can part

@@ -1,6 +1,6 @@
 #include "analysis/drift.hpp"
 
-#include "analysis/breakdown.hpp"
+#include "analysis/watched_motion.hpp"
 #include "base/clock.hpp"
 #include "integrate/methods.hpp"
 
@@ -103,11 +103,11 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     auto motion = watched(spec);
     long sample = 0;
-    for (std::size_t point = 0; point < times_s.size() && std::isnan(made.broken_at_s); ++point)
+    for (std::size_t point = 0; point < times_s.size() && std::isnan(made.failed_at_s); ++point)
         while (time_of(spec, sample + 1) <= times_s[point]) {
             ++sample;
             if (!motion.advance(stop) || motion.energy_error >= 1 || motion.length_error >= shortest) {
-                made.broken_at_s = time_of(spec, sample);
+                made.failed_at_s = time_of(spec, sample);
                 break;
             }
             made.energy_error[point] = std::fmax(made.energy_error[point], motion.energy_error);
@@ -118,12 +118,12 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
     return made;
 }
 
-Growth growth_of(std::span<const double> times_s, std::span<const double> errors, double broken_at_s) {
+Growth growth_of(std::span<const double> times_s, std::span<const double> errors, double failed_at_s) {
     constexpr double decades = 2, doublings = 2;  // that the fits go back, of time
     std::vector<double> times, log_times, log_errors;
     for (std::size_t i = 0; i < errors.size(); ++i) {
         if (!(errors[i] > 0)) continue;
-        times.push_back(std::fmin(times_s[i], broken_at_s));
+        times.push_back(std::fmin(times_s[i], failed_at_s));
         log_times.push_back(std::log(times.back()));
         log_errors.push_back(std::log(errors[i]));
     }
@@ -138,8 +138,8 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
     using Kind = Growth::Kind;
     // half-way between the powers 0, ½, 1 and 2; no error at all is bounded, too
     growth.kind = p >= 1.5 ? Kind::steeper : p >= 0.75 ? Kind::linear : p >= 0.25 ? Kind::root : Kind::bounded;
-    if (!(broken_at_s > 0)) return growth;
-    return {Kind::breakdown, p, std::log(2) / fitted(times, doublings * std::log(2))};
+    if (!(failed_at_s > 0)) return growth;
+    return {Kind::failed, p, std::log(2) / fitted(times, doublings * std::log(2))};
 }
 
 }  // namespace doppel

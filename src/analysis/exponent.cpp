@@ -187,7 +187,7 @@ Exponent exponent_of(const TangentFlow& flow, const PhysicalPendulum<double>& p,
 
 }  // namespace
 
-void demand_smooth(const PhysicalPendulum<double>& p) {
+void require_smooth(const PhysicalPendulum<double>& p) {
     if (!p.friction.coulomb.empty())
         throw bad_input(
             "Lyapunov exponents need a smooth motion; with Coulomb friction (joint_coulomb_N_m) joints stick and slip");
@@ -203,7 +203,7 @@ Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, c
 }
 
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
-    demand_smooth(p);
+    require_smooth(p);
     return exponent_of(flow_of(p), p, spec, stop);
 }
 

@@ -37,13 +37,13 @@ inline bool is_regular(const Exponent& exponent) {
 /// One released at an equilibrium, at rest and all links upright or hanging to rounding (or g = 0), stays there: its
 /// exponent is the greatest real part of the eigenvalues of the linearised equations.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
-/// Errors  exit 2 where joints have Coulomb friction (demand_smooth()), exit 3 where dop853 fails, exit 130 soon
+/// Errors  exit 2 where joints have Coulomb friction (require_smooth()), exit 3 where dop853 fails, exit 130 soon
 ///         after `stop` is set.
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 
 /// Throws Error (exit 2) where joints have Coulomb friction: they come to rest and let go again, where the motion has no
 /// tangents.
-void demand_smooth(const PhysicalPendulum<double>& p);
+void require_smooth(const PhysicalPendulum<double>& p);
 
 }  // namespace doppel

@@ -1,6 +1,6 @@
 #include "analysis/reference.hpp"
 
-#include "analysis/breakdown.hpp"
+#include "analysis/watched_motion.hpp"
 #include "base/error.hpp"
 
 #include <algorithm>

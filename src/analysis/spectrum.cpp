@@ -130,7 +130,7 @@ std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p,
     constexpr std::size_t most_links = 4;
     const std::size_t links = p.chain.links();
     if (links > most_links) throw bad_input("a spectrum is for 1 to {} links; there are {}", most_links, links);
-    demand_smooth(p);
+    require_smooth(p);
     return links <= 2 ? estimates<4>(p, spec, stop) : estimates<2 * most_links>(p, spec, stop);
 }
 

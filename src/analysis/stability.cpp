@@ -1,6 +1,6 @@
 #include "analysis/stability.hpp"
 
-#include "analysis/breakdown.hpp"
+#include "analysis/watched_motion.hpp"
 #include "base/error.hpp"
 #include "integrate/adams.hpp"
 #include "integrate/batch.hpp"
@@ -65,7 +65,7 @@ double adams_amplitude(double z, long steps) {
 
 /// Takes the error of one sample in; NaN stays.
 void take(double error, double& greatest) {
-    greatest = error <= blow_up ? std::max(greatest, error) : NAN;
+    greatest = error <= failure_error ? std::max(greatest, error) : NAN;
 }
 
 /// By a method that steps them in lanes.

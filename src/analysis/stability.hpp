@@ -34,13 +34,13 @@ std::vector<Mode> small_oscillations(const Pendulum<double>& pendulum);
 std::optional<double> step_limit(std::string_view method, std::span<const Mode> modes, double seconds, double times);
 
 /// Energy is compared with what a release has above hanging at rest. An error beyond so many times counts as a failure.
-inline constexpr double blow_up = 100;
+inline constexpr double failure_error = 100;
 
 /// The energy of a release above hanging at rest, J.
 double released_energy(const Pendulum<double>& release);
 
 /// The greatest error of the energy at the first samples of a motion as `spec` has it of another chain, for each release: of
-/// the energy released; not a number for a failed run: an error beyond `blow_up`, NaN, or a method that gives up.
+/// the energy released; not a number for a failed run: an error beyond `failure_error`, NaN, or a method that gives up.
 /// The releases have the same number of links. Throws Error: exit 2 where the method does not serve the model, exit 130
 /// soon after `stop` is set.
 std::vector<double> greatest_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,

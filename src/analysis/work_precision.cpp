@@ -1,6 +1,6 @@
 #include "analysis/work_precision.hpp"
 
-#include "analysis/breakdown.hpp"
+#include "analysis/watched_motion.hpp"
 #include "base/clock.hpp"
 #include "integrate/methods.hpp"
 
@@ -34,22 +34,22 @@ public:
         return problem_.duration() / static_cast<double>(spec_.steps_per_sample);
     }
 
-    Rung rung(const Reference& reference, const LadderSpec& spec, const std::atomic<bool>& stop) const {
-        Rung rung{.setting = setting()};
+    StepResult outcome(const Reference& reference, const StepStudySpec& spec, const std::atomic<bool>& stop) const {
+        StepResult outcome{.setting = setting()};
         const auto motion = made();
-        const Proportion proportion(motion->observe(), problem_.energy_unit, problem_.size);
+        const ErrorScale proportion(motion->observe(), problem_.energy_unit, problem_.size);
         bool ends = false;
         const double first_s = cpu_of([&] { ends = advanced(*motion, stop); });
-        rung.evaluations = static_cast<double>(motion->effort().evaluations);
-        rung.steps = static_cast<double>(motion->effort().steps);
-        if (!ends) return rung;
+        outcome.evaluations = static_cast<double>(motion->effort().evaluations);
+        outcome.steps = static_cast<double>(motion->effort().steps);
+        if (!ends) return outcome;
         const auto end = motion->observe();
-        if (!proportion.holds(end) || (spec.watched && !external_ && !is_sound(rung, stop))) return rung;
+        if (!proportion.holds(end) || (spec.watched && !external_ && !is_sound(outcome, stop))) return outcome;
         const double off = ErrorMeasure{problem_.has_angles(), problem_.size}.distance(end, reference.end);
-        if (!std::isfinite(off)) return rung;
-        rung.error = off;
-        if (spec.timed) rung.cpu_s = timed(first_s, stop);
-        return rung;
+        if (!std::isfinite(off)) return outcome;
+        outcome.error = off;
+        if (spec.timed) outcome.cpu_s = timed(first_s, stop);
+        return outcome;
     }
 
 private:
@@ -59,7 +59,7 @@ private:
     }
 
     /// The worst errors of energy and lengths, as seen some 240 times on the way. False where the run fails.
-    bool is_sound(Rung& rung, const std::atomic<bool>& stop) const {
+    bool is_sound(StepResult& outcome, const std::atomic<bool>& stop) const {
         long samples = 240;
         auto spec = spec_;
         if (const long steps = spec.steps_per_sample; steps > 0) {
@@ -77,8 +77,8 @@ private:
             energy = std::max(energy, motion.energy_error);
             length = std::max(length, motion.length_error);
         }
-        rung.energy_error = problem_.conserves_energy ? energy : NAN;
-        rung.length_error = length;
+        outcome.energy_error = problem_.conserves_energy ? energy : NAN;
+        outcome.length_error = length;
         return true;
     }
 
@@ -137,8 +137,8 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& reference, const Solver& solver,
-                             const LadderSpec& spec, const std::atomic<bool>& stop) {
+std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
+                                       const StepStudySpec& spec, const std::atomic<bool>& stop) {
     double best = std::numeric_limits<double>::infinity();
     long since_best = 0;
     // finer settings no longer help
@@ -149,47 +149,48 @@ std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& refere
         best = std::fmin(best, error);
         return best < near * reference.floor() ? since_best >= patience : best < useful && since_best >= long_patience;
     };
-    std::vector<Rung> rungs;
+    std::vector<StepResult> outcomes;
     for (const auto& trial : trials_of(problem, solver, spec.most_evaluations)) {
-        const auto& rung = rungs.emplace_back(trial.rung(reference, spec, stop));
-        const bool enough = std::numbers::sqrt2 * rung.evaluations > static_cast<double>(spec.most_evaluations);
-        if (enough || rung.error < spec.least_error || is_at_floor(rung.error)) break;
+        const auto& outcome = outcomes.emplace_back(trial.outcome(reference, spec, stop));
+        const bool enough = std::numbers::sqrt2 * outcome.evaluations > static_cast<double>(spec.most_evaluations);
+        if (enough || outcome.error < spec.least_error || is_at_floor(outcome.error)) break;
     }
-    if (solver.is_study() && std::none_of(rungs.begin(), rungs.end(), [](auto& r) { return r.is_study(); })) {
+    if (solver.is_study() && std::none_of(outcomes.begin(), outcomes.end(), [](auto& r) { return r.is_study(); })) {
         const long steps = std::lround(problem.duration() / study_step);
-        rungs.push_back(Trial(problem, solver, steps, 0).rung(reference, spec, stop));
+        outcomes.push_back(Trial(problem, solver, steps, 0).outcome(reference, spec, stop));
     }
-    if (rungs.empty()) rungs.emplace_back();
-    return rungs;
+    if (outcomes.empty()) outcomes.emplace_back();
+    return outcomes;
 }
 
-Ladder merged(const Solver& solver, const std::vector<std::vector<Rung>>& repeats) {
-    Ladder ladder{solver, repeats.front()};
-    for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
-        auto& rung = ladder.rungs[i];
+StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>>& repeats) {
+    StepStudy ladder{solver, repeats.front()};
+    for (std::size_t i = 0; i < ladder.outcomes.size(); ++i) {
+        auto& outcome = ladder.outcomes[i];
         std::vector<double> times;
-        for (const auto& rungs : repeats)
-            if (i < rungs.size() && std::isfinite(rungs[i].cpu_s)) times.push_back(rungs[i].cpu_s);
-        if (times.empty() || rung.failed()) continue;  // the repeats do not look on the way
+        for (const auto& outcomes : repeats)
+            if (i < outcomes.size() && std::isfinite(outcomes[i].cpu_s)) times.push_back(outcomes[i].cpu_s);
+        if (times.empty() || outcome.failed()) continue;  // the repeats do not look on the way
         std::sort(times.begin(), times.end());
-        rung.cpu_s = quantile(times, 0.5);
-        rung.spread = (quantile(times, 0.75) - quantile(times, 0.25)) / 2 / rung.cpu_s;
+        outcome.cpu_s = quantile(times, 0.5);
+        outcome.spread = (quantile(times, 0.75) - quantile(times, 0.25)) / 2 / outcome.cpu_s;
     }
     return ladder;
 }
 
-std::vector<Rung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range) {
-    std::vector<Rung> points;
-    for (const auto& [solver, rungs] : ladders)
-        for (std::size_t i = 0; i < rungs.size(); ++i) {
-            const double error = rungs[i].error;
-            const bool is_lucky = i + 1 < rungs.size() && error > range.least && !(rungs[i + 1].error <= 2 * error);
-            if (error <= range.most && rungs[i].cost(cost) > 0 && !is_lucky) points.push_back(rungs[i]);
+std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, const ErrorRange& range) {
+    std::vector<StepResult> points;
+    for (const auto& [solver, outcomes] : ladders)
+        for (std::size_t i = 0; i < outcomes.size(); ++i) {
+            const double error = outcomes[i].error;
+            const bool is_lucky =
+                i + 1 < outcomes.size() && error > range.least && !(outcomes[i + 1].error <= 2 * error);
+            if (error <= range.most && outcomes[i].cost(cost) > 0 && !is_lucky) points.push_back(outcomes[i]);
         }
     std::stable_sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
         return std::pair(a.cost(cost), a.error) < std::pair(b.cost(cost), b.error);
     });
-    std::vector<Rung> front;
+    std::vector<StepResult> front;
     for (const auto& point : points) {
         if (!front.empty() && front.back().error <= range.least) break;
         if (front.empty() || point.error < front.back().error) front.push_back(point);
@@ -197,23 +198,24 @@ std::vector<Rung> front_of(std::span<const Ladder> ladders, Cost cost, const Err
     return front;
 }
 
-Cheapest cheapest(std::span<const Ladder> ladders, Cost cost, double error,
+Cheapest cheapest(std::span<const StepStudy> ladders, Cost cost, double error,
                   const std::function<bool(const Solver&)>& counts) {
     Cheapest best;
     for (const auto& ladder : ladders) {
-        const auto& rungs = ladder.rungs;
+        const auto& outcomes = ladder.outcomes;
         if (!counts(ladder.solver)) continue;
-        for (std::size_t i = 0; i < rungs.size(); ++i) {
-            const bool holds = rungs[i].error <= error && (i + 1 == rungs.size() || rungs[i + 1].error <= error);
-            const double value = rungs[i].cost(cost);
+        for (std::size_t i = 0; i < outcomes.size(); ++i) {
+            const bool holds =
+                outcomes[i].error <= error && (i + 1 == outcomes.size() || outcomes[i + 1].error <= error);
+            const double value = outcomes[i].cost(cost);
             if (holds && value > 0 && value < best.cost) best = {&ladder, value};
         }
     }
     return best;
 }
 
-std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cost) {
-    const auto wins = [&](const Ladder& ladder) {
+std::vector<const StepStudy*> best_models(std::span<const StepStudy> ladders, Cost cost) {
+    const auto wins = [&](const StepStudy& ladder) {
         constexpr int decades = 13;
         const auto same_method = [&](const Solver& solver) { return solver.name() == ladder.solver.name(); };
         int count = 0;
@@ -224,9 +226,9 @@ std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cos
         }
         return count;
     };
-    std::vector<const Ladder*> best;
+    std::vector<const StepStudy*> best;
     for (const auto& ladder : ladders)
-        if (std::none_of(ladders.begin(), ladders.end(), [&](const Ladder& other) {
+        if (std::none_of(ladders.begin(), ladders.end(), [&](const StepStudy& other) {
                 return other.solver.name() == ladder.solver.name() &&
                        std::pair(wins(other), &ladder) > std::pair(wins(ladder), &other);
             }))
@@ -234,11 +236,11 @@ std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cos
     return best;
 }
 
-std::vector<std::string> ranked(std::span<const std::vector<Ladder>> problems, Cost cost,
+std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems, Cost cost,
                                 std::span<const double> errors, bool external) {
     std::vector<std::string> names;
     for (const auto& ladders : problems)
-        for (const auto& [solver, rungs] : ladders)
+        for (const auto& [solver, outcomes] : ladders)
             if ((solver.external != nullptr) == external &&
                 std::find(names.begin(), names.end(), solver.name()) == names.end())
                 names.push_back(solver.name());
@@ -257,7 +259,7 @@ std::vector<std::string> ranked(std::span<const std::vector<Ladder>> problems, C
     return names;
 }
 
-std::pair<double, double> time_spread(std::span<const std::vector<Ladder>> problems) {
+std::pair<double, double> time_spread(std::span<const std::vector<StepStudy>> problems) {
     std::vector<double> spreads;
     for (const auto& ladders : problems)
         for (const auto& ladder : ladders)

@@ -54,8 +54,8 @@ inline constexpr double study_step = 1.0 / 30000;  // s
 enum class Cost { time, evaluations };
 
 /// What one setting of a method came to; NaN where a number could not be had. A run has failed that gives up, is no
-/// longer finite, or whose energy or rods are out of all proportion (analysis/breakdown.hpp).
-struct Rung {
+/// longer finite, or whose energy or rods are out of all proportion (analysis/watched_motion.hpp).
+struct StepResult {
     double setting = NAN;  // step, s, or tolerance
     double error = NAN;    // at the end: of the worst angle, rad, or the worst place, of the size
     double energy_error = NAN, length_error = NAN;  // the worst on the way: relative; m
@@ -69,7 +69,7 @@ struct Rung {
     double cost(Cost of) const { return of == Cost::time ? cpu_s : evaluations; }
 };
 
-struct LadderSpec {
+struct StepStudySpec {
     long most_evaluations;  // of a setting
     double least_error;     // at which the study ends
     bool timed = false;
@@ -81,17 +81,17 @@ struct LadderSpec {
 /// many evaluations; never because of the time. The study's step is always among it. A setting that fails has no
 /// numbers. CPU times are those of the thread for the whole motion, without setting it up, after a run that warms the
 /// caches; short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
-std::vector<Rung> run_ladder(const WorkProblem& problem, const Reference& reference, const Solver& solver,
-                             const LadderSpec& spec, const std::atomic<bool>& stop);
+std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
+                                       const StepStudySpec& spec, const std::atomic<bool>& stop);
 
 /// A solver's settings on a problem.
-struct Ladder {
+struct StepStudy {
     Solver solver;
-    std::vector<Rung> rungs;
+    std::vector<StepResult> outcomes;
 };
 
 /// The step-size study of several repeats, the first of which has everything.
-Ladder merged(const Solver& solver, const std::vector<std::vector<Rung>>& repeats);
+StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>>& repeats);
 
 /// The range of errors shown; what is below `least` is at the floor.
 struct ErrorRange {
@@ -100,27 +100,27 @@ struct ErrorRange {
 
 /// Of step-size studies of one problem the settings that no cheaper one beats, cheapest first, until one is at the floor. A setting whose
 /// next finer one errs more than twice as much was lucky and does not count.
-std::vector<Rung> front_of(std::span<const Ladder> ladders, Cost cost, const ErrorRange& range);
+std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, const ErrorRange& range);
 
 /// The step-size study that takes the least to err by no more than `error`: by the cheapest setting that does so, and whose next finer
 /// one does, too, for now and then a coarse one is lucky.
 struct Cheapest {
-    const Ladder* ladder = nullptr;  // none does; of equals the first
+    const StepStudy* ladder = nullptr;  // none does; of equals the first
     double cost = std::numeric_limits<double>::infinity();
 };
 /// Of step-size studies of one problem, by the solvers that count.
-Cheapest cheapest(std::span<const Ladder> ladders, Cost cost, double error,
+Cheapest cheapest(std::span<const StepStudy> ladders, Cost cost, double error,
                   const std::function<bool(const Solver&)>& counts);
 
 /// Of each method on a problem the model that is the cheapest at most powers of ten of the error; of equals the first.
-std::vector<const Ladder*> best_models(std::span<const Ladder> ladders, Cost cost);
+std::vector<const StepStudy*> best_models(std::span<const StepStudy> ladders, Cost cost);
 
 /// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems, whose
 /// step-size studies these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the first.
-std::vector<std::string> ranked(std::span<const std::vector<Ladder>> problems, Cost cost,
+std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems, Cost cost,
                                 std::span<const double> errors, bool external);
 
 /// Median and greatest spread of the CPU times of all useful settings; NaN where there are none.
-std::pair<double, double> time_spread(std::span<const std::vector<Ladder>> problems);
+std::pair<double, double> time_spread(std::span<const std::vector<StepStudy>> problems);
 
 }  // namespace doppel

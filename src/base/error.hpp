@@ -47,7 +47,7 @@ Error bad_input(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::bad_input, fmt::format(format, std::forward<Args>(args)...)};
 }
 
-/// The method broke down: a blow-up, NaN (exit 3).
+/// The method failed: divergence, NaN (exit 3).
 template <class... Args>
 Error method_failed(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::method_failed, fmt::format(format, std::forward<Args>(args)...)};

@@ -10,8 +10,8 @@
 namespace doppel {
 namespace {
 
-/// How the twin is stepped while its start is fitted: as the preset has it, or by series where it asks for an accuracy.
-MotionSpec twin_motion(SideSpec twin, const Rational& sample_hz) {
+/// How the other pendulum is integrated while its start is fitted: as the preset has it, or by series where it requires an accuracy.
+MotionSpec simulated_motion(SideSpec twin, const Rational& sample_hz) {
     if (twin.accuracy) {
         twin.accuracy.reset();
         twin.integrator = "taylor";
@@ -47,7 +47,7 @@ std::vector<Override> beside_overrides(const PresetText& text, const std::vector
     if (preset.duration_s.value() > replay.length())
         add("scene.duration_s", toml_ratio(longest_duration(replay, preset.sample_hz)));
     if (is_given("b.angle_deg") || is_given("b.omega_deg_per_s")) return all;
-    const auto start = fit_start(twin_motion(preset.b, preset.sample_hz), replay, stop);
+    const auto start = fit_start(simulated_motion(preset.b, preset.sample_hz), replay, stop);
     add("a.track.offset_deg", degrees_list(start.offset));
     add("b.angle_deg", degrees_list(start.angle));
     add("b.omega_deg_per_s", degrees_list(start.rate));

@@ -62,7 +62,7 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
         say(fmt::format("error at most {} {} to the end; verified by {}", scientific(side.choice->estimated_error),
                         unit, side.choice->reference->description()));
     else if (seen.error_s < scene.time(scene.samples))
-        say(off_words(side, seen.error_s));
+        say(error_words(side, seen.error_s));
     else
         say(fmt::format("error about {} {} at the end", scientific(seen.error), unit));
     if (seen.exponent) {
@@ -204,7 +204,7 @@ Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
     };
     json["forecast"] = forecast ? forecast_json(scene, side, *forecast) : Json(nullptr);
     if (forecast && !side.choice && forecast->error_s < scene.time(scene.samples))
-        warn(off_words(side, forecast->error_s));
+        warn(error_words(side, forecast->error_s));
     if (forecast && forecast->exponent && forecast->kind == Forecast::Kind::chaotic && !forecast->exponent->is_settled)
         warn(unsettled_words);
     if (side.choice) json["other_accuracies"] = rivals;

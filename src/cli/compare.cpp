@@ -37,7 +37,7 @@ std::string difference_name(const fs::path& actual) {
 
 constexpr const char* maker = "Doppel compare";  // of every difference picture
 
-/// What an earlier comparison left, and it alone, is no news beside a picture that passes.
+/// What an earlier comparison left, and it alone, is removed beside a picture that passes.
 void remove_difference(const fs::path& folder, const std::string& name) {
     if (std::error_code ignored; made_by(folder / name, maker)) fs::remove(folder / name, ignored);
 }

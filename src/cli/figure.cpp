@@ -102,7 +102,7 @@ void make_figures(const FigureCommandOptions& options) {
         replacing.inputs.emplace_back(preset.path);
     }
     if (options.tiles)
-        for (const auto& figure : figures) demand_map(figure);
+        for (const auto& figure : figures) require_map(figure);
     if (options.out == "-" && (options.tiles || options.merge || !options.shard.empty()))
         throw bad_input("-o -: standard output takes one picture, and no {}", options.tiles ? "tiles"
                                                                               : options.merge

@@ -80,7 +80,7 @@ std::string first_lines(const fs::path& file, std::string_view kind) {
 /// [a] or [b].
 std::string side_lines(std::string_view side, std::string_view kind) {
     auto text = fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", side);
-    // the twins of a grid differ in the key of x
+    // the pairs of a grid differ in the key of x
     if (side == "b" && kind != "grid") text += "angle_deg = [90.003, 90]\n";
     return kind == pair_kind ? text + table_lines(side_text_table(), kind) : text;
 }

@@ -94,7 +94,7 @@ void list_methods() {
                    method.title, method.properties);
 }
 
-/// As it is into a file; a terminal gets lines that it can but show.
+/// As it is into a file; a terminal gets sanitised lines.
 void show(const std::string& text) {
     if (!isatty(STDOUT_FILENO)) return write_out(text);
     std::istringstream lines(text);

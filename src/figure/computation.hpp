@@ -18,7 +18,7 @@ struct FigureProgress {
 /// Progress of a figure. Called by any thread, one at a time for one figure.
 struct ComputationReport {
     std::function<void(const FigureProgress&)> progress;
-    std::function<void(const std::string& sentence)> note;  // what it will take; what it goes on from
+    std::function<void(const std::string& sentence)> note;  // what it will take; what it resumes from
 };
 
 /// The unknown trials of a part of a figure, in groups for threads to take, and the file that records them once the

@@ -25,7 +25,7 @@ constexpr std::array looks{GrowthLook{Growth::Kind::bounded, "stays bounded", ""
                            GrowthLook{Growth::Kind::root, "grows like √t", " ∝ √t", 2},
                            GrowthLook{Growth::Kind::linear, "grows linearly", " ∝ t", 0},
                            GrowthLook{Growth::Kind::steeper, "grows like t²", " ∝ t²", 3},
-                           GrowthLook{Growth::Kind::breakdown, "breaks down", "", 6}};
+                           GrowthLook{Growth::Kind::failed, "breaks down", "", 6}};
 
 const GrowthLook& look_of(const Growth& growth) {
     return *std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.kind == growth.kind; });
@@ -129,9 +129,9 @@ public:
                 const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
                 all.push_back({quantity + "growth", std::string(look_of(found).words)});
                 all.push_back({quantity + "exponent", found.exponent});
-                if (run.broken_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
+                if (run.failed_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
             }
-            if (run.broken_at_s > 0) all.push_back({name + "_broken_at_s", run.broken_at_s});
+            if (run.failed_at_s > 0) all.push_back({name + "_broken_at_s", run.failed_at_s});
         }
         return all;
     }
@@ -177,10 +177,10 @@ private:
         return {row_of<DriftCost>(trial), {energy, rods}, {rods, trial.end()}};
     }
 
-    /// Of a point, or of the breakdown that came before it, s.
-    double time(const DriftRun& run, std::size_t point) const { return std::fmin(times_s_[point], run.broken_at_s); }
+    /// Of a point, or of the failure that came before it, s.
+    double time(const DriftRun& run, std::size_t point) const { return std::fmin(times_s_[point], run.failed_at_s); }
     Growth growth(const DriftRun& run, bool of_rods) const {
-        return growth_of(times_s_, worst_so_far(of_rods ? run.length_error : run.energy_error), run.broken_at_s);
+        return growth_of(times_s_, worst_so_far(of_rods ? run.length_error : run.energy_error), run.failed_at_s);
     }
 
     /// The energy in the best model that a method serves; the rods in all that have any.
@@ -198,14 +198,14 @@ private:
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
             const auto end = [&](std::size_t r) {
-                return std::fmin(times_s_.back(), row_of<DriftCost>(numbers[r]).broken_at_s);
+                return std::fmin(times_s_.back(), row_of<DriftCost>(numbers[r]).failed_at_s);
             };
             return end(one) > end(other);
         });
         return order;
     }
 
-    /// A line, and a mark where it breaks down.
+    /// A line, and a mark where it fails.
     void add_curves(const DriftRun& run, const std::string& name, bool of_rods, Plot& plot) const {
         const auto found = growth(run, of_rods);
         const auto& look = look_of(found);
@@ -217,7 +217,7 @@ private:
             add_point(curve, time(run, i), errors[i]);
         }
         if (curve.x.empty()) return;
-        if (found.kind == Growth::Kind::breakdown)
+        if (found.kind == Growth::Kind::failed)
             plot.curves.push_back(
                 {.x = {curve.x.back()}, .y = {curve.y.back()}, .mark = Mark::points, .hue = curve.hue});
         plot.curves.push_back(std::move(curve));
@@ -229,7 +229,7 @@ private:
         bool breaks = false;
         for (std::size_t run = 0; run < runs_.size(); ++run) {
             const auto kind = growth(run_of(numbers[run]), false).kind;
-            breaks |= kind == Growth::Kind::breakdown;
+            breaks |= kind == Growth::Kind::failed;
             if (shows(run, false) && kind == Growth::Kind::bounded) bounded.push_back(curve_words(run));
         }
         return fmt::format("{}; ∝ tells how the others grow{}.",

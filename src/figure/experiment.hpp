@@ -119,7 +119,7 @@ public:
     virtual std::string unit() const { return "trials"; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 
-    /// Trials first, first + 1 … one for each of `numbers`. Throws Error: exit 3 where a method breaks down and nothing
+    /// Trials first, first + 1 … one for each of `numbers`. Throws Error: exit 3 where a method fails and nothing
     /// is left to show, exit 130 soon after `stop` is set.
     virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = compute_trial(first + i, stop);
@@ -133,14 +133,14 @@ public:
     virtual std::vector<std::string> columns() const = 0;
     virtual void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const = 0;
 
-    /// Why there is nothing to draw, as where every trial broke down; nothing where there is.
+    /// Why there is nothing to draw, as where every trial failed; nothing where there is.
     virtual std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> /*numbers*/) const { return {}; }
 
     /// The panels (or the page), and captions that hold numbers just found. Titles are there already.
     virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
     virtual std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const = 0;
 
-    /// What a picture says below its title where the preset has no subtitle: what moves, and how it is stepped.
+    /// What a picture says below its title where the preset has no subtitle: what moves, and how it is integrated.
     virtual std::string subtitle() const { return {}; }
 
     /// Of a figure of maps: its panels each draw one; nothing of other figures.

@@ -51,7 +51,7 @@ void Grid::check(const TomlReader& table) const {
     if (x_.is_of_one_side && difference_ != 0)
         throw table.fault("difference", "must be 0 for {}, in which the sides do not differ", x_.key);
     for (const auto& end : {x_.value(0), x_.value(x_.count - 1)})
-        x_.demand(table, "difference", Quad(end + difference_));
+        x_.require(table, "difference", Quad(end + difference_));
     if (is_map() && color_.is_there()) throw table.fault("color", "is of curves; the colours of a map are its numbers");
     if (is_map() && right_) throw table.fault("right", "is of curves; a map has one quantity");
     if (right_ == name_of(quantity_) || right_ == name_of(Quantity::stroboscopic))
@@ -86,20 +86,20 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     std::vector<TomlReader*> more;
     for (auto& level : levels) more.push_back(&level);
     auto& group = groups_.emplace_back(Group{levels.empty() ? pair_ : reader.pair(more), x_, 0, {}});
-    panel_.demand_in(table, "panel", group.pair);
+    panel_.require_in(table, "panel", group.pair);
     panel_.put(group.pair, p);
-    color_.demand_in(table, "color", group.pair);
+    color_.require_in(table, "color", group.pair);
     color_.put(group.pair, c);
     group.x.settle(group.pair);
-    x_.demand_in(table, "x", group.pair);
-    y_.demand_in(table, "y", group.pair);
+    x_.require_in(table, "x", group.pair);
+    y_.require_in(table, "y", group.pair);
     const auto number = groups_.size() - 1;
     if (!x_.is_of_method && !y_.is_of_method) step_all_alike(group.pair, pair_at({number, 0, 0}), reader.stop);
     const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
     const auto measure = [&](std::string_view key, Quantity quantity) {
         group.measurements.emplace_back(table, key, quantity, first, x_.keeps_method && y_.keeps_method, options_);
-        demand_apart(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
-        if (quantity == Quantity::stroboscopic) demand_drive(table, key, options_.stroboscope, last.a);
+        require_apart(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
+        if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, last.a);
     };
     measure("quantity", quantity_);
     if (right_) measure("right", value_named<Quantity>(*right_));
@@ -136,13 +136,13 @@ void Grid::make_map() {
     if (range_) look_.low = range_->low, look_.high = range_->high;
 }
 
-/// What moves, how it is stepped and how far the two of a pair are apart, of pairs that are alike but for the axes.
+/// What moves, how it is integrated and how far the two of a pair are apart, of pairs that are alike but for the axes.
 void Grid::make_subtitle() {
     Varied varied{.method = words().method};
     auto pair = groups_.front().pair;
     if (words().is_of_side_a) pair.b = pair.a;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
-        axis->put_both(pair);  // the difference of all twins is named on its own
+        axis->put_both(pair);  // the difference of all pairs is named on its own
         if (axis->angle) varied.angles.push_back(*axis->angle);
         varied.step |= axis->is_of_method;
         varied.keys.push_back(axis->key);

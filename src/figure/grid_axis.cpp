@@ -19,7 +19,7 @@ std::string unquoted(const std::string& text) {
 }
 
 /// One side may say otherwise what the key says of both. A resolved preset has all keys in both.
-void demand_last_word(FigureReader& reader, const TomlReader& table, const std::string& path) {
+void require_last_word(FigureReader& reader, const TomlReader& table, const std::string& path) {
     const auto key = path.substr(path.find('.') + 1);
     const auto has = [&](const char* side) { return reader.document.table(reader.top, side).has(key); };
     for (const auto* side : {"a", "b"})
@@ -99,13 +99,13 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
     if (!is_all && key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
     if (!is_all && !key.starts_with("system.") && !key.starts_with("a.") && !key.starts_with("b."))
         throw table.fault("key", "must begin with \"system.\", \"a.\" or \"b.\"; it is \"{}\"", key);
-    if (!is_all) demand_last_word(reader, table, key);
+    if (!is_all) require_last_word(reader, table, key);
     label = is_all ? key : caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
     keeps_method = false;
     count = values->texts.size();
     const auto origin = fmt::format("{}: {} values", table.place("values"), key);
     for (const auto& text : values->texts) {
-        table.demand_drawable("values", text);
+        table.require_drawable("values", text);
         auto keys = fmt::format("{} = {}\n", key, text);
         if (is_all && !text.starts_with('{'))
             throw table.fault("values", "must be tables of keys of [system], {{ integrator = \"rk4\" }}; one is {}",
@@ -126,9 +126,9 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
     if (release_ == releases.end()) {
         release_ = nullptr;
         const auto& number = number_.emplace(table, "key", key == "links" ? "system.links" : key, pair);
-        table.demand_drawable("key", number.label);  // an entry's name may have other letters
+        table.require_drawable("key", number.label);  // an entry's name may have other letters
         if (!number.element && number.inside.find('.') == std::string::npos)
-            demand_last_word(reader, table, number.path);
+            require_last_word(reader, table, number.path);
         label = number.label;
         bounds_ = number.bounds;
         is_of_method = !number.keeps_method && !number.is_whole;
@@ -137,7 +137,7 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
         if (number.inside == "angle_deg") angle = number.element;
         return;
     }
-    demand_in(table, "key", pair);
+    require_in(table, "key", pair);
     constexpr double most_degrees = 1e6;  // as of [system] angle_deg
     label = release_->label;
     bounds_ = release_->is_ratio ? positive : from_to(-most_degrees, most_degrees);
@@ -145,7 +145,7 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
     if (!release_->is_ratio) angle = release_->links - 1;
 }
 
-void GridAxis::demand_in(const TomlReader& table, std::string_view of, const Preset& pair) const {
+void GridAxis::require_in(const TomlReader& table, std::string_view of, const Preset& pair) const {
     if (number_) NumericKey(table, of, number_->path, pair);
     if (!release_) return;
     for (const auto* side : {&pair.a, &pair.b})
@@ -157,7 +157,7 @@ void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
     if (are_cells && values)
         throw table.fault("values", "are of curves and panels; the cells of a map go from `from` to `to`");
     if (values) {
-        for (const auto& text : values->texts) demand(table, "values", numbers_.emplace_back(parse_quad(text)));
+        for (const auto& text : values->texts) require(table, "values", numbers_.emplace_back(parse_quad(text)));
         count = numbers_.size();
     } else {
         find_even_values(table);
@@ -177,8 +177,8 @@ void GridAxis::find_even_values(const TomlReader& table) {
     if (is_logarithmic && !(from > 0))
         throw table.fault("from", "must be > 0 for equal ratios; it is {}", text_of(from));
     count = points ? static_cast<std::size_t>(*points) : even_steps(table) + (are_cells ? 0 : 1);
-    demand(table, "from", are_cells ? even_value(0) : from);
-    demand(table, "to", are_cells ? even_value(count - 1) : to);
+    require(table, "from", are_cells ? even_value(0) : from);
+    require(table, "to", are_cells ? even_value(count - 1) : to);
     for (std::size_t i = 0; i < count; ++i) numbers_.push_back(even_value(i));
 }
 
@@ -282,7 +282,7 @@ std::string GridAxis::apart(const Quad& difference) const {
     return fmt::format("{} apart by {} {}", label.substr(0, comma), far, label.substr(comma + 2));
 }
 
-void GridAxis::demand(const TomlReader& table, std::string_view of, const Quad& number) const {
+void GridAxis::require(const TomlReader& table, std::string_view of, const Quad& number) const {
     if (number_ && number_->is_whole && number != round(number))
         throw table.fault(of, "must be a whole number, as {} is; it is {}", key, text_of(number));
     const bool is_above = bounds_.is_open || bounds_.is_positive;

@@ -61,9 +61,9 @@ struct GridAxis {
     /// What two of a pair are called that are so much apart: "pair 0.003° apart"; empty for 0.
     std::string apart(const Quad& difference) const;
     /// Throws Error (exit 2), of the table's key `of`, where a pair has no such key.
-    void demand_in(const TomlReader& table, std::string_view of, const Preset& pair) const;
+    void require_in(const TomlReader& table, std::string_view of, const Preset& pair) const;
     /// The same where the number is out of range.
-    void demand(const TomlReader& table, std::string_view of, const Quad& number) const;
+    void require(const TomlReader& table, std::string_view of, const Quad& number) const;
 
 private:
     void find_texts(FigureReader& reader, const TomlReader& table);

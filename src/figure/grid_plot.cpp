@@ -200,9 +200,9 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
                     overlay_ == Overlay::linear_limit
                         ? fmt::format("Dashed: the linear stability limit, where small oscillations gain {:g} times "
                                       "their energy in {} s; Gauss collocation has none. ",
-                                      blow_up, seconds_text(pair_))
+                                      failure_error, seconds_text(pair_))
                         : "",
-                    blow_up));
+                    failure_error));
 }
 
 }  // namespace doppel

@@ -62,7 +62,7 @@ Preset film_named(const std::string& name, const TomlReader& table) {
             throw table.fault("scene", "cannot be taken: {}", fault.what());
         }
     }();
-    table.demand_drawable("scene", source.name);
+    table.require_drawable("scene", source.name);
     if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
     return read_preset(source);
 }

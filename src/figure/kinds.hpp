@@ -95,7 +95,7 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
 /// Whether both sides are released alike: then their distance at the start is 0.
 bool released_alike(const SideSpec& a, const SideSpec& b);
 
-/// Whether both sides are one system, released and stepped alike: they move identically.
+/// Whether both sides are one system, released and integrated alike: they move identically.
 bool are_one(const Scene& scene);
 
 /// An entry of the list of kinds.

@@ -67,7 +67,7 @@ void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<doubl
     if (!method || method->adaptive) return;
     for (const auto& pair : pairs) {
         const auto modes = small_oscillations(chain_of(pair.a).cast<double>());
-        curve.x.push_back(step_limit(method->name, modes, pair.duration_s.value(), blow_up).value_or(NAN));
+        curve.x.push_back(step_limit(method->name, modes, pair.duration_s.value(), failure_error).value_or(NAN));
     }
     const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
     constexpr double alike = 1e-4;

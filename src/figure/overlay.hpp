@@ -23,7 +23,7 @@ inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none
 /// from the power series of the characteristic values, good to 1e-3 for q ≤ 1.2.
 /// `energy_bound`: where a double pendulum released at rest has just the energy for a flip: θ2 over θ1, degrees, with
 ///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
-/// `linear_limit`: of each panel, the step at which linear theory has small oscillations blow up (analysis/stability.hpp).
+/// `linear_limit`: of each panel, the step at which linear theory has small oscillations diverge (analysis/stability.hpp).
 /// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
 std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side);
 

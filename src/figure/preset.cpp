@@ -104,7 +104,7 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, F
     FigurePreset figure;
     figure.name = figure.title = source.name;
     auto top = document.top(faults);
-    top.demand_title(figure.name);
+    top.require_title(figure.name);
     top_fields(top, figure);
     auto scene = document.table(top, "scene");
     figure.kind = read_kind(scene);

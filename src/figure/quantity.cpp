@@ -78,7 +78,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
                     .none = "blow-up",
                     .none_is_bad = true,
                     .is_of_side_a = true,
-                    .range = Range{1e-12, blow_up}};
+                    .range = Range{1e-12, failure_error}};
         case Quantity::convergence:
             return {.label = fmt::format("greatest distance within {} s", seconds),
                     .columns = {"step_s", "distance", "steps"},
@@ -110,22 +110,22 @@ TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
     return least;
 }
 
-/// The mean step, s, the greatest distance of the two, and how many steps they took; no distance where one broke down.
+/// The mean step, s, the greatest distance of the two, and how many steps they took; no distance where one failed.
 TrialNumbers distance_and_steps(const Preset& pair, const std::atomic<bool>& stop) {
     const auto scene = make_scene(pair, stop);
     PairRun run(scene);
     double most = 0;
     try {
         for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
-    } catch (const BreakDown&) {
+    } catch (const RunFailure&) {
         return {NAN, NAN, 0};
     }
     const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
     return {2 * pair.duration_s.value() / steps, most, steps};
 }
 
-/// How all pairs are stepped in lanes, where they can be: plain chains in double by the methods of Batch.
-std::optional<TwinRun> lanes_of(const Scene& scene) {
+/// How all pairs are integrated in lanes, where they can be: plain chains in double by the methods of Batch.
+std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
     const auto serves = [](const Side& side) {
         const auto& motion = side.motion;
         return !side.choice && !motion.physical && motion.model != Model::mechanism &&
@@ -134,7 +134,7 @@ std::optional<TwinRun> lanes_of(const Scene& scene) {
     };
     const auto &a = scene.a.motion, &b = scene.b.motion;
     if (!serves(scene.a) || !serves(scene.b) || a.chain->links() != b.chain->links()) return std::nullopt;
-    return TwinRun{a, b, scene.samples};
+    return PairBatchSpec{a, b, scene.samples};
 }
 
 /// A quantity of distances, from those at all samples in their order.
@@ -157,7 +157,7 @@ public:
 private:
     Quantity quantity_;
     AverageLogRatio mean_;
-    Parting parting_;
+    Divergence parting_;
     double last_ = NAN, greatest_ = 0;
 };
 
@@ -213,8 +213,8 @@ private:
 
 }  // namespace
 
-void demand_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
-                  const std::array<Scene, 2>& ends) {
+void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+                   const std::array<Scene, 2>& ends) {
     if (!is_of_distance(quantity)) return;
     const auto name = name_of(quantity);
     const auto same = std::count_if(ends.begin(), ends.end(), are_one);
@@ -231,7 +231,7 @@ void demand_apart(const TomlReader& table, Quantity quantity, bool is_of_one_sid
     const auto start = [](const Scene& scene) -> double {
         try {
             return PairRun(scene).next(false).distance;
-        } catch (const BreakDown&) {  // told when it is run
+        } catch (const RunFailure&) {  // told when it is run
             return NAN;
         }
     };
@@ -311,7 +311,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         throw table.fault(key, "\"period\" is of one link; there are {}", a.links());
     if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
         throw table.fault(key, "\"{}\" takes sides of as many masses", name_of(quantity));
-    if (quantity == Quantity::stroboscopic) demand_drive(table, key, stroboscope_, a);
+    if (quantity == Quantity::stroboscopic) require_drive(table, key, stroboscope_, a);
     const auto scene = make_scene(pair);
     motion_ = scene.a.motion;
     if (quantity == Quantity::stability &&
@@ -329,9 +329,9 @@ std::size_t Measurement::together(bool shared) const {
     if (flips_in_lanes_) return 256;
     if (quantity_ == Quantity::stability) return 128;
     if (!run_) return 1;
-    // a pendulum that two neighbours share is stepped once
+    // a pendulum that two neighbours share is integrated once
     const bool is_shared = shared || !is_of_distance(quantity_);
-    return twins_block() / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
+    return pendulums_per_block() / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
 }
 
 void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const {
@@ -371,11 +371,11 @@ void Measurement::append_flips(const PairAt& pair, std::span<TrialNumbers> into,
 
 void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> into,
                                   const std::atomic<bool>& stop) const {
-    std::vector<Twins> twins;
+    std::vector<PendulumPair> pairs;
     for (std::size_t i = 0; i < into.size(); ++i) {
         const auto& sides = pair(i);
         const auto a = chain_of(sides.a).cast<double>();
-        twins.push_back({a, is_of_distance(quantity_) ? chain_of(sides.b).cast<double>() : a});
+        pairs.push_back({a, is_of_distance(quantity_) ? chain_of(sides.b).cast<double>() : a});
     }
     if (is_of_distance(quantity_)) {
         std::vector<DistanceWatch> watches(into.size(), DistanceWatch(quantity_));
@@ -383,20 +383,20 @@ void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> in
         const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>& b) {
             watches[i].add(static_cast<double>(n) * interval, state_space_distance(a, b));
         };
-        step_twins(twins, *run_, watch, stop);
+        step_pairs(pairs, *run_, watch, stop);
         for (std::size_t i = 0; i < into.size(); ++i) into[i].push_back(watches[i].value());
         return;
     }
     std::vector<double> start(into.size()), worst(into.size());
     const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>&) {
-        const double now = energy(a, twins[i].a.gravity);
+        const double now = energy(a, pairs[i].a.gravity);
         if (n == 0) start[i] = now;
         const double error = std::abs(now - start[i]);
         if (!(error <= worst[i])) worst[i] = error;  // NaN stays
     };
-    step_twins(twins, *run_, watch, stop);
+    step_pairs(pairs, *run_, watch, stop);
     for (std::size_t i = 0; i < into.size(); ++i) {
-        const double error = worst[i] / twins[i].a.potential_range();
+        const double error = worst[i] / pairs[i].a.potential_range();
         into[i].push_back(std::isfinite(error) ? error : NAN);
     }
 }
@@ -428,7 +428,7 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
         if (quantity_ == Quantity::deviation) return furthest * (180 / pi);
         if (quantity_ == Quantity::period) return flips.period();
         return quantity_ == Quantity::flip_time ? never : worst / scene.a.energy_unit;
-    } catch (const BreakDown&) {
+    } catch (const RunFailure&) {
         return NAN;
     }
 }
@@ -463,7 +463,7 @@ bool Measurement::fits(std::span<const double> numbers) const {
     if (quantity_ == Quantity::stroboscopic) return finite_or_none(numbers);
     if (quantity_ == Quantity::convergence)
         return is_count(numbers[2]) && (all_finite(numbers) || (std::isnan(numbers[0]) && std::isnan(numbers[1])));
-    if (quantity_ == Quantity::flip_time) return !(numbers[0] < 0);  // broken down: NaN
+    if (quantity_ == Quantity::flip_time) return !(numbers[0] < 0);  // failed: NaN
     return !std::isinf(numbers[0]);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "analysis/exponent.hpp"
-#include "analysis/twins.hpp"
+#include "analysis/pair_batch.hpp"
 #include "figure/experiment.hpp"
 #include "figure/stroboscope.hpp"
 #include "integrate/flips.hpp"
@@ -90,8 +90,8 @@ std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords&
 /// Throws Error (exit 2), of the table's `difference` or `quantity`, where a quantity that compares the two of a pair has
 /// nothing to compare in the first and the last pair: they are one in all pairs, or `difference` is lost in rounding in
 /// one of them, or `divergence` has no first distance.
-void demand_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
-                  const std::array<Scene, 2>& ends);
+void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+                   const std::array<Scene, 2>& ends);
 
 /// Counts the regular releases of a curve, and takes equilibria out of it: their exponent is not that of a motion.
 std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit);
@@ -106,11 +106,11 @@ struct QuantityOptions {
 /// Pair i of some, until the next is asked for.
 using PairAt = std::function<const Preset&(std::size_t i)>;
 
-/// Finds one quantity of pairs. Where all can be stepped side by side, in lanes: the mean, distances and energies of chains
+/// Finds one quantity of pairs. Where all can be integrated side by side, in lanes: the mean, distances and energies of chains
 /// of two or three links in double by Euler or RK4; flips of two links by Taylor series whatever the integrator. The rest one
 /// by one.
 ///
-/// The numbers of a pair: the quantity; of an exponent its uncertainty too; of a stroboscope angle and rate, row by row. NaN where the motion broke down, or the two
+/// The numbers of a pair: the quantity; of an exponent its uncertainty too; of a stroboscope angle and rate, row by row. NaN where the motion failed, or the two
 /// never part; infinite where there is no flip.
 class Measurement {
 public:
@@ -145,7 +145,7 @@ private:
     ExponentSpec exponent_;
     StroboscopeSpec stroboscope_;
     FlipSpec flip_;
-    std::optional<TwinRun> run_;
+    std::optional<PairBatchSpec> run_;
     MotionSpec motion_;  // of side a of the first pair
     bool flips_in_lanes_ = false;
 };

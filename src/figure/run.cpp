@@ -64,7 +64,7 @@ namespace {
 
 /// Throws Error (exit 2) where the trials of `header` are so many cells of maps that memory, or the disk of `folder`,
 /// does not hold them. Nothing of other figures.
-void demand_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
+void require_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
     const auto map = figure.experiment->map();
     if (!map) return;
     const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
@@ -199,7 +199,7 @@ public:
             const auto& figure = figures[k];
             const auto header = header_for(figure, options);
             const auto& folder = files[k]->folder();
-            demand_room(figure, header, options.tiles, folder);
+            require_room(figure, header, options.tiles, folder);
             if (const auto others = other_resumes(folder, header);
                 !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
                 report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
@@ -278,7 +278,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         if (options.shard) continue;
         std::vector<std::string_view> endings{name_of(figure.chart.format), "csv", "json"};
         if (options.tiles) endings = {"html", "tiles.json"};
-        for (const auto ending : endings) files.back()->demand(fmt::format("{}.{}", figure.name, ending));
+        for (const auto ending : endings) files.back()->require(fmt::format("{}.{}", figure.name, ending));
     }
     Scheduler scheduler(figures, options, jobs, files, stop, report);
     while (const auto k = scheduler.next()) {

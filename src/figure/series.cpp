@@ -88,7 +88,7 @@ public:
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
             if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
-            if (!entry.has("label")) entry.demand_drawable("column", curve.column);  // it serves as label
+            if (!entry.has("label")) entry.require_drawable("column", curve.column);  // it serves as label
             if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
                 throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
             if (!curve.film_column) curve.film_column = shown;

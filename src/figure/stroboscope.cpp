@@ -33,7 +33,7 @@ std::optional<Rational> drive_of(const SideSpec& side) {
 
 }  // namespace
 
-void demand_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side) {
+void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side) {
     if (static_cast<std::size_t>(spec.link) > side.links())
         throw table.fault("link", "must be 1 to {}, the number of links; it is {}", side.links(), spec.link);
     if (!drive_of(side))

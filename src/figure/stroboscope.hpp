@@ -9,7 +9,7 @@
 
 namespace doppel {
 
-/// Of a driven pendulum, once a period of its drive.
+/// Of a driven pendulum, at each period of its drive.
 struct StroboscopeSpec {
     int link = 1;  // from 1
     int transient_periods = 200, periods = 100;
@@ -19,10 +19,10 @@ struct StroboscopeSpec {
 
 /// Throws Error (exit 2), of the table's `key` or `link`, where one frequency of at most 18 digits drives not the side, or
 /// it has no such link.
-void demand_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side);
+void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side);
 
 /// Angle, rad from −π to π, and rate, rad/s, of the link of side a at the end of each period but the transient ones; NaN
-/// from where the motion broke down. Throws Error (exit 130) soon after `stop` is set.
+/// from where the motion failed. Throws Error (exit 130) soon after `stop` is set.
 TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const std::atomic<bool>& stop);
 
 /// How many of the motions repeat after one, two or four periods, or have more than 16 rates.

@@ -111,7 +111,7 @@ std::string rate_words(const SideSpec& a, const SideSpec& b) {
     return fmt::format("ω = {} °/s", slashed(rates));
 }
 
-/// What both sides have in common of how they are stepped.
+/// What both sides have in common of how they are integrated.
 std::string method_words(const Scene& scene, const Varied& varied) {
     std::vector<std::string> words;
     const bool has_one_method = !is_varied(varied, ".integrator"), has_one_step = !varied.step && has_one_method;

@@ -74,7 +74,7 @@ std::string page_text(const std::array<std::pair<std::string_view, std::string>,
 
 }  // namespace
 
-void demand_map(const FigurePreset& figure) {
+void require_map(const FigurePreset& figure) {
     const auto map = figure.experiment->map();
     if (!map || map->panels > 1)
         throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
@@ -82,7 +82,7 @@ void demand_map(const FigurePreset& figure) {
 
 Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
                  const std::atomic<bool>& stop) {
-    demand_map(figure);
+    require_map(figure);
     const auto& plot = page.panels.front();
     const auto name = figure.name + ".tiles", html = figure.name + ".html";
     const auto folder = files.directory(name);

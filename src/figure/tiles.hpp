@@ -13,6 +13,6 @@ namespace doppel {
 Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
                  const std::atomic<bool>& stop);
 /// Throws Error (exit 2) where the figure is no map, or several.
-void demand_map(const FigurePreset& figure);
+void require_map(const FigurePreset& figure);
 
 }  // namespace doppel

@@ -24,7 +24,7 @@ struct ProblemRow {
 };
 
 /// Error against cost of every method on a few problems. The trials: the reference solution of each problem, then all
-/// ladders, and all of them again for each repeat, so that other load on the machine affects all alike.
+/// step-size studies, and all of them again for each repeat, so that other load on the machine affects all alike.
 class WorkPrecision final : public Experiment {
 public:
     static constexpr std::string_view table_key = "work_precision";
@@ -87,11 +87,11 @@ public:
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
         if (trial < problems_.all.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
-        if (numbers.empty() || numbers.size() % numbers_in<Rung> != 0) return false;
+        if (numbers.empty() || numbers.size() % numbers_in<StepResult> != 0) return false;
         const auto is_count_or_none = [](double x) { return std::isnan(x) || is_count(x); };
-        const auto rungs = rows_of<Rung>(numbers);
-        return std::all_of(rungs.begin(), rungs.end(), [&](const Rung& rung) {
-            return is_count_or_none(rung.evaluations) && is_count_or_none(rung.steps);
+        const auto outcomes = rows_of<StepResult>(numbers);
+        return std::all_of(outcomes.begin(), outcomes.end(), [&](const StepResult& outcome) {
+            return is_count_or_none(outcome.evaluations) && is_count_or_none(outcome.steps);
         });
     }
 
@@ -111,17 +111,18 @@ public:
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         const auto problems = merged_ladders(numbers);
         for (std::size_t p = 0; p < problems.size(); ++p)
-            for (const auto& [solver, rungs] : problems[p])
-                for (const auto& rung : rungs) {
+            for (const auto& [solver, outcomes] : problems[p])
+                for (const auto& outcome : outcomes) {
                     for (const std::string_view word : {std::string_view(problems_.all[p].name), name_of(solver.model)})
                         table.add(word);
                     table.add(std::string_view(solver.name()));
-                    table.add_or_empty(rung.setting);
-                    if (rung.failed())
+                    table.add_or_empty(outcome.setting);
+                    if (outcome.failed())
                         table.add(std::string_view("failed"));
                     else
-                        table.add_or_empty(rung.error);
-                    add_row(table, rung.energy_error, rung.length_error, rung.cpu_s, rung.evaluations, rung.steps);
+                        table.add_or_empty(outcome.error);
+                    add_row(table, outcome.energy_error, outcome.length_error, outcome.cpu_s, outcome.evaluations,
+                            outcome.steps);
                 }
     }
 
@@ -130,9 +131,9 @@ public:
         for (const auto& ladders : merged_ladders(numbers))
             for (const auto& ladder : ladders) {
                 if (!front_of({&ladder, 1}, cost_, {0, most_error_shown}).empty()) return std::nullopt;
-                for (const auto& rung : ladder.rungs) {
-                    any |= std::isfinite(rung.error);
-                    if (ladder.solver.is_study() && rung.is_study() && !rung.failed()) return std::nullopt;
+                for (const auto& outcome : ladder.outcomes) {
+                    any |= std::isfinite(outcome.error);
+                    if (ladder.solver.is_study() && outcome.is_study() && !outcome.failed()) return std::nullopt;
                 }
             }
         if (!any) return "every run of every method failed; raise work_precision.most_evaluations for finer settings";
@@ -174,7 +175,7 @@ public:
     }
 
 private:
-    using Ladders = std::vector<std::vector<Ladder>>;  // of each problem
+    using Ladders = std::vector<std::vector<StepStudy>>;  // of each problem
 
     std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_libraries() const {
@@ -204,9 +205,10 @@ private:
         const auto& [p, solver] = ladders_[(trial - problems) % ladders_.size()];
         const bool is_first = trial - problems < ladders_.size();
         TrialNumbers numbers;
-        for (const auto& rung : run_ladder(problems_.all[p], reference(p, stop), solver,
-                                           {most_evaluations_, least_error_, cost_ == Cost::time, is_first}, stop))
-            append(numbers, rung);
+        for (const auto& outcome :
+             run_step_study(problems_.all[p], reference(p, stop), solver,
+                            {most_evaluations_, least_error_, cost_ == Cost::time, is_first}, stop))
+            append(numbers, outcome);
         return numbers;
     }
 
@@ -222,15 +224,15 @@ private:
     Ladders merged_ladders(std::span<const TrialNumbers> numbers) const {
         Ladders all(problems_.all.size());
         for (std::size_t i = 0; i < ladders_.size(); ++i) {
-            std::vector<std::vector<Rung>> repeats;
+            std::vector<std::vector<StepResult>> repeats;
             for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += ladders_.size())
-                repeats.push_back(rows_of<Rung>(numbers[trial]));
+                repeats.push_back(rows_of<StepResult>(numbers[trial]));
             all[ladders_[i].first].push_back(merged(ladders_[i].second, repeats));
         }
         return all;
     }
 
-    void add_findings(const std::vector<Ladder>& ladders, const std::string& problem, double accuracy,
+    void add_findings(const std::vector<StepStudy>& ladders, const std::string& problem, double accuracy,
                       std::vector<Finding>& all) const {
         const auto key = fmt::format("{}_1e{}_", problem, std::lround(std::log10(accuracy)));
         const auto best = cheapest(ladders, cost_, accuracy, [](const Solver& solver) { return !solver.external; });

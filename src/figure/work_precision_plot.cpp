@@ -46,7 +46,7 @@ double shown(double error) {
 }
 
 /// In colour with its name, or faint.
-Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
+Curve curve_of(const StepStudy& ladder, const WorkDiagram& diagram) {
     const auto& [model, method, external] = ladder.solver;
     const auto rank = std::find(diagram.named.begin(), diagram.named.end(), ladder.solver.name());
     const bool named = rank != diagram.named.end();
@@ -71,8 +71,8 @@ Curve curve_of(const Ladder& ladder, const WorkDiagram& diagram) {
     return curve;
 }
 
-/// The spread of times of a curve of the ladder, as pale bars.
-Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
+/// The spread of times of a curve of the hierarchy, as pale bars.
+Curve spread_bars(const StepStudy& ladder, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
     constexpr double shows = 0.05, most = 0.9;
     for (const auto& point : front_of({&ladder, 1}, Cost::time, range_of(diagram))) {
@@ -88,7 +88,7 @@ Curve spread_bars(const Ladder& ladder, const WorkDiagram& diagram, int hue) {
 Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.background = Background::band};
     const auto own = std::find_if(diagram.ladders.begin(), diagram.ladders.end(),
-                                  [](const Ladder& ladder) { return ladder.solver.external != nullptr; });
+                                  [](const StepStudy& ladder) { return ladder.solver.external != nullptr; });
     for (const auto& point : front_of({diagram.ladders.begin(), own}, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
@@ -98,11 +98,11 @@ Curve front_curve(const WorkDiagram& diagram) {
 void add_study(const WorkDiagram& diagram, Plot& plot) {
     for (const auto& ladder : diagram.ladders) {
         if (!ladder.solver.is_study()) continue;
-        for (const auto& rung : ladder.rungs)
-            if (rung.is_study())
+        for (const auto& outcome : ladder.outcomes)
+            if (outcome.is_study())
                 plot.curves.push_back({.label = "the study: Euler, 30 kHz",
-                                       .x = {rung.cost(diagram.cost)},
-                                       .y = {rung.error},
+                                       .x = {outcome.cost(diagram.cost)},
+                                       .y = {outcome.error},
                                        .mark = Mark::points,
                                        .quiet = true});
     }

@@ -47,7 +47,7 @@ double round_number(double value, bool up) {
     return best;
 }
 
-/// The distance axis where the preset names none: all that the two do, a power of ten at least; of twins that start
+/// The distance axis where the preset names none: all that the two do, a power of ten at least; of pairs that start
 /// alike no more than eight, as they come from nothing.
 Range fitted_distance(const Spread& seen) {
     constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
@@ -100,7 +100,7 @@ void MotionBounds::add(const Scene& scene, const PairState& state, double start_
         if (link < side->bobs.size()) fastest = std::max(fastest, std::abs(side->bobs[link].omega));
     }
     for (const auto kind : video.strips) {
-        // twins that start alike come from nothing
+        // pairs that start alike come from nothing
         if (kind == StripKind::distance && !(start_distance > 0) && 50 * state.sample < scene.samples) continue;
         for (const auto& curve : strip_curves(kind, scene, state, start_distance, themes[0], 1))
             if (curve.value) strips[static_cast<std::size_t>(kind)].add(*curve.value);

@@ -54,7 +54,7 @@ Label with_text(Label label, std::string text) {
 
 }  // namespace
 
-Composer::Composer(const Scene& scene, const MotionBounds& bounds, Dress dress)
+Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind dress)
     : state_{scene, make_layout(scene, bounds, dress)} {
     const auto& layout = state_.layout;
     for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
@@ -144,7 +144,7 @@ std::string Composer::outcome() const {
     const auto& parting = state_.outcome.parting;
     if (!parting.start_as_one()) return "apart from the start";
     if (parting.since()) return fmt::format("diverged after {:.1f} s", *parting.since());
-    if (state_.outcome.largest_distance >= Parting::apart_at) return "apart only for moments";
+    if (state_.outcome.largest_distance >= Divergence::apart_at) return "apart only for moments";
     return fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
 }
 

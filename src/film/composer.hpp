@@ -12,7 +12,7 @@ namespace doppel {
 class Composer {
 public:
     /// `bounds` as make_layout() takes them.
-    Composer(const Scene& scene, const MotionBounds& bounds, Dress dress = Dress::film);
+    Composer(const Scene& scene, const MotionBounds& bounds, PictureKind dress = PictureKind::film);
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 

@@ -113,8 +113,8 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
         sink_ = make_video_sink(parts.file(film_name_), file, stop);
         record.libav = libav_description();
     }
-    if (video.poster_s) parts.demand(scene.preset.name + ".poster.png");
-    if (video.contact_sheet) parts.demand(scene.preset.name + ".contact.png");
+    if (video.poster_s) parts.require(scene.preset.name + ".poster.png");
+    if (video.contact_sheet) parts.require(scene.preset.name + ".contact.png");
     canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = canvas_->description();
 }

@@ -188,7 +188,7 @@ float place_header(Layout& layout, const Scene& scene) {
     if (title.empty() && below.empty() && !has_clock) return page.top;
     const float first = page.top + 36 * t, second = first + (tall ? 52 : 30) * t;
     const auto time = clock_text(scene, scene.time(scene.samples));
-    // a little picture says what moves, in words that can be read, and not how it is stepped
+    // a little picture says what moves, in words that can be read, and not how it is integrated
     constexpr float least = 0.8f;
     if (!scene.preset.subtitle && layout.style.type.width(below, least * px(font.subtitle)) > 0.85f * page.width())
         below = scene_caption(scene, Wording::plain);
@@ -218,12 +218,12 @@ float place_header(Layout& layout, const Scene& scene) {
     return second + 18 * t;
 }
 
-Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomNeeds needs) {
-    if (needs.panels == 0 || !scene.preset.video.shows("labels")) return shared_out(room, needs);
+Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs) {
+    if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split_regions(room, needs);
     const float t = layout.text;
     const auto headings = headings_of(scene);
     if (needs.tall) {
-        auto rooms = shared_out(room, needs);
+        auto rooms = split_regions(room, needs);
         DisplayList words;
         for (const auto& heading : headings)
             if (const auto found = in_corner(layout, heading, rooms.panels[heading.panel]);
@@ -235,7 +235,7 @@ Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomN
         }
     }
     needs.heading = 42 * t;
-    auto rooms = shared_out(room, needs);
+    auto rooms = split_regions(room, needs);
     if (!scene.preset.video.members.angles_deg.empty()) {
         add_legend(layout, scene, rooms.panels[0]);
         return rooms;
@@ -249,7 +249,7 @@ Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomN
     auto sizes = fitted(headings, layout, width());
     if (sizes.two_lines) {
         needs.heading = 71 * t;
-        rooms = shared_out(room, needs);
+        rooms = split_regions(room, needs);
         sizes = fitted(headings, layout, width());
     }
     for (const auto& heading : headings) add_above(layout, heading, sizes, rooms.panels[heading.panel]);

@@ -161,8 +161,8 @@ Layout make_tile(const Scene& scene, const MotionBounds& seen) {
     layout.page = {0, 0, width, height};
     layout.clock =
         label("", {4 * layout.text, 33 * layout.text}, 0.8f * px(layout.style.font.clock), layout.style.theme.text);
-    const auto rooms = shared_out({0, std::round(tile_clock * layout.text), width, height},
-                                  {.panels = panel_count(video), .gap = std::round(24 * layout.unit), .strips = {}});
+    const auto rooms = split_regions({0, std::round(tile_clock * layout.text), width, height},
+                                     {.panels = panel_count(video), .gap = std::round(24 * layout.unit), .strips = {}});
     place_panels(layout, scene, rooms.panels, seen);
     place_pendulums(layout, scene, seen);
     return layout;
@@ -223,8 +223,8 @@ std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool a
     return ticks;
 }
 
-Layout make_layout(const Scene& scene, const MotionBounds& seen, Dress dress) {
-    if (dress == Dress::tile) return make_tile(scene, seen);
+Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind dress) {
+    if (dress == PictureKind::tile) return make_tile(scene, seen);
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;

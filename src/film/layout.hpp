@@ -49,7 +49,7 @@ struct PendulumPanel {
     Point center{};                     // px, the area's, where (center_x, center_y) is
     double center_x = 0, center_y = 0;  // m: the pivot of a chain
     float px_per_m = 1;
-    Point at(double x_m, double y_m) const;  // within a million px of the centre, wherever a blow-up throws a bob
+    Point at(double x_m, double y_m) const;  // within a million px of the centre, wherever a diverging run puts a bob
 };
 
 /// A panel of phase space: angles across, rates up.
@@ -98,16 +98,16 @@ struct Layout {
 };
 
 /// A film's picture, or a tile of a contact sheet: pendulums and time alone.
-enum class Dress { film, tile };
+enum class PictureKind { film, tile };
 
 /// `bounds`: of the whole motion, where the picture depends on it (depends_on_motion()). A tile has no strips.
-Layout make_layout(const Scene& scene, const MotionBounds& bounds, Dress dress = Dress::film);
+Layout make_layout(const Scene& scene, const MotionBounds& bounds, PictureKind dress = PictureKind::film);
 
 /// The size of a tile of that width, px.
 Size tile_size(const Scene& scene, int width);
 
 /// What decides how a picture is shared out; lengths in px.
-struct RoomNeeds {
+struct RegionNeeds {
     std::size_t panels = 2;  // 0 = none
     bool tall = false;       // panels and strips one above the other
     float heading = 0;       // height of the words above each panel
@@ -118,7 +118,7 @@ struct RoomNeeds {
 };
 
 /// A picture's room below the header, shared out.
-struct Rooms {
+struct Regions {
     std::vector<Area> panels;  // without their headings
     Area strips;               // with captions and the labels of the time; empty where there are none
 };
@@ -131,7 +131,7 @@ inline constexpr float caption_line = 27, caption_edge = 16, time_labels_height 
 
 /// The panels first. Two beside each other get circles of 55 to 60 % of the picture's height, with the strips below
 /// or, where that leaves too little for these, in a column at the right. A panel alone is a square beside its strips.
-Rooms shared_out(const Area& room, const RoomNeeds& needs);
+Regions split_regions(const Area& room, const RegionNeeds& needs);
 
 /// How a film's words put it: upright ones are for a telephone.
 Wording wording_of(const Scene& scene);
@@ -146,6 +146,6 @@ float place_header(Layout& layout, const Scene& scene);
 
 /// Shares the room below the header out, and adds what sets the sides apart: above the panels in a line, in two where
 /// it is long; in a corner of an upright film's panel where the circle leaves it free.
-Rooms place_headings(Layout& layout, const Scene& scene, const Area& room, RoomNeeds needs);
+Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs);
 
 }  // namespace doppel

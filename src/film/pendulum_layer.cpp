@@ -119,7 +119,7 @@ void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, Display
 void PendulumLayer::frame(DisplayList& list) const {
     if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
-    // where the twin is now, faintly and behind all else; as long as they swing as one this side hides it
+    // where the other pendulum is now, faintly and behind all else; as long as they swing as one this side hides it
     if (alone && !swing_as_one()) {
         const std::size_t other = 1 - panel_.sides.front();
         const Color hue = theme_.sides[other];
@@ -260,7 +260,7 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
     }
 }
 
-/// A disc that is at home in the panel; one that a blow-up threw out of it is not shown.
+/// A disc that is at home in the panel; one that a diverging run has put out of it is not shown.
 void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& list, float glow) const {
     if (panel_.area.holds(at))
         list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});

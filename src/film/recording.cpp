@@ -98,7 +98,7 @@ void Recording::simulate(long last, const Visit& visit) {
     }
     try {
         for (; sample.sample <= last; ++sample.sample) add_sample(pair.next(stop_));
-    } catch (const BreakDown&) {  // what is wanted is whole
+    } catch (const RunFailure&) {  // what is wanted is whole
     }
     cpu_s_ += spent_s() - begun;
 }

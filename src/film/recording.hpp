@@ -23,7 +23,7 @@ struct Snapshot {
 /// How far a pair came, from its samples in their order.
 struct Outcome {
     double start_distance = 0, largest_distance = 0;  // state space
-    Parting parting{};
+    Divergence parting{};
 
     void add(double time, const PairState& state) {
         if (state.sample == 0) start_distance = state.distance;
@@ -74,7 +74,7 @@ public:
 
     /// Whether it is known that play() throws.
     bool fails() const { return fault_ != nullptr; }
-    /// Of the whole motion, or up to where it breaks down: frames have the same pixels alone as in the film. Empty where no
+    /// Of the whole motion, or up to where it fails: frames have the same pixels alone as in the film. Empty where no
     /// picture depends on it.
     const MotionBounds& bounds() const { return bounds_; }
     /// Complete after play().

@@ -17,7 +17,7 @@ namespace doppel {
 namespace {
 
 /// Whether the side comes to the sample of `fault`; and what it took.
-std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const BreakDown& fault,
+std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunFailure& fault,
                                 const std::atomic<bool>& stop) {
     SideRun run(scene, side, fault.side);
     Effort effort;
@@ -33,9 +33,9 @@ std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const Brea
     return {true, effort};
 }
 
-/// What would have held where `fault` broke down, in words: with a fixed step, the first of its halves, quarters … that
+/// What would have held where `fault` failed, in words: with a fixed step, the first of its halves, quarters … that
 /// comes as far; of an adaptive method, the smallest step that it took. Gives up early where `stop` is set.
-std::string step_that_holds(const Scene& scene, const BreakDown& fault, const std::atomic<bool>& stop) {
+std::string step_that_holds(const Scene& scene, const RunFailure& fault, const std::atomic<bool>& stop) {
     auto side = fault.side == 'a' ? scene.a : scene.b;
     if (side.method.adaptive) {
         const double smallest = retried(scene, side, fault, stop).second.smallest_step;
@@ -62,9 +62,9 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     return name + ".failed" + ending;
 }
 
-/// Keeps the samples before the break-down, under a name that says so, with a manifest; throws the error that tells
+/// Keeps the samples before the failure, under a name that says so, with a manifest; throws the error that tells
 /// where they are, and which step would have held.
-[[noreturn]] void keep_failed(const Scene& scene, const BreakDown& fault, RunRecord& record, Transaction& parts,
+[[noreturn]] void keep_failed(const Scene& scene, const RunFailure& fault, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
     const auto advice = step_that_holds(scene, fault, stop);
@@ -157,7 +157,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     record.samples = record.last_sample - record.first_sample + 1;
     const long total = options.pictures ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
-    parts.demand(scene.preset.name + ".json");
+    parts.require(scene.preset.name + ".json");
     Recording recording(scene, part.end, options.pictures, stop);
     std::optional<Film> film;
     if (options.pictures && !recording.fails())
@@ -178,7 +178,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             film->write_frame(frame++);
             report({++done, total});
         });
-    } catch (const BreakDown& fault) {
+    } catch (const RunFailure& fault) {
         record.motion = recording.record();
         table.finish();
         film.reset();  // its threads write into what goes now

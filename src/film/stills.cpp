@@ -129,7 +129,7 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
                                                                            static_cast<double>(count - 1))));
     const auto tile = tile_scene(scene);
     const auto& style = tile.preset.video;
-    Composer composer(tile, recording.bounds(), Dress::tile);
+    Composer composer(tile, recording.bounds(), PictureKind::tile);
     Renderer tiles(style.size, composer.backdrop(), gl, stop, style.typeface);
     std::vector<Picture> pictures;
     recording.play([&](const Snapshot& snapshot) {

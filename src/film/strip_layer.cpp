@@ -126,7 +126,7 @@ void StripLayer::say_horizon(DisplayList& list) const {
     const auto text = horizon_text();
     const float width = style_.type.width(text, size);
     const bool left = x - area.left > width + 20 * t, right = area.right - x > width + 20 * t;
-    if (!left && !right) return;  // above the strip, until they part
+    if (!left && !right) return;  // above the strip, until they diverge
     const Point at{left ? x - 10 * t - width : x + 10 * t, area.bottom - 10 * t};
     if (!state_.scene.preset.video.transparent)
         list.push_back(Box{at.x - 4 * t, at.y - 0.82f * size, at.x + width + 4 * t, at.y + 0.28f * size, 0,
@@ -144,7 +144,7 @@ void StripLayer::say_horizon_above(DisplayList& list) const {
     list.push_back(label(text, {strip_.caption.left, strip_.base}, fits, theme_.quiet_text));
 }
 
-/// The moment of parting: a dashed line, and when it was above it, right of what is there already.
+/// The moment of divergence: a dashed line, and when it was above it, right of what is there already.
 void StripLayer::draw_parting(float free_from, DisplayList& list) const {
     const float x = strip_.time.at(*state_.outcome.parting.since());
     add_dashed_line(x, strip_.area, 6 * layout_.text, px(style_.width.mark), theme_.quiet_text, list);

@@ -29,7 +29,7 @@ void Trail::add(Point at, double time, double now) {
     const long g = static_cast<long>(std::floor(time * sample_hz_ + 1e-6)) / group;
     if (!points_.empty() && points_.back().group != g) {
         simplify(points_);
-        // the new group goes on from where the last one ends
+        // the new group continues where the last one ends
         TrailPoint first = points_.back();
         first.group = g;
         points_.push_back(first);

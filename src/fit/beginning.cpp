@@ -94,7 +94,7 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
     // a swing of little acceleration wants longer windows than its noise alone
     Regression best;
     for (const double longer : {1.0, 1.5, 2.25}) {
-        const auto other = regress(glimpses_of(track, stop, longer));
+        const auto other = regress(estimates_of(track, stop, longer));
         if (longer == 1 || (other.is_physical && (!best.is_physical || other.unexplained < best.unexplained)))
             best = other;
     }

@@ -35,13 +35,14 @@ Json or_null(const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
-    const auto parameters = rung.fit.model.list();
+Json model_json(const FittedModel& candidate, const Uncertainty& uncertainty) {
+    const auto parameters = candidate.fit.model.list();
     Json ratios = Json::object();
     for (const auto parameter : parameters) {
         auto& ratio = ratios[std::string(parameter_words[parameter].key)];
-        ratio = {{"value", rung.fit.parameters[parameter]}, {"standard_error", uncertainty.standard_error(parameter)}};
-        if (rung.fit.is_at_bound(parameter)) ratio["at_bound"] = true;
+        ratio = {{"value", candidate.fit.parameters[parameter]},
+                 {"standard_error", uncertainty.standard_error(parameter)}};
+        if (candidate.fit.is_at_bound(parameter)) ratio["at_bound"] = true;
     }
     const auto correlations = [&](auto one) {
         return list_of(parameters, [&](auto other) {
@@ -49,13 +50,13 @@ Json model_json(const FittedModel& rung, const Uncertainty& uncertainty) {
             return product > 0 ? uncertainty.covariance(one, other) / product : 0;
         });
     };
-    return {{"name", rung.name},
+    return {{"name", candidate.name},
             {"ratios_to_B", ratios},
             {"correlations",
              {{"parameters", list_of(parameters, [](auto p) { return parameter_words[p].key; })},
               {"matrix", list_of(parameters, correlations)}}},
-            {"rms_rad", rung.fit.rms},
-            {"left_out_rms_rad", rung.left_out_rms}};
+            {"rms_rad", candidate.fit.rms},
+            {"left_out_rms_rad", candidate.left_out_rms}};
 }
 
 Json horizon_json(const FitResult& result) {
@@ -142,10 +143,10 @@ std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::
 }
 
 std::string fitted_preset(const FitResult& result, const std::string& name) {
-    const auto& rung = result.chosen();
+    const auto& candidate = result.chosen();
     const auto& p = result.pendulum;
     const auto files = files_of(result.track);
-    const auto& shot = rung.fit.shots.front();
+    const auto& shot = candidate.fit.shots.front();
     // what the start is known to by itself; what it shares with the parameters would add little
     const Eigen::Matrix4d covariance = shot.sums.inverse_of_start();
     const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
@@ -155,13 +156,13 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
         "# Angles determine only ratios: gravity and the second mass are given, {}.\n"
         "title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n",
         on_one_line(std::filesystem::path(files[0]).filename().string()),
-        files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1), rung.name, rung.left_out_rms, name,
-        p.rule, toml_text(name + ", as measured"));
+        files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1), candidate.name, candidate.left_out_rms,
+        name, p.rule, toml_text(name + ", as measured"));
     const auto add = [&](const std::string& key, double first, double second) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, first, second);
     };
     for (const auto& [key, values] : p.arms)
-        if ((values[0] != 0 || values[1] != 0) && !(rung.fit.model.point_masses && key == "center_m"))
+        if ((values[0] != 0 || values[1] != 0) && !(candidate.fit.model.point_masses && key == "center_m"))
             add(key, values[0], values[1]);
     text += fmt::format("gravity_m_per_s2 = {}\n", p.gravity);
     const ArmState start = degrees * shot.start, further = degrees * (shot.start + errors);
@@ -182,10 +183,10 @@ Json fit_json(const FitResult& result) {
         std::error_code ignored;  // of a folder that is gone: the path is empty
         return on_one_line(std::filesystem::proximate(file, ignored).string());
     };
-    const auto rung_json = [](const FittedModel& rung) {
-        return Json{{"model", rung.name},        {"parameters", rung.fit.free_count()},
-                    {"rms_rad", rung.fit.rms},   {"left_out_rms_rad", rung.left_out_rms},
-                    {"passes", rung.fit.passes}, {"step_s", rung.fit.step_s}};
+    const auto candidate_json = [](const FittedModel& candidate) {
+        return Json{{"model", candidate.name},        {"parameters", candidate.fit.free_count()},
+                    {"rms_rad", candidate.fit.rms},   {"left_out_rms_rad", candidate.left_out_rms},
+                    {"passes", candidate.fit.passes}, {"step_s", candidate.fit.step_s}};
     };
     const auto start_json = [&](const Shot& shot) {
         const auto& y = shot.start;
@@ -205,7 +206,7 @@ Json fit_json(const FitResult& result) {
                    {"notes", track.notes}}},
                  {"model", model_json(result.chosen(), uncertainty)},
                  {"starts", list_of(result.chosen().fit.shots, start_json)},
-                 {"ladder", list_of(result.ladder.rungs, rung_json)},
+                 {"ladder", list_of(result.ladder.candidates, candidate_json)},
                  {"residuals",
                   {{"like_noise", uncertainty.is_white},
                    {"neighbour_correlation", uncertainty.neighbour},
@@ -301,14 +302,14 @@ Plot ladder_plot(const FitResult& result) {
     Plot plot{.title = "Error against number of parameters", .needs_no_legend = true};
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
     double least = parameter_count, most = 0;
-    for (std::size_t k = 0; k < result.ladder.rungs.size(); ++k) {
-        const auto& rung = result.ladder.rungs[k];
+    for (std::size_t k = 0; k < result.ladder.candidates.size(); ++k) {
+        const auto& candidate = result.ladder.candidates[k];
         const bool chosen = k == result.ladder.chosen;
-        const auto count = static_cast<double>(rung.fit.free_count());
+        const auto count = static_cast<double>(candidate.fit.free_count());
         least = std::min(least, count), most = std::max(most, count);
         plot.curves.push_back({.label = fmt::format("{}{}", k + 1, chosen ? ", chosen" : ""),
                                .x = {count},
-                               .y = {mrad * rung.left_out_rms},
+                               .y = {mrad * candidate.left_out_rms},
                                .mark = Mark::points,
                                .hue = chosen,
                                .quiet = !chosen});
@@ -340,17 +341,18 @@ Plot horizon_plot(const std::optional<Horizon>& horizon) {
 }  // namespace
 
 Figure fit_page(const FitResult& result, const std::string& name) {
-    const auto& rung = result.chosen();
+    const auto& candidate = result.chosen();
     const auto& track = result.track;
     std::vector<std::string> models, numbers;
-    for (const auto& other : result.ladder.rungs) models.push_back(fmt::format("{} {}", models.size() + 1, other.name));
-    for (const auto parameter : rung.fit.model.list())
-        numbers.push_back(parameter_text(rung.fit, result.uncertainty, parameter));
+    for (const auto& other : result.ladder.candidates)
+        models.push_back(fmt::format("{} {}", models.size() + 1, other.name));
+    for (const auto parameter : candidate.fit.model.list())
+        numbers.push_back(parameter_text(candidate.fit, result.uncertainty, parameter));
     return {
-        .title = fmt::format("{}: {}", name, rung.name),
+        .title = fmt::format("{}: {}", name, candidate.name),
         .subtitle =
             fmt::format("{} samples in {:.1f} s of {} piece{}; {} parameters", track.samples(), track.duration(),
-                        track.pieces.size(), track.pieces.size() == 1 ? "" : "s", rung.fit.free_count()),
+                        track.pieces.size(), track.pieces.size() == 1 ? "" : "s", candidate.fit.free_count()),
         .panels = {track_plot(result), residual_plot(result), ladder_plot(result), horizon_plot(result.horizon)},
         .columns = 2,
         .captions = {fmt::format("Models: {}.", fmt::join(models, "; ")), fmt::format("{}.", fmt::join(numbers, ",  ")),

@@ -38,7 +38,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const double start = seconds_of(CLOCK_MONOTONIC);
     auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name, "fit", {files, options.force});
-    parts.demand(name + ".fit.json");
+    parts.require(name + ".fit.json");
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
     const auto result = answer(std::move(track), options, stop, report);

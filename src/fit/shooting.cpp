@@ -227,7 +227,7 @@ Fit stepped(const Fit& fit, double damping, std::size_t without, std::size_t oth
 }
 
 ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample) {
-    const auto [one, two] = glimpse_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
+    const auto [one, two] = estimate_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
     return {one.angle, two.angle, one.rate, two.rate};
 }
 

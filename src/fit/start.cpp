@@ -75,7 +75,7 @@ FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std:
     Unknowns x = Unknowns::Zero();
     for (Eigen::Index k = most; k-- > 0;) {
         const double time = replay.start_s + static_cast<double>(k) * interval.value();
-        const auto [one, two] = glimpse_at(*replay.track, replay.samples(), time);
+        const auto [one, two] = estimate_at(*replay.track, replay.samples(), time);
         x.head<4>() << one.angle, two.angle, one.rate, two.rate;
         measured.segment<2>(2 * k) = x.head<2>();
     }

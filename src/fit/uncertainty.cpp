@@ -106,7 +106,7 @@ std::optional<EnergyLoss> energy_loss(const FitJob& job, Fit start) {
     const auto& p = fit->parameters;
     Parameters taken = Parameters::Zero();
     double energy = 0;
-    for (const auto& [one, two] : glimpses_of(job.track, job.stop)) {
+    for (const auto& [one, two] : estimates_of(job.track, job.stop)) {
         const double w1 = one.rate, w2 = two.rate;
         taken[viscous_1] += w1 * w1, taken[viscous_2] += (w2 - w1) * (w2 - w1);
         energy += 0.5 * (p[inertia] * w1 * w1 + w2 * w2) + p[coupling] * std::cos(one.angle - two.angle) * w1 * w2;

@@ -58,7 +58,7 @@ struct Theme {
     Color rod, bob, pivot;       // what all pendulums share
     std::array<Color, 2> sides;  // a, b
     Color trace;                 // what belongs to both
-    Color bad, open;             // what broke down; what is not known
+    Color bad, open;             // what failed; what is not known
     Color none;                  // where a map has no value
     float glow;                  // how far the light of trails reaches, px of a 1920×1080 picture; 0 = none
     std::array<Color, 8>

@@ -2,7 +2,7 @@
 
 #include "integrate/incremental_euler.hpp"
 #include "physics/rod_chain.hpp"
-#include "physics/rod_pulls.hpp"
+#include "physics/rod_multipliers.hpp"
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace doppel {
 
 /// Two or three particles on rods, in the rods r_k = q_k − q_{k−1} and u_k = h r_k′: u_k grows by h² times what the rods
-/// pull the masses at its ends (physics/rod_pulls.hpp), and r_k by u_k.
+/// pull the masses at its ends (physics/rod_multipliers.hpp), and r_k by u_k.
 template <class Scalar, int N>
 class IncrementalEuler<RodChain<Scalar, N>> {
 public:
@@ -66,7 +66,7 @@ private:
     }
 
     using Pair = Planar<Scalar>;
-    using Pulls = RodPulls<Scalar>;
+    using Pulls = RodMultipliers<Scalar>;
     struct Now {
         Pair r[N], u[N];
     };
@@ -92,7 +92,7 @@ private:
     State start_;
     Scalar h_;          // s
     Pulls by_;          // gravity: h² g
-    Scalar scale3_{1};  // ρ_2 (physics/rod_pulls.hpp)
+    Scalar scale3_{1};  // ρ_2 (physics/rod_multipliers.hpp)
     Now now_;
     /// What the model finds in equilibrium stays there exactly: sums that are ordered for speed would let it tremble.
     decltype(Scalar() <= Scalar()) rests_ = Scalar(0) <= Scalar(0);

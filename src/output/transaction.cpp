@@ -29,7 +29,7 @@ Error not_ours(const fs::path& path) {
 }
 
 /// Throws where something of another type has the name; no link is followed.
-void demand_type(const fs::path& path, bool is_folder) {
+void require_type(const fs::path& path, bool is_folder) {
     const auto type = type_of(path);
     if (type == Type::not_found || type == (is_folder ? Type::directory : Type::regular)) return;
     throw io_failed("{} is {}; Doppel would {} there", path.string(),
@@ -94,7 +94,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::make_folders() {
-    demand_type(folder_, true);
+    require_type(folder_, true);
     fs::path way;
     for (const fs::path& step : folder_) {
         way /= step;
@@ -102,7 +102,7 @@ void Transaction::make_folders() {
         while (!fs::is_directory(way, ignored)) {  // again where another run removes it
             if (fs::create_directory(way, error)) made_.push_back(way);
             if (!error) continue;
-            demand_type(way, true);
+            require_type(way, true);
             throw Error(code_of_errno(error.value()),
                         fmt::format("{}: the folder cannot be made: {}", way.string(), error.message()));
         }
@@ -113,7 +113,7 @@ void Transaction::make_folders() {
 bool Transaction::lock() {
     const bool is_new = mkdir(hidden_.c_str(), 0777) == 0;
     if (!is_new && errno != EEXIST) throw cannot(folder_, "written to");
-    demand_type(hidden_, true);
+    require_type(hidden_, true);
     const auto path = hidden(lock_name);
     auto file = open_stream(path, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK, "a+");
     if (!file && errno == ENOENT) return false;
@@ -181,7 +181,7 @@ void Transaction::begin() {
 /// Throws where the name is there, and what has it may not be replaced by a file or a folder.
 void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
     const auto path = folder_ / name;
-    demand_type(path, is_folder);
+    require_type(path, is_folder);
     if (type_of(path) == Type::not_found) return;
     if (!is_folder) return refuse_foreign_file(name);
     for (const auto& file : names_in(path)) {

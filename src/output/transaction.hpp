@@ -40,7 +40,7 @@ public:
     /// The same for a folder of files, made empty. Publishing replaces an older folder NAME as a whole.
     std::filesystem::path directory(const std::string& name);
     /// Throws as file() does, for a file that is begun later.
-    void demand(const std::string& name) const { refuse_foreign_files(name, false); }
+    void require(const std::string& name) const { refuse_foreign_files(name, false); }
     /// Publishing removes the file NAME, where it is Doppel's.
     void remove(const std::string& name);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "physics/physical_pendulum.hpp"
-#include "physics/rod_pulls.hpp"
+#include "physics/rod_multipliers.hpp"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include "numeric/chain_matrix.hpp"
 #include "numeric/compensated.hpp"
 #include "physics/bob.hpp"
-#include "physics/rod_pulls.hpp"
+#include "physics/rod_multipliers.hpp"
 
 #include <cmath>
 #include <limits>
@@ -48,7 +48,7 @@ struct RodChain {
             l2[k] = p.length[i] * p.length[i];
         }
         if constexpr (N == 2 || N == 3) {
-            pulls_ = RodPulls<Scalar>(w, g);
+            pulls_ = RodMultipliers<Scalar>(w, g);
             by_rho2_ = w[0] / w[1];
             const Scalar never(std::numeric_limits<double>::infinity());
             for (Eigen::Index k = 0; k + 1 < N; ++k)
@@ -237,7 +237,7 @@ private:
     Multipliers lambda_;                        // N/m
     Multipliers squares_, crosses_, products_;  // |r_k|², w_k r_k × r_{k+1}, its square (of RATTLE's two places)
     // of two or three rods
-    RodPulls<Scalar> pulls_;
+    RodMultipliers<Scalar> pulls_;
     Scalar by_rho2_{1};
     Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ serves; infinite with a mass below 1/8 of the next
 };

@@ -119,7 +119,7 @@ void say_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<
     all.push_back({motors.empty() ? "no motor" : fmt::format("motor {}", fmt::join(motors, " and "))});
 }
 
-/// How finely a side is stepped, as far as its preset says it.
+/// How finely a side is integrated, as far as its preset says it.
 std::string control_words(const Side& side) {
     return side.choice ? fmt::format("accuracy {:g} rad", side.choice->accuracy) : step_control_text(side);
 }
@@ -168,7 +168,7 @@ std::string track_words(const Side& side, const TrackSpec& spec) {
     return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), roughly(rate));
 }
 
-/// Of a measured pendulum or its computed twin.
+/// Of a measured pendulum or its simulation.
 SideCaptions captions_of_track(const Side& side, const TrackSpec& track) {
     if (side.replay) return {"measured", track_words(side, track)};
     return {"computed", fmt::format("{}, {}", side.method.title, control_words(side))};

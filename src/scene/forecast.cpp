@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-constexpr double off = 0.5;  // rad: a run that errs by as much tells nothing
+constexpr double off = 0.5;  // rad: a run that has an error of as much tells nothing
 
 /// How far some runs get: the sample at which each is off, and the greatest and least error of those that are not.
 struct Ends {
@@ -94,7 +94,7 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
     return seen;
 }
 
-std::string off_words(const Side& side, double from_s) {
+std::string error_words(const Side& side, double from_s) {
     return fmt::format("its error exceeds half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
 }
 
@@ -105,7 +105,7 @@ std::optional<std::string> early_error(const Scene& scene, const Side& side, lon
         error_history(side.motion, reference_trajectory(side.motion, last, side.reach, off, stop, 0), off, stop);
     if (history.error.empty() || !(history.error.back() > off)) return std::nullopt;
     const long first = static_cast<long>(history.error.size()) - 1;
-    return first <= last ? std::optional(off_words(side, scene.time(first))) : std::nullopt;
+    return first <= last ? std::optional(error_words(side, scene.time(first))) : std::nullopt;
 }
 
 }  // namespace doppel

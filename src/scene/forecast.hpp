@@ -35,7 +35,7 @@ struct Forecast {
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
 
 /// "off by half a rad from 11 s on".
-std::string off_words(const Side& side, double from_s);
+std::string error_words(const Side& side, double from_s);
 
 /// Such words of a side whose run is off at a sample up to `last`, or whose accuracy does not hold so far; nothing where
 /// neither is. Errors as forecast_of().

@@ -29,7 +29,7 @@ void check_changes(const Preset& preset, const TomlReader& video) {
                               changes[i].at_s.value(), changes[i - 1].at_s.value());
 }
 
-/// How far a change of pace is at the share u of its time: 3u² − 2u³, integrated from 0.
+/// How far a change of speed is at the share u of its time: 3u² − 2u³, integrated from 0.
 double eased(double u) {
     return u * u * u * (1 - u / 2);
 }

@@ -128,9 +128,9 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
         if (!field.only.holds && !field.only.fault.empty())
             throw table.fault(key, "\"{}\" {}", number.path, field.only.fault);
     };
-    if (is_real) demand_counting();
+    if (is_real) require_counting();
     if (!is_array && number.element) throw table.fault(key, "\"{}\" is a number, not an array", number.path);
-    demand_counting();
+    require_counting();
     number.bounds = field.bounds;
     number.label = label_of(number, field);
     if (number.element && *number.element >= values.size())

@@ -18,7 +18,7 @@
 namespace doppel {
 
 /// Where neither preset nor command line says how finely to step.
-inline constexpr Rational usual_step{1, 30000};  // s, the study's
+inline constexpr Rational default_step{1, 30000};  // s, the study's
 inline const Quad usual_tolerance = parse_quad("1e-12"), usual_quad_tolerance = parse_quad("1e-28");
 
 enum class ModelChoice { automatic, angles, constraints, mechanism };
@@ -162,7 +162,7 @@ struct SideSpec {
     std::optional<std::string> label, note;  // in place of what pictures say of the side by themselves
 
     /// How finely to step where nothing was given, too.
-    Rational step() const { return step_s.value_or(usual_step); }
+    Rational step() const { return step_s.value_or(default_step); }
     Quad allowed_error() const {
         return tolerance.value_or(precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);
     }
@@ -249,7 +249,7 @@ std::string read_kind(TomlReader& scene);
 /// [system], [a] or [b]; `has_text` = with side_text_fields().
 void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
 
-/// [system] where only a chain and its release matter, and how it is stepped is not for the preset to say; `is_physical`:
+/// [system] where only a chain and its release matter, and how it is integrated is not for the preset to say; `is_physical`:
 /// with what a real chain has besides.
 void read_release(TomlReader& table, SideSpec& side, bool is_physical);
 

@@ -245,7 +245,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     const bool knows_font = read_font(first, document, preset.video);
     const auto font = preset.video.text_font;
     auto top = document.top(&faults, knows_font ? &preset.video.typeface : nullptr);
-    top.demand_title(preset.name);
+    top.require_title(preset.name);
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
 

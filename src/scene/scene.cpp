@@ -59,7 +59,7 @@ void check_steps(const Scene& scene) {
     }
 }
 
-/// The members of an ensemble, stepped as side a is; what no list gives goes from side a to side b in equal steps.
+/// The members of an ensemble, integrated as side a is; what no list gives goes from side a to side b in equal steps.
 std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto &first = scene.preset.a, &last = scene.preset.b;
     std::vector<MotionSpec> members;
@@ -154,7 +154,7 @@ std::optional<double> SideRun::energy_error(const Observation& seen) const {
     return seen.energy_change / proportion_.energy;
 }
 
-BreakDown SideRun::broken(const std::string& what) const {
+RunFailure SideRun::broken(const std::string& what) const {
     return {fmt::format("{}: side {} failed by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_, scene_.time(now_),
                         what, name_of(side_.motion.model), side_.method.title, step_control_text(side_)),
             name_, now_.share > 0 ? now_.sample + 1 : now_.sample};

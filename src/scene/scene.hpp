@@ -1,7 +1,7 @@
 #pragma once
 
-#include "analysis/breakdown.hpp"
 #include "analysis/reference.hpp"
+#include "analysis/watched_motion.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
@@ -167,9 +167,9 @@ struct PairState {
     Moment moment() const { return {sample, share}; }
 };
 
-/// A side whose method broke down (exit 3).
-struct BreakDown : Error {
-    BreakDown(const std::string& message, char side_name, long at_sample)
+/// A side whose method failed (exit 3).
+struct RunFailure : Error {
+    RunFailure(const std::string& message, char side_name, long at_sample)
         : Error(ExitCode::method_failed, message), side(side_name), sample(at_sample) {}
     char side;    // 'a' or 'b'
     long sample;  // the first that is wrong
@@ -181,7 +181,7 @@ public:
     /// `name` = 'a' or 'b', for errors.
     SideRun(const Scene& scene, const Side& side, char name);
 
-    /// Sample 0, then 1, 2, … Throws BreakDown with time and quantity where a number is no longer finite, the energy is
+    /// Sample 0, then 1, 2, … Throws RunFailure with time and quantity where a number is no longer finite, the energy is
     /// out of all proportion, a rod is off by its own length, or a step cannot be made; exit 130 soon after `stop` is
     /// set.
     Observation next(const std::atomic<bool>& stop);
@@ -189,19 +189,19 @@ public:
     /// Throws as next().
     Observation advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
-    /// Relative (analysis/breakdown.hpp); nothing where damping takes energy, so that no change of it is an error.
+    /// Relative (analysis/watched_motion.hpp); nothing where damping takes energy, so that no change of it is an error.
     std::optional<double> energy_error(const Observation& seen) const;
     Effort effort() const { return motion_->effort(); }
 
 private:
-    BreakDown broken(const std::string& what) const;
+    RunFailure broken(const std::string& what) const;
     void watch(const Observation& seen);
 
     const Scene& scene_;
     const Side& side_;
     char name_;
     std::unique_ptr<Motion> motion_;
-    Proportion proportion_;
+    ErrorScale proportion_;
     Moment now_{-1};
 };
 

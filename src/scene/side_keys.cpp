@@ -107,7 +107,7 @@ std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b) 
     };
     const auto in_a = index_of(of_a), in_b = index_of(of_b);
     std::vector<KeyDifference> all;
-    const auto twin_of = [](const SideKey& key, const Index& others) -> std::optional<SideKey> {
+    const auto counterpart_of = [](const SideKey& key, const Index& others) -> std::optional<SideKey> {
         const auto twin = others.find(Name(key.place, key.key));
         return twin == others.end() ? std::nullopt : std::optional(*twin->second);
     };
@@ -116,11 +116,11 @@ std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b) 
         return !key.place.empty() && !key.key.empty() && !others.contains(Name(key.place, ""));
     };
     for (const auto& key : of_a) {
-        const auto twin = twin_of(key, in_b);
+        const auto twin = counterpart_of(key, in_b);
         if (twin ? !hold_the_same(key, *twin) : !is_of_entry(key, in_b)) all.push_back({key, twin});
     }
     for (const auto& key : of_b)
-        if (!twin_of(key, in_a) && !is_of_entry(key, in_a)) all.push_back({std::nullopt, key});
+        if (!counterpart_of(key, in_a) && !is_of_entry(key, in_a)) all.push_back({std::nullopt, key});
     return all;
 }
 

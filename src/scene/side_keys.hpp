@@ -34,7 +34,7 @@ struct KeyDifference {
     std::string words(bool of_b) const;
 };
 
-/// By all keys that decide how sides move: what hangs, what acts on it, how it is stepped.
+/// By all keys that decide how sides move: what hangs, what acts on it, how it is integrated.
 std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b);
 
 /// The numbers that a member of a side holds, where it is of such a type: none of an optional one that is not given;

@@ -70,7 +70,7 @@ bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     entry.check_together([&] {
         if (particle.name.empty())
             throw entry.fault("name", "is missing; constraints and forces refer to a particle by it");
-        entry.demand_drawable("name", particle.name);
+        entry.require_drawable("name", particle.name);
     });
     part_fields(entry, particle);
     return true;

@@ -124,7 +124,7 @@ bool TomlReader::from_command_line(std::string_view key) {
     return node && is_typed(*node);
 }
 
-void TomlReader::demand_drawable(std::string_view key, std::string_view text) const {
+void TomlReader::require_drawable(std::string_view key, std::string_view text) const {
     const auto letters = static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xc0) != 0x80; }));
     if (letters > most_letters) throw fault(key, "must have at most {} letters; it has {}", most_letters, letters);
@@ -132,7 +132,7 @@ void TomlReader::demand_drawable(std::string_view key, std::string_view text) co
     if (const auto lacking = not_drawable(text, *typeface_)) throw fault(key, "{}", *lacking);
 }
 
-void TomlReader::demand_title(const std::string& name) {
+void TomlReader::require_title(const std::string& name) {
     if (has("title") || !typeface_) return;
     if (const auto fault = not_drawable(name, *typeface_))
         refuse({fmt::format("{}: title is missing, and the preset's name {}", path_, *fault), {}, ""}, "title");
@@ -211,7 +211,7 @@ bool TomlReader::counts(const Field& field) {
     return false;
 }
 
-void TomlReader::demand(const Field& field, bool given) const {
+void TomlReader::require(const Field& field, bool given) const {
     if (!given && !field.needed_by.empty())
         throw fault(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
 }

@@ -91,9 +91,9 @@ public:
     }
 
     /// Throws where `name`, which is shown where there is no title, has a letter that no font has.
-    void demand_title(const std::string& name);
+    void require_title(const std::string& name);
     /// Throws where `text`, the value of `key`, has too many letters, or one that no font has.
-    void demand_drawable(std::string_view key, std::string_view text) const;
+    void require_drawable(std::string_view key, std::string_view text) const;
     const toml::table* read_table(std::string_view key);
     /// The tables of [[key]]; none where it is absent.
     std::vector<const toml::table*> read_tables(std::string_view key);
@@ -130,7 +130,7 @@ private:
     std::optional<toml::source_region> source_of(std::string_view key) const;
     void note(std::string_view key, const Error& fault) const;
     bool counts(const Field& field);
-    void demand(const Field& field, bool given) const;
+    void require(const Field& field, bool given) const;
     bool is_ruled_out(const Field& field) const;
 
     const toml::table* table_;

@@ -35,7 +35,7 @@ public:
     void read(const toml::node& node, std::string& into) const {
         if (!node.is_string()) throw fault("must be a string; {}", found(node));
         into = node.as_string()->get();
-        if (field_.is_drawn) table_.demand_drawable(field_.key, into);
+        if (field_.is_drawn) table_.require_drawable(field_.key, into);
         const auto& names = field_.names;
         if (names.empty() || std::find(names.begin(), names.end(), into) != names.end()) return;
         const auto meant = nearest(into, names);
@@ -138,7 +138,7 @@ public:
     void read(const toml::node& node, std::vector<std::string>& into) const {
         auto texts = texts_in(node);
         for (const auto& text : texts) {
-            if (field_.is_drawn) table_.demand_drawable(field_.key, text);
+            if (field_.is_drawn) table_.require_drawable(field_.key, text);
             if (!field_.names.empty() &&
                 std::find(field_.names.begin(), field_.names.end(), text) == field_.names.end())
                 throw fault("must be of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
@@ -418,7 +418,7 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
                 ValueReader(*this, field).read(*node, value);
                 *into = std::move(value);
             }
-            demand(field, into->has_value());
+            require(field, into->has_value());
         } else {
             if (node) {
                 auto value = *into;
@@ -426,7 +426,7 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
                 *into = std::move(value);
             }
             if constexpr (requires { into->empty(); })
-                if (does_count) demand(field, !into->empty());
+                if (does_count) require(field, !into->empty());
         }
     };
     try {

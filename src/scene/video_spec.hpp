@@ -24,7 +24,7 @@ struct Range {
     double low, high;
 };
 
-/// How the pendulums of a film are placed: each side in a panel, the twin as a shadow; both in one panel; many between
+/// How the pendulums of a film are placed: each side in a panel, the other as a shadow; both in one panel; many between
 /// the two, fanning out; both beside a panel of their phase space; panels one above the other.
 enum class Arrangement { side_by_side, overlay, ensemble, phase, portrait };
 template <>
@@ -86,7 +86,7 @@ struct Member {
 struct Widths {
     double trail = 4.4, trace = 2.8;
     double rod = 0, bob = 0;        // a rod's width, the radius of the heaviest bob; 0 = by the size of the panel
-    double grid = 1.4, mark = 1.6;  // lines of charts; now, the parting, the horizon
+    double grid = 1.4, mark = 1.6;  // lines of charts; now, the divergence, the horizon
 };
 inline constexpr std::array<Member<Widths, double>, 6> width_names{{
     {"trail", &Widths::trail, "the path behind the last bob"},

@@ -53,8 +53,8 @@ struct Equations {
     }
 };
 
-ArmGlimpse glimpse_of(const TrackPiece& piece, std::size_t arm, const std::vector<std::size_t>& samples,
-                      double center) {
+LinkEstimate glimpse_of(const TrackPiece& piece, std::size_t arm, const std::vector<std::size_t>& samples,
+                        double center) {
     const auto count = samples.size();
     if (count < degree + 2) return {piece.angle[arm].front()};
     const double span = std::max(center - piece.time_s[samples.front()], piece.time_s[samples.back()] - center);
@@ -86,7 +86,7 @@ double window_of(const Track& track) {
 
 }  // namespace
 
-Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
+Glimpse estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
     // encoders err alike for some samples in a row, which the noise from sample to sample does not tell
     constexpr double noises = 3, shortest_s = 1e-6;
     Glimpse glimpse{};
@@ -99,13 +99,13 @@ Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, d
     return glimpse;
 }
 
-std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer) {
+std::vector<Glimpse> estimates_of(const Track& track, const std::atomic<bool>& stop, double longer) {
     std::vector<Glimpse> all;
     const double half = longer * window_of(track) / 2;
     for (const auto& piece : track.pieces)
         for (double time = piece.time_s.front() + half; time < piece.time_s.back() - half; time += half) {
             throw_if_set(stop);
-            all.push_back(glimpse_at(track, piece, time, longer));
+            all.push_back(estimate_at(track, piece, time, longer));
         }
     return all;
 }

@@ -7,18 +7,18 @@
 namespace doppel {
 
 /// Angle, rate and acceleration of a link at one moment, from a polynomial through the samples around it.
-struct ArmGlimpse {
+struct LinkEstimate {
     double angle = 0, rate = 0, acceleration = 0;
     double rms = 0;  // of how far the samples are from it, rad
 };
-using Glimpse = std::array<ArmGlimpse, 2>;
+using Glimpse = std::array<LinkEstimate, 2>;
 
 /// At a time on the piece's clock: by the longest window whose polynomial leaves noise alone; the longest of all is as long
 /// as the noise asks for, or `longer` times that.
-Glimpse glimpse_at(const Track& track, const TrackPiece& piece, double time_s, double longer = 1);
+Glimpse estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer = 1);
 
 /// At moments half a window apart.
-std::vector<Glimpse> glimpses_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
+std::vector<Glimpse> estimates_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
 
 /// The equations of motion, which are linear in the parameters, fitted to glimpses: no start needed, but accelerations
 /// are noisy and so the result is biased. What is unexplained says how well angles taken this way obey any double

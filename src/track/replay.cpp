@@ -29,7 +29,7 @@ public:
     void advance_within(double share, const std::atomic<bool>&) override { share_ = share; }
 
     Observation observe() const override {
-        const auto [one, two] = glimpse_at(*replay_.track, replay_.samples(), replay_.start_s + time());
+        const auto [one, two] = estimate_at(*replay_.track, replay_.samples(), replay_.start_s + time());
         State<double, Eigen::Dynamic> y(4);
         y << one.angle - replay_.offset[0], two.angle - replay_.offset[1], one.rate, two.rate;
         const PivotPlace<double> at(pendulum_.pivot, time());

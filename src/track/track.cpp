@@ -239,7 +239,7 @@ void find_clock(Track& track) {
     }
 }
 
-void demand_length(const Track& track) {
+void require_length(const Track& track) {
     for (const auto& piece : track.pieces)
         if (is_short(piece))
             throw bad_input(
@@ -252,7 +252,7 @@ void demand_length(const Track& track) {
             track.pieces.front().name, track.samples(), track.duration(), least_samples, least_s);
 }
 
-void demand_motion(const Track& track) {
+void require_motion(const Track& track) {
     constexpr double least = 0.05;  // rad
     const auto& name = track.pieces.front().name;
     for (std::size_t arm = 0; arm < 2; ++arm) {
@@ -315,7 +315,7 @@ void convert(Track& track, const Reading& reading) {
 /// what is a mistake, and takes so what is a convention.
 void check_convention(Track& track, const std::atomic<bool>& stop) {
     constexpr double well = 0.003, obeys = 0.1, much_better = 0.3, degree = std::numbers::pi / 180;
-    const auto glimpses = glimpses_of(track, stop);
+    const auto glimpses = estimates_of(track, stop);
     const double as_it_is = unexplained(glimpses, {});
     if (as_it_is < well) return;
     std::array<double, 2> low{track.pieces[0].angle[0][0], track.pieces[0].angle[1][0]}, high = low;
@@ -404,9 +404,9 @@ double median_size(std::vector<double> values) {
 void check_track(Track& track, const std::atomic<bool>& stop) {
     drop_fragments(track);
     find_clock(track);
-    demand_length(track);
+    require_length(track);
     find_noise(track, stop);
-    demand_motion(track);
+    require_motion(track);
     if (const auto outliers = track.outliers(), all = 2 * track.samples(); outliers > 0) {
         const auto words = fmt::format("{} of {} angles are outliers", outliers, all);
         if (10 * outliers > all) throw bad_input("{}: {}; a track is wanted", track.pieces.front().name, words);

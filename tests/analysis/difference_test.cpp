@@ -1,6 +1,6 @@
 #include "analysis/difference.hpp"
 
-#include "analysis/breakdown.hpp"
+#include "analysis/watched_motion.hpp"
 #include "integrate/support.hpp"
 
 #include <gtest/gtest.h>
@@ -25,9 +25,9 @@ TEST(Distance, LogRatioIsEmptyWhereThereIsNone) {
     EXPECT_DOUBLE_EQ(log_ratio(std::exp(2.0), 1).value(), 2);
 }
 
-TEST(Proportion, IsOfTheRangeWhereTheStartHasNoEnergy) {
+TEST(ErrorScale, IsOfTheRangeWhereTheStartHasNoEnergy) {
     const auto scale = [](const Pendulum<double>& p) {
-        return Proportion(Course(stepping(Model::angles, "euler", p, 120)).observe(), p.potential_range(), p.reach())
+        return ErrorScale(Course(stepping(Model::angles, "euler", p, 120)).observe(), p.potential_range(), p.reach())
             .energy;
     };
     EXPECT_DOUBLE_EQ(scale(released(90, 90)), 2 * 9.8 * (1 * 1 + 1 * 2));                 // cos 90° is 6e-17, not 0

@@ -29,7 +29,7 @@ TEST(Growth, DoublesUntilItBreaksDown) {
     for (int i = 0; i <= 20; ++i) times.push_back(std::pow(10, 0.1 * i));
     for (const double t : times) errors.push_back(t < 64 ? std::exp2(t / 5) : std::nan(""));
     const auto growth = growth_of(times, errors, 65);
-    EXPECT_EQ(growth.kind, Growth::Kind::breakdown);
+    EXPECT_EQ(growth.kind, Growth::Kind::failed);
     EXPECT_NEAR(growth.doubling_s, 5, 5e-15);  // measured 8.9e-16
 }
 

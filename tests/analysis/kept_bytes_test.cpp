@@ -1,7 +1,7 @@
 #include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
+#include "analysis/pair_batch.hpp"
 #include "analysis/spectrum.hpp"
-#include "analysis/twins.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 
@@ -77,7 +77,7 @@ std::string hash_of_exponents() {
 }
 
 std::string hash_of_twins(const MotionSpec& side, std::size_t links) {
-    std::vector<Twins> twins;
+    std::vector<PendulumPair> twins;
     for (int i = 0; i < 5; ++i) {
         auto p = released(links), other = p;
         p.angle[0] += 0.01 * i;
@@ -89,7 +89,7 @@ std::string hash_of_twins(const MotionSpec& side, std::size_t links) {
     const auto watch = [&](std::size_t i, long, const Bobs<double>& a, const Bobs<double>& b) {
         means[i].add(state_space_distance(a, b));
     };
-    step_twins(twins, {.a = side, .b = side, .samples = 2400}, watch, never);
+    step_pairs(twins, {.a = side, .b = side, .samples = 2400}, watch, never);
     for (const auto& mean : means) hash.add(mean.value());
     return hash.text();
 }

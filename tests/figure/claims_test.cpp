@@ -3,7 +3,7 @@
 
 #include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
-#include "analysis/twins.hpp"
+#include "analysis/pair_batch.hpp"
 #include "base/clock.hpp"
 #include "numeric/dual.hpp"
 #include "output/fixtures.hpp"
@@ -34,7 +34,7 @@ struct Found {
 
 // The study's releases, in its units, and what is measured of them.
 
-using SideTwins = std::pair<SideSpec, SideSpec>;
+using SidePair = std::pair<SideSpec, SideSpec>;
 
 /// Unit masses and lengths, from rest, by the study's Euler steps.
 SideSpec side(std::vector<Quad> angle_deg, ModelChoice model = ModelChoice::angles) {
@@ -53,13 +53,13 @@ SideSpec exactly(SideSpec spec) {
     return spec;
 }
 
-/// Twins 0.003° apart in the upper link.
-SideTwins angle_twins(int theta1_deg, int theta2_deg = 0) {
+/// PendulumPair 0.003° apart in the upper link.
+SidePair angle_pair(int theta1_deg, int theta2_deg = 0) {
     return {side({theta1_deg, theta2_deg}), side({theta1_deg + parse_quad("0.003"), theta2_deg})};
 }
 
-/// Twins of mass ratio `ratio` and 0.01 more.
-SideTwins mass_twins(int theta1_deg, int theta2_deg, double ratio) {
+/// PendulumPair of mass ratio `ratio` and 0.01 more.
+SidePair mass_pair(int theta1_deg, int theta2_deg, double ratio) {
     auto twins = std::pair{side({theta1_deg, theta2_deg}), side({theta1_deg, theta2_deg})};
     twins.first.mass_kg[0] = ratio;
     twins.second.mass_kg[0] = ratio + 0.01;
@@ -87,14 +87,14 @@ std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count) 
 }
 
 /// The study's averages over 25 s.
-std::vector<double> averages(const std::vector<SideTwins>& sides, const MotionSpec& method = {}) {
-    std::vector<Twins> twins;
+std::vector<double> averages(const std::vector<SidePair>& sides, const MotionSpec& method = {}) {
+    std::vector<PendulumPair> twins;
     for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
     std::vector<AverageLogRatio> means(twins.size());
     const auto watch = [&](std::size_t pair, long, const Bobs<double>& a, const Bobs<double>& b) {
         means[pair].add(state_space_distance(a, b));
     };
-    step_twins(twins, {.a = method, .b = method, .samples = 3000}, watch, never);
+    step_pairs(twins, {.a = method, .b = method, .samples = 3000}, watch, never);
     std::vector<double> found;
     for (const auto& mean : means) found.push_back(mean.value());
     return found;
@@ -118,11 +118,11 @@ Found equations() {
 }
 
 Found order_of_update() {
-    auto [a, b] = angle_twins(20);
+    auto [a, b] = angle_pair(20);
     a.integrator = b.integrator = "semi-implicit-euler";
     AverageLogRatio mean;
     for (const double distance : distances(a, b, 3000)) mean.add(distance);
-    const double explicit_euler = averages({angle_twins(20)})[0], velocities_first = mean.value();
+    const double explicit_euler = averages({angle_pair(20)})[0], velocities_first = mean.value();
     return {holds_if(std::abs(velocities_first - 2.205) < std::abs(explicit_euler - 2.205)),
             fmt::format("the published curve has 2.205 at 20°: explicit Euler, positions by the old velocities, gives "
                         "{:.4f}; velocities first gives {:.4f}",
@@ -142,7 +142,7 @@ Found constraint_row() {
 }
 
 Found positive_means_chaos() {
-    const auto average = averages({angle_twins(0), angle_twins(20)});
+    const auto average = averages({angle_pair(0), angle_pair(20)});
     const auto exponent = [&](int theta1_deg) {
         return largest_exponent(chain_of(side({theta1_deg, 0})).cast<double>(), {}, never);
     };
@@ -165,8 +165,8 @@ Found course_over_time() {
 }
 
 Found course_over_angle() {
-    std::vector<SideTwins> twins{angle_twins(40), angle_twins(80), angle_twins(108)};
-    for (int angle = 115; angle < 180; angle += 5) twins.push_back(angle_twins(angle));
+    std::vector<SidePair> twins{angle_pair(40), angle_pair(80), angle_pair(108)};
+    for (int angle = 115; angle < 180; angle += 5) twins.push_back(angle_pair(angle));
     const auto found = averages(twins);
     double sum = 0;
     for (std::size_t i = 3; i < found.size(); ++i) sum += found[i];
@@ -178,7 +178,7 @@ Found course_over_angle() {
 }
 
 Found figure3_axis() {
-    const auto found = averages({mass_twins(130, 0, 1), mass_twins(150, 0, 1), mass_twins(170, 0, 1)});
+    const auto found = averages({mass_pair(130, 0, 1), mass_pair(150, 0, 1), mass_pair(170, 0, 1)});
     const double beyond_130 = (found[0] + found[1] + found[2]) / 3;
     EXPECT_NEAR(beyond_130, 5.6, 0.1);
     return {Verdict::misprinted,
@@ -187,7 +187,7 @@ Found figure3_axis() {
 }
 
 Found figure3_release() {
-    const auto found = averages({mass_twins(90, 0, 0.5), mass_twins(90, 90, 0.5)});
+    const auto found = averages({mass_pair(90, 0, 0.5), mass_pair(90, 90, 0.5)});
     EXPECT_LT(found[0], found[1]);
     return {
         Verdict::misprinted,
@@ -256,8 +256,8 @@ Found droplet_90() {
 }
 
 Found three_links() {
-    std::vector<SideTwins> twins;
-    for (std::size_t i = 0; i < twins_block() / 2; ++i) {
+    std::vector<SidePair> twins;
+    for (std::size_t i = 0; i < pendulums_per_block() / 2; ++i) {
         const int angle = static_cast<int>(20 * i);
         twins.emplace_back(side({angle, 0, 0}), side({angle + parse_quad("0.003"), 0, 0}));
     }

@@ -41,7 +41,7 @@ TEST(Grid, InLanesFindsWhatAFilmShows) {
     for (std::size_t i = 0; i < 4; ++i) {
         const auto scene = film(distances.rows[i][0]);
         PairRun run(scene);
-        Parting parting;
+        Divergence parting;
         double last = 0, worst = 0;
         for (long n = 0; n <= scene.samples; ++n) {
             const auto state = run.next(false);
@@ -148,7 +148,7 @@ TEST(FlipMap, OfAPartHasTheCellsOfTheWhole) {
     for (const auto& row : still.rows) EXPECT_TRUE(std::isnan(row[2]));
 }
 
-/// Twins over the mass ratio, at three angles.
+/// PendulumPair over the mass ratio, at three angles.
 const std::string three_angles = R"(
 [scene]
 kind = "grid"

@@ -81,10 +81,10 @@ TEST(NumbersOfWork, AreThoseOfWholeRungs) {
         "speed-accuracy",
         {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\"]"});
     const auto& work = *figure.experiment;
-    const TrialNumbers rung{1e-3, 1e-6, none, 0, 1e-4, 400, 100, 0};
-    auto two = rung;
-    two.insert(two.end(), rung.begin(), rung.end());
-    EXPECT_TRUE(work.fits(1, rung));
+    const TrialNumbers outcome{1e-3, 1e-6, none, 0, 1e-4, 400, 100, 0};
+    auto two = outcome;
+    two.insert(two.end(), outcome.begin(), outcome.end());
+    EXPECT_TRUE(work.fits(1, outcome));
     EXPECT_TRUE(work.fits(1, two));
     EXPECT_TRUE(work.fits(1, TrialNumbers(8, none)));
     EXPECT_FALSE(work.fits(1, {}));

@@ -80,17 +80,17 @@ TEST(WorkPrecision, HasTheColumnsAndEveryLadder) {
         second({"work_precision.methods=[\"rk4\", \"rattle\", \"taylor\"]", "work_precision.most_evaluations=20000"});
     EXPECT_EQ(header_line(figure),
               "problem,model,method,setting,angle_error_rad,energy_error,length_error_m,cpu_seconds,evaluations,steps");
-    std::map<std::string, int> rungs;
+    std::map<std::string, int> outcomes;
     for (const auto& row : rows_of(figure)) {
-        ++rungs[row.cells.at("model") + " " + row.cells.at("method")];
+        ++outcomes[row.cells.at("model") + " " + row.cells.at("method")];
         EXPECT_EQ(row.cells.at("cpu_seconds"), "");
         EXPECT_GT(row.number("evaluations"), 0);
         if (row.cells.at("model") == "angles") {
             EXPECT_EQ(row.number("length_error_m"), 0);
         }
     }
-    ASSERT_EQ(rungs.size(), 3u + 3 + 2);  // rattle does not serve angles
-    for (const auto& [name, count] : rungs) EXPECT_GT(count, 10) << name;
+    ASSERT_EQ(outcomes.size(), 3u + 3 + 2);  // rattle does not serve angles
+    for (const auto& [name, count] : outcomes) EXPECT_GT(count, 10) << name;
 }
 
 TEST(WorkPrecision, FallsByThePowerOfEachOrder) {

@@ -104,9 +104,9 @@ TEST(Hero, LongHeadingsLeaveTheCircleWhereItIs) {
         expect_in_place_at_all_sizes(scene_of("butterfly", arguments), arguments[0]);
 }
 
-TEST(Parting, TakesAStartAsOneAndAWholeSecondApart) {
+TEST(Divergence, TakesAStartAsOneAndAWholeSecondApart) {
     const auto since = [](double start, const std::vector<std::pair<double, double>>& steps) {
-        Parting parting;
+        Divergence parting;
         parting.add(0, start);
         for (const auto& [time, distance] : steps) parting.add(time, distance);
         return parting.since();
@@ -121,7 +121,7 @@ TEST(Parting, TakesAStartAsOneAndAWholeSecondApart) {
     EXPECT_EQ(since(0.0999, Steps{{2, 1.5}, {3, 1.5}}), 2);
 }
 
-TEST(Parting, IsInTheManifest) {
+TEST(Divergence, IsInTheManifest) {
     // by a method that is right for as long; explicit Euler, off by half a rad from 11 s on, says 14.2
     const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1e-13"});
     EXPECT_NEAR(manifest_of(scene)["parted_s"].get<double>(), 15.35, 0.01);

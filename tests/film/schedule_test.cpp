@@ -94,7 +94,7 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     EXPECT_GT(title, 30);
     EXPECT_LT(title, 100);
     // the words of a tile are the time alone
-    const auto composer = composed(tile, 60, Dress::tile);
+    const auto composer = composed(tile, 60, PictureKind::tile);
     EXPECT_EQ(words_of({composer->backdrop(), composer->frame()}), std::vector<std::string>{"0.50 s"});
     // the last tile is the end of the motion
     Renderer renderer(tile.preset.video.size, composer->backdrop());
@@ -104,7 +104,7 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
         for (int x = 0; x < last.size.width; ++x)
             ASSERT_TRUE(std::equal(last.at(x, y), last.at(x, y) + 4, sheet.at(left + x, top + y))) << x << ' ' << y;
     // both pendulums fill their halves: a circle takes most of a tile's width
-    const auto layout = make_layout(tile, bounds_of(scene), Dress::tile);
+    const auto layout = make_layout(tile, bounds_of(scene), PictureKind::tile);
     EXPECT_GT(4 * layout.reach, 0.85f * 320);
 }
 

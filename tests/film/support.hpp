@@ -50,7 +50,7 @@ inline std::vector<std::string> one_link_at(const std::string& a, const std::str
 }
 
 /// That has seen the samples 0 … last.
-inline std::unique_ptr<Composer> composed(const Scene& scene, long last, Dress dress = Dress::film) {
+inline std::unique_ptr<Composer> composed(const Scene& scene, long last, PictureKind dress = PictureKind::film) {
     Recording recording(scene, {last + 1}, true, never_stopped);
     auto composer = std::make_unique<Composer>(scene, recording.bounds(), dress);
     recording.play([&](const Snapshot& snapshot) {

@@ -255,7 +255,7 @@ TEST(Transaction, LeavesFilesOfAnotherKindOfRunButWhereForced) {
         Transaction(out, "run", "fit").file(name);
         Transaction(out, "run", "film", {.force = true}).file(name);
         expect_error(ExitCode::io_failed, {name, "fit", "film", "--out", "--force"},
-                     [&] { Transaction(out, "run", "film").demand(name); });
+                     [&] { Transaction(out, "run", "film").require(name); });
     }
 }
 

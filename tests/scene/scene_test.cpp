@@ -225,7 +225,7 @@ TEST(Rivals, TheCommandLineDropsWhatThePresetSaysForAnotherKind) {
     EXPECT_EQ(given.b.motion.tolerance, parse_quad("1e-9"));
     const auto fixed = scene_of("whip", {"system.integrator=\"rk4\""});
     EXPECT_FALSE(fixed.preset.a.tolerance);
-    EXPECT_EQ(fixed.a.step, usual_step);
+    EXPECT_EQ(fixed.a.step, default_step);
     // a side of its own in the preset
     const auto mixed =
         make_scene(read_preset({"x", "x.toml", "[system]\nstep_s = \"1/600\"\n[b]\nintegrator = \"dop853\""}));
@@ -338,7 +338,7 @@ step_s = "1/50"
     try {
         run.next(never);
         ADD_FAILURE();
-    } catch (const BreakDown& fault) {
+    } catch (const RunFailure& fault) {
         EXPECT_EQ(fault.sample, sample);
     }
 }

@@ -22,17 +22,17 @@ struct Planar {
 /// by its adjugate, where r_3 and u_3 stand for themselves divided by ρ_2. The pulls p_k = x_k r_k give
 ///     q_1″ = p_1 − p_2 − g ŷ,     q_2″ = ρ_2 p_2 − p_3 − g ŷ,     q_3″ = (m_2/m_3) p_3 − g ŷ .
 template <class Scalar>
-struct RodPulls {
+struct RodMultipliers {
     using Vector = Planar<Scalar>;
 
     Scalar gravity{0};            // g, m/s²
     Scalar rho2{0}, below{0};     // ρ_2, m_2/m_3
     Scalar kappa2{0}, kappa3{0};  // as above
 
-    RodPulls() = default;
+    RodMultipliers() = default;
     /// Of inverse masses.
     template <class Masses>
-    RodPulls(const Masses& w, const Scalar& g) : gravity(g), rho2(w[1] / w[0]), kappa2(Scalar(1) + rho2) {
+    RodMultipliers(const Masses& w, const Scalar& g) : gravity(g), rho2(w[1] / w[0]), kappa2(Scalar(1) + rho2) {
         if (w.size() == 2) return;
         below = w[2] / w[1];
         kappa3 = (rho2 + w[2] / w[0]) / (rho2 * rho2);

@@ -1,4 +1,4 @@
-#include "analysis/twins.hpp"
+#include "analysis/pair_batch.hpp"
 
 #include "analysis/difference.hpp"
 #include "base/error.hpp"
@@ -15,18 +15,18 @@ namespace twins_test {
 
 constexpr long samples = 40;
 
-TwinRun both(Model model, const std::string& method = "euler") {
+PairBatchSpec both(Model model, const std::string& method = "euler") {
     const MotionSpec side{.model = model, .method = method};
     return {.a = side, .b = side, .samples = samples};
 }
 
-std::vector<double> averages_of(const std::vector<Twins>& twins, const TwinRun& run,
+std::vector<double> averages_of(const std::vector<PendulumPair>& twins, const PairBatchSpec& run,
                                 const std::atomic<bool>& stop = false) {
     std::vector<AverageLogRatio> means(twins.size());
     const auto watch = [&](std::size_t i, long, const Bobs<double>& a, const Bobs<double>& b) {
         means[i].add(state_space_distance(a, b));
     };
-    step_twins(twins, run, watch, stop);
+    step_pairs(twins, run, watch, stop);
     std::vector<double> averages;
     for (const auto& mean : means) averages.push_back(mean.value());
     return averages;
@@ -38,7 +38,7 @@ Course course_of(const Pendulum<double>& p, MotionSpec side) {
 }
 
 /// The same mean from two motions of the films, each stepped alone.
-double average_of_films(const Twins& twins, const TwinRun& run) {
+double average_of_films(const PendulumPair& twins, const PairBatchSpec& run) {
     auto a = course_of(twins.a, run.a), b = course_of(twins.b, run.b);
     const double start = state_space_distance(a.observe().bobs, b.observe().bobs);
     double sum = 0;
@@ -51,11 +51,11 @@ double average_of_films(const Twins& twins, const TwinRun& run) {
     return sum / static_cast<double>(counted);
 }
 
-/// Twins apart in an angle, in a mass, in everything; as many as fill no register evenly.
-std::vector<Twins> some_twins(std::size_t count = 13) {
+/// PendulumPair apart in an angle, in a mass, in everything; as many as fill no register evenly.
+std::vector<PendulumPair> some_twins(std::size_t count = 13) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> some(0.5, 2), angle(-3, 3);
-    std::vector<Twins> all;
+    std::vector<PendulumPair> all;
     for (std::size_t i = 0; i < count; ++i) {
         Pendulum<double> p;
         p.mass = {some(random), some(random)};
@@ -63,7 +63,7 @@ std::vector<Twins> some_twins(std::size_t count = 13) {
         p.angle = {angle(random), angle(random)};
         p.rate = {angle(random), angle(random)};
         p.gravity = 5 * some(random);
-        Twins twins{p, p};
+        PendulumPair twins{p, p};
         if (i % 3 != 1) twins.b.angle[0] += 1e-4;
         if (i % 3 != 0) twins.b.mass[0] *= 1.01;
         all.push_back(twins);
@@ -71,19 +71,19 @@ std::vector<Twins> some_twins(std::size_t count = 13) {
     return all;
 }
 
-void expect_as_films(const TwinRun& run) {
+void expect_as_films(const PairBatchSpec& run) {
     const auto twins = some_twins();
     const auto averages = averages_of(twins, run);
     for (std::size_t i = 0; i < twins.size(); ++i)
         EXPECT_EQ(averages[i], average_of_films(twins[i], run)) << run.a.method << ", twins " << i;
 }
 
-TEST(Twins, AverageAsTheFilmsToTheLastBit) {
+TEST(PendulumPair, AverageAsTheFilmsToTheLastBit) {
     for (const auto model : {Model::angles, Model::constraints})
         for (const char* method : {"euler", "rk4"}) expect_as_films(both(model, method));
 }
 
-TEST(Twins, MayDifferInTheirEquationsMethodsAndSteps) {
+TEST(PendulumPair, MayDifferInTheirEquationsMethodsAndSteps) {
     auto run = both(Model::angles);
     run.b.model = Model::constraints;
     expect_as_films(run);
@@ -91,9 +91,9 @@ TEST(Twins, MayDifferInTheirEquationsMethodsAndSteps) {
     expect_as_films(run);
 }
 
-TEST(Twins, ShareThePendulumsTheyHaveInCommon) {
+TEST(PendulumPair, ShareThePendulumsTheyHaveInCommon) {
     const auto run = both(Model::angles);
-    std::vector<Twins> chain;  // each one's twin is the next one's sibling
+    std::vector<PendulumPair> chain;  // each one's twin is the next one's sibling
     for (int i = 0; i < 9; ++i) chain.push_back({released(10 * i, 0), released(10 * (i + 1), 0)});
     chain.push_back(chain[4]);
     chain.push_back({chain[2].b, chain[2].a});
@@ -106,21 +106,21 @@ TEST(Twins, ShareThePendulumsTheyHaveInCommon) {
     EXPECT_GT(std::abs(averages[11] - averages[4]), 1e-3);
 }
 
-TEST(Twins, ThatAreOneHaveNoAverage) {
+TEST(PendulumPair, ThatAreOneHaveNoAverage) {
     const auto run = both(Model::constraints);
-    const Twins one{released(90, 90), released(90, 90)}, two{released(90, 90), released(91, 90)};
+    const PendulumPair one{released(90, 90), released(90, 90)}, two{released(90, 90), released(91, 90)};
     const auto averages = averages_of({one, two, one}, run);
     EXPECT_TRUE(std::isnan(averages[0]));
     EXPECT_EQ(averages[1], average_of_films(two, run));
     EXPECT_TRUE(std::isnan(averages[2]));
 }
 
-TEST(Twins, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
+TEST(PendulumPair, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
     // steps that tear the wild ones apart and suit the calm ones, which swing once in an hour
     auto calm = released(20, -10);
     calm.gravity = 1e-6;
-    const Twins wild{released(170, 10), released(171, 10)};
-    Twins one{calm, calm}, other{calm, calm};
+    const PendulumPair wild{released(170, 10), released(171, 10)};
+    PendulumPair one{calm, calm}, other{calm, calm};
     one.b.angle[0] += 1e-4;
     other.b.mass[0] *= 1.01;
     for (const auto model : {Model::angles, Model::constraints}) {
@@ -137,7 +137,7 @@ TEST(Twins, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
     }
 }
 
-TEST(Twins, StopWhenAsked) {
+TEST(PendulumPair, StopWhenAsked) {
     EXPECT_THROW(averages_of({{released(90, 0), released(91, 0)}}, both(Model::angles), true), Error);
 }
 

@@ -14,7 +14,7 @@ constexpr float least_column = 0.23f;
 constexpr float least_curve = 60, enough_curve = 110;
 
 /// Panels side by side, or one above the other, each below its heading.
-std::vector<Area> panel_areas(const Area& room, const RoomNeeds& needs) {
+std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs) {
     const auto n = static_cast<float>(needs.panels);
     const float gaps = (n - 1) * needs.gap;
     const float width = needs.tall ? room.width() : std::floor((room.width() - gaps) / n);
@@ -30,13 +30,13 @@ std::vector<Area> panel_areas(const Area& room, const RoomNeeds& needs) {
 }
 
 /// What strips take besides the curves where each has a caption of one line.
-float words_of(const RoomNeeds& needs) {
+float words_of(const RegionNeeds& needs) {
     const auto count = static_cast<float>(needs.strips.size());
     return needs.text * (time_labels_height + count * (caption_line + caption_edge)) + needs.gap / 3;
 }
 
 /// Panels as high as their circles want, up to squares; of what they leave, the strips get no more than serves them.
-Rooms with_strips_below(const Area& room, const RoomNeeds& needs) {
+Regions with_strips_below(const Area& room, const RegionNeeds& needs) {
     const auto count = static_cast<float>(needs.strips.size()), n = static_cast<float>(needs.panels);
     const float words = words_of(needs);
     float strips = 0;
@@ -57,7 +57,7 @@ Rooms with_strips_below(const Area& room, const RoomNeeds& needs) {
             {room.left, split + needs.gap / 3, room.right, room.bottom}};
 }
 
-Rooms with_strips_beside(const Area& room, const RoomNeeds& needs, float column) {
+Regions with_strips_beside(const Area& room, const RegionNeeds& needs, float column) {
     const float split = std::round(room.right - column);
     return {panel_areas({room.left, room.top, split - needs.gap, room.bottom}, needs),
             {split, room.top, room.right, room.bottom}};
@@ -65,7 +65,7 @@ Rooms with_strips_beside(const Area& room, const RoomNeeds& needs, float column)
 
 }  // namespace
 
-Rooms shared_out(const Area& room, const RoomNeeds& needs) {
+Regions split_regions(const Area& room, const RegionNeeds& needs) {
     if (needs.panels == 0) return {{}, room};
     if (needs.strips.empty()) return {panel_areas(room, needs), {}};
     if (needs.tall) return with_strips_below(room, needs);

@@ -1,4 +1,4 @@
-#include "fit/ladder.hpp"
+#include "fit/model_hierarchy.hpp"
 
 #include "base/threads.hpp"
 #include "fit/beginning.hpp"
@@ -33,38 +33,38 @@ std::vector<FittedModel> models_of(Bodies bodies) {
 }
 
 /// Judges by every unit, of which the starts alone are fitted: its mean square residual, infinite where no motion stays finite.
-void leave_out(const FitJob& job, FittedModel& rung) {
-    rung.left_out.resize(rung.fit.units());
-    parallel_for(rung.left_out.size(), job.threads, [&](std::size_t unit) {
-        const auto without = stepped(rung.fit, 0, unit, unit);
+void leave_out(const FitJob& job, FittedModel& candidate) {
+    candidate.left_out.resize(candidate.fit.units());
+    parallel_for(candidate.left_out.size(), job.threads, [&](std::size_t unit) {
+        const auto without = stepped(candidate.fit, 0, unit, unit);
         const auto alone = fit_starts({job.track, job.stop}, without, without.unit(unit), 8, 1e-3);
-        rung.left_out[unit] = alone ? alone->rms * alone->rms : std::numeric_limits<double>::infinity();
+        candidate.left_out[unit] = alone ? alone->rms * alone->rms : std::numeric_limits<double>::infinity();
     });
     double squares = 0, samples = 0;
-    for (const auto& shot : rung.fit.shots) {
-        squares += static_cast<double>(shot.size()) * rung.left_out[shot.unit];
+    for (const auto& shot : candidate.fit.shots) {
+        squares += static_cast<double>(shot.size()) * candidate.left_out[shot.unit];
         samples += static_cast<double>(shot.size());
     }
-    rung.left_out_rms = std::sqrt(squares / samples);
+    candidate.left_out_rms = std::sqrt(squares / samples);
 }
 
 /// Whether a model predicts pieces left out as well as the best, within what pieces differ by; and, where the best leaves
 /// no more than samples scatter from one to the next, so noise, is as likely: by the ratio of likelihoods, at some 99.9 %.
-bool is_as_good(const Track& track, const FittedModel& rung, const FittedModel& best) {
+bool is_as_good(const Track& track, const FittedModel& candidate, const FittedModel& best) {
     constexpr double negligible = 0.1, about = 1.3;  // of the mean square: a twentieth of the rms; of the noise
     double sum = 0, squares = 0;
-    const auto count = static_cast<double>(rung.left_out.size());
-    for (std::size_t u = 0; u < rung.left_out.size(); ++u) {
-        const double ratio = portable_log(rung.left_out[u] / best.left_out[u]);
+    const auto count = static_cast<double>(candidate.left_out.size());
+    for (std::size_t u = 0; u < candidate.left_out.size(); ++u) {
+        const double ratio = portable_log(candidate.left_out[u] / best.left_out[u]);
         sum += ratio;
         squares += ratio * ratio;
     }
     const double mean = sum / count, variance = (squares - sum * mean) / std::max(count - 1, 1.0);
     if (!(mean <= std::max(negligible, std::sqrt(variance / count)))) return false;
     const double noise = std::sqrt(0.5 * (track.noise[0] * track.noise[0] + track.noise[1] * track.noise[1]));
-    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(rung.fit.free_count());
+    const double more = static_cast<double>(best.fit.free_count()) - static_cast<double>(candidate.fit.free_count());
     return best.fit.rms >= about * noise ||
-           2 * static_cast<double>(rung.fit.residual_count()) * portable_log(rung.fit.rms / best.fit.rms) <
+           2 * static_cast<double>(candidate.fit.residual_count()) * portable_log(candidate.fit.rms / best.fit.rms) <
                10 + 2 * std::max(more, 0.0);
 }
 
@@ -79,19 +79,19 @@ Fit as_model(const ModelSpec& model, Fit fit) {
 
 }  // namespace
 
-ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
+ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
     constexpr double roughly = 5e-4;  // enough to compare
     const auto models = models_of(bodies);
     const auto first = begin_fit(job);
-    ModelLadder ladder;
-    auto& rungs = ladder.rungs;
-    for (auto rung : models) {
+    ModelHierarchy ladder;
+    auto& candidates = ladder.candidates;
+    for (auto candidate : models) {
         throw_if_set(job.stop);
         // from the nearer of two places: where all began, and where the model before ended
-        const auto model = rung.fit.model;
+        const auto model = candidate.fit.model;
         auto start = as_model(model, first);
-        if (!rungs.empty() && rungs.back().fit.model.point_masses == model.point_masses) {
-            auto other = as_model(model, rungs.back().fit);
+        if (!candidates.empty() && candidates.back().fit.model.point_masses == model.point_masses) {
+            auto other = as_model(model, candidates.back().fit);
             start.step_s = other.step_s, start.scale = other.scale;
             evaluate_fit(job, start);
             evaluate_fit(job, other);
@@ -99,15 +99,15 @@ ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(con
         }
         auto fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = roughly});
         if (!fit) continue;
-        rung.fit = *std::move(fit);
-        leave_out(job, rung);
-        rungs.push_back(std::move(rung));
-        report({static_cast<long>(rungs.size()), static_cast<long>(models.size())});
+        candidate.fit = *std::move(fit);
+        leave_out(job, candidate);
+        candidates.push_back(std::move(candidate));
+        report({static_cast<long>(candidates.size()), static_cast<long>(models.size())});
     }
-    if (rungs.empty()) throw no_motion(job.track);
-    for (std::size_t k = 0; k < rungs.size(); ++k)
-        if (rungs[k].left_out_rms < rungs[ladder.best].left_out_rms) ladder.best = k;
-    while (ladder.chosen < ladder.best && !is_as_good(job.track, rungs[ladder.chosen], rungs[ladder.best]))
+    if (candidates.empty()) throw no_motion(job.track);
+    for (std::size_t k = 0; k < candidates.size(); ++k)
+        if (candidates[k].left_out_rms < candidates[ladder.best].left_out_rms) ladder.best = k;
+    while (ladder.chosen < ladder.best && !is_as_good(job.track, candidates[ladder.chosen], candidates[ladder.best]))
         ++ladder.chosen;
     return ladder;
 }

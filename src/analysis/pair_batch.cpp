@@ -1,4 +1,4 @@
-#include "analysis/twins.hpp"
+#include "analysis/pair_batch.hpp"
 
 #include "base/error.hpp"
 #include "integrate/widths.hpp"
@@ -39,11 +39,11 @@ struct SideBatch {
 
 }  // namespace
 
-std::size_t twins_block() {
+std::size_t pendulums_per_block() {
     return 2 * static_cast<std::size_t>(register_widths().back());
 }
 
-void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatch& watch,
+void step_pairs(std::span<const PendulumPair> pairs, const PairBatchSpec& run, const PairObserver& watch,
                 const std::atomic<bool>& stop) {
     const auto stepping = [](const MotionSpec& side) {
         return std::tie(side.model, side.method, side.steps_per_sample);
@@ -53,7 +53,7 @@ void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatc
     if (stepping(run.b) != stepping(run.a)) batches.push_back({run.b});
     auto &batch_a = batches.front(), &batch_b = batches.back();
     std::vector<std::pair<std::size_t, std::size_t>> members;
-    for (const auto& pair : twins) members.emplace_back(batch_a.add(pair.a), batch_b.add(pair.b));
+    for (const auto& pair : pairs) members.emplace_back(batch_a.add(pair.a), batch_b.add(pair.b));
     for (auto& [side, pendulums, batch, seen, state] : batches)
         batch.emplace(pendulums, side.model, side.method,
                       side.sample_interval.value() / static_cast<double>(side.steps_per_sample));
@@ -63,7 +63,7 @@ void step_twins(std::span<const Twins> twins, const TwinRun& run, const TwinWatc
             if (n > 0) batch.batch->advance(batch.side.steps_per_sample);
             batch.look();
         }
-        for (std::size_t i = 0; i < twins.size(); ++i)
+        for (std::size_t i = 0; i < pairs.size(); ++i)
             watch(i, n, batch_a.seen[members[i].first], batch_b.seen[members[i].second]);
     }
 }

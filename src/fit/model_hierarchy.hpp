@@ -17,8 +17,8 @@ struct FittedModel {
 };
 
 /// All models, from the smallest. `chosen` is the smallest that predicts pieces left out as well as the best does.
-struct ModelLadder {
-    std::vector<FittedModel> rungs;
+struct ModelHierarchy {
+    std::vector<FittedModel> candidates;
     std::size_t chosen = 0, best = 0;
 };
 
@@ -27,6 +27,6 @@ struct ModelLadder {
 /// describes the track, 130.
 ///
 /// Source  Hastie, Tibshirani & Friedman, The Elements of Statistical Learning, §7.10 (the rule of one standard error)
-ModelLadder climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report);
+ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report);
 
 }  // namespace doppel

@@ -1,4 +1,4 @@
-#include "analysis/breakdown.hpp"
+#include "analysis/watched_motion.hpp"
 
 #include "base/error.hpp"
 
