@@ -140,7 +140,7 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
     for (const auto which : {&Scene::a, &Scene::b}) {
         const auto& side = scene.*which;
         auto& [forecast, rivals] = check.sides[which == &Scene::a ? 0 : 1];
-        if (side.replay) continue;
+        if (side.replay || (scene.is_single() && which == &Scene::b)) continue;
         if (!check.simulation.at_least && check.simulation.seconds < patience)
             forecast = forecast_of(scene, side, stop);
         if (side.choice) rivals = rivals_of(scene, which, stop);
@@ -155,6 +155,7 @@ void print(const SceneCheck& check) {
     print_line("{}: {}", scene.preset.name, scene.preset.title);
     for (const auto& [name, side, of_side] :
          {std::tuple("a", &scene.a, &check.sides[0]), {"b", &scene.b, &check.sides[1]}}) {
+        if (scene.is_single() && side == &scene.b) continue;
         print_side(name, *side);
         if (of_side->forecast) print_forecast(scene, *side, *of_side->forecast);
         for (const auto& rival : of_side->rivals) print_line("         {}", rival);
@@ -226,7 +227,8 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     const auto& video = scene.preset.video;
     const bool is_exact = !scene.a.method.adaptive && !scene.b.method.adaptive;
     auto json = heading_json(preset, scene.preset.title);
-    for (const std::size_t which : {0, 1}) json[which == 0 ? "a" : "b"] = side_json(check, which, warnings);
+    for (std::size_t which = 0; which < (scene.is_single() ? 1 : 2); ++which)
+        json[which == 0 ? "a" : "b"] = side_json(check, which, warnings);
     json["duration_s"] = scene.preset.duration_s.value();
     json["sample_hz"] = scene.preset.sample_hz.value();
     json["samples"] = scene.samples + 1;

@@ -187,7 +187,8 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
     }
     const auto figures = figure_tables();
     all = {named(figures[0], "")};
-    pair[0].fields.pop_back();  // columns of a film's table
+    std::erase_if(pair[0].fields,
+                  [](const ListedField& field) { return field.key.ends_with("_columns"); });  // of films
     for (const auto& figure : figure_kinds()) {
         if (figure.name != kind) continue;
         if (figure.system == FigureKind::System::pair)

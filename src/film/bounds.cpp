@@ -109,9 +109,11 @@ void MotionBounds::add(const Scene& scene, const PairState& state, double start_
 
 View fitted_view(const Scene& scene, const MotionBounds& seen) {
     if (has_circle(scene)) {
-        const double across = 2 * std::max(chain_length(scene.preset.a) + scene.a.pivot_reach,
-                                           chain_length(scene.preset.b) + scene.b.pivot_reach);
-        return {.width = across, .height = across};
+        double reach = std::max(chain_length(scene.preset.a) + scene.a.pivot_reach,
+                                chain_length(scene.preset.b) + scene.b.pivot_reach);
+        for (const auto& member : scene.members)
+            reach = std::max(reach, static_cast<double>(member.chain->reach()) + scene.a.pivot_reach);
+        return {.width = 2 * reach, .height = 2 * reach};
     }
     double left = seen.left, right = seen.right, bottom = seen.bottom, top = seen.top;
     for (const auto* side : {&scene.a, &scene.b})

@@ -43,7 +43,7 @@ PendulumPanel still_panel(const Layout& layout) {
     panel.area = {panel.center.x - width / 2, panel.center.y - height / 2, panel.center.x + width / 2,
                   panel.center.y + height / 2};
     panel.px_per_m *= scale;
-    panel.sides = {0, 1};
+    if (layout.panels.size() > 1) panel.sides = {0, 1};
     return panel;
 }
 
@@ -137,10 +137,11 @@ DisplayList Composer::title_card(double opacity) const {
     return card({card_line(state_.scene.preset.title, font.card, Weight::bold, theme.text),
                  card_line(scene_caption(state_.scene, wording_of(state_.scene)), 1.3 * font.subtitle, Weight::regular,
                            theme.quiet_text)},
-                {side(0), side(1)}, opacity);
+                state_.scene.is_single() ? std::vector{side(0)} : std::vector{side(0), side(1)}, opacity);
 }
 
 std::string Composer::outcome() const {
+    if (state_.scene.is_single()) return fmt::format("after {:g} s", state_.scene.time(state_.scene.samples));
     const auto& parting = state_.outcome.parting;
     if (!parting.start_as_one()) return "apart from the start";
     if (parting.since()) return fmt::format("diverged after {:.1f} s", *parting.since());

@@ -121,7 +121,8 @@ FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
 
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
     const auto estimated = [&](Side Scene::*side, char name) {
-        return (scene.*side).replay ? SimulationEstimate{} : estimated_side(scene, scene.*side, name, stop);
+        const bool is_none = (scene.*side).replay || (scene.is_single() && name == 'b');
+        return is_none ? SimulationEstimate{} : estimated_side(scene, scene.*side, name, stop);
     };
     const auto a = estimated(&Scene::a, 'a'), b = estimated(&Scene::b, 'b');
     return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};

@@ -1,4 +1,5 @@
 #include "film/layout.hpp"
+#include "plot/labels.hpp"
 #include "render/typeface.hpp"
 #include "scene/scene.hpp"
 
@@ -26,12 +27,13 @@ std::vector<Heading> headings_of(const Scene& scene) {
     const auto layout = scene.preset.video.layout;
     const bool apart = layout == Arrangement::side_by_side || layout == Arrangement::portrait;
     const auto said = side_captions(scene, wording_of(scene));
+    if (scene.is_single()) return {{0, 0, said[0]}};
     return {{0, 0, said[0]}, {apart ? 1u : 0u, 1, said[1], apart ? Align::left : Align::right}};
 }
 
 /// Sizes at which all headings fit, alike in all panels, px.
 struct HeadingSizes {
-    float heading, note;
+    float heading, note, width;  // width: of all words of a side
     bool two_lines = false;
 };
 
@@ -49,31 +51,36 @@ HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, 
         note = std::min(note, width / std::max(tail, 1.0f));
     }
     constexpr float least = 0.85f;  // before notes go to a line of their own
-    const bool two = one < least && std::any_of(headings.begin(), headings.end(),
-                                                [](const Heading& words) { return !words.said.note.empty(); });
-    if (!two) return {one * px(font.heading), one * px(font.note)};
-    return {heading * px(font.heading), note * px(font.note), true};
+    const bool two = (one < least || one * px(font.note) < layout.least_text) &&
+                     std::ranges::any_of(headings, [](const Heading& words) { return !words.said.note.empty(); });
+    if (!two) return {one * px(font.heading), one * px(font.note), width};
+    return {heading * px(font.heading), note * px(font.note), width, true};
 }
 
 void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, const Area& panel) {
     const auto& theme = layout.style.theme;
-    const float t = layout.text, gap = note_gap * t;
-    const float head = layout.style.type.width(words.said.heading, sizes.heading, Weight::bold),
-                tail = layout.style.type.width(words.said.note, sizes.note);
+    const float t = layout.text;
     const bool right = words.align == Align::right;
     const float base = panel.top - 12 * t, edge = right ? panel.right : panel.left;
-    const auto color = theme.sides[words.side];
-    const auto add = [&](const std::string& text, float x, float y, float size, Color hue, Weight weight) {
-        if (!text.empty()) layout.words.push_back(label(text, {x, y}, size, hue, Align::left, weight));
+    const auto add = [&](const FittedText& fits, float x, float y, Color hue, Weight weight, Align align) {
+        if (!fits.text.empty()) layout.words.push_back(label(fits.text, {x, y}, fits.size, hue, align, weight));
     };
+    const auto fitted_to = [&](const std::string& text, float size, Weight weight) {
+        return fitted_text(layout, text, std::max(size, layout.least_text), weight, sizes.width);
+    };
+    const auto head = fitted_to(words.said.heading, sizes.heading, Weight::bold);
+    const auto tail = fitted_to(words.said.note, sizes.note, Weight::regular);
+    const auto color = theme.sides[words.side];
     if (sizes.two_lines) {
-        add(words.said.heading, right ? edge - head : edge, base - 29 * t, sizes.heading, color, Weight::bold);
-        add(words.said.note, right ? edge - tail : edge, base, sizes.note, theme.quiet_text, Weight::regular);
+        add(head, edge, base - 1.25f * tail.size, color, Weight::bold, words.align);
+        add(tail, edge, base, theme.quiet_text, Weight::regular, words.align);
         return;
     }
-    const float left = right ? edge - head - (tail > 0 ? gap + tail : 0) : edge;
-    add(words.said.heading, left, base, sizes.heading, color, Weight::bold);
-    add(words.said.note, left + head + gap, base, sizes.note, theme.quiet_text, Weight::regular);
+    const float head_width = layout.style.type.width(head.text, head.size, Weight::bold),
+                tail_width = layout.style.type.width(tail.text, tail.size);
+    const float left = right ? edge - head_width - (tail_width > 0 ? note_gap * t + tail_width : 0) : edge;
+    add(head, left, base, color, Weight::bold, Align::left);
+    add(tail, left + head_width + note_gap * t, base, theme.quiet_text, Weight::regular, Align::left);
 }
 
 /// Whether a heading leaves the circle of a panel free in its upper left corner; where it stands there.
@@ -86,7 +93,7 @@ std::optional<Label> in_corner(const Layout& layout, const Heading& words, const
     const float radius = std::min(panel.width(), panel.height()) / around_circle / 2;
     const Point away{std::max(0.0f, (panel.left + panel.right) / 2 - right),
                      std::max(0.0f, (panel.top + panel.bottom) / 2 - bottom)};
-    if (std::hypot(away.x, away.y) < radius + 8 * layout.unit) return std::nullopt;
+    if (right > panel.right - edge || std::hypot(away.x, away.y) < radius + 8 * layout.unit) return std::nullopt;
     return label(words.said.heading, base, size, layout.style.theme.sides[words.side], Align::left, Weight::bold);
 }
 
@@ -96,11 +103,11 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
     std::array<float, 2> width{};
     const float most = 0.36f * panel.width();
     float size = px(layout.style.font.note);
-    for (const auto& side : said)
-        size = std::min(size, layout.style.type.fitting_size(side.heading, size, Weight::bold, most));
     for (std::size_t side = 0; side < 2; ++side) {
-        width[side] = layout.style.type.width(said[side].heading, size, Weight::bold);
-        layout.words.push_back(label(said[side].heading, {side == 0 ? panel.left : panel.right, base}, size,
+        const auto words = fitted_text(layout, said[side].heading, px(layout.style.font.note), Weight::bold, most);
+        size = std::min(size, words.size);
+        width[side] = layout.style.type.width(words.text, words.size, Weight::bold);
+        layout.words.push_back(label(words.text, {side == 0 ? panel.left : panel.right, base}, words.size,
                                      layout.style.theme.text, side == 0 ? Align::left : Align::right, Weight::bold));
     }
     const float left = std::round(panel.left + width[0] + gap), right = std::round(panel.right - width[1] - gap);
@@ -111,25 +118,37 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
 }
 
 /// What tells the listed members apart, "120.01°", by member; what is said before them, "θ₁ =".
-std::pair<std::string, std::vector<std::string>> legend_words(const std::vector<std::vector<Quad>>& members) {
-    std::vector<std::size_t> differing;
-    for (std::size_t j = 0; j < members[0].size(); ++j)
-        if (std::ranges::any_of(members, [&](const auto& member) { return member[j] != members[0][j]; }))
-            differing.push_back(j);
-    if (differing.empty()) differing.push_back(0);
+std::pair<std::string, std::vector<std::string>> legend_words(const Scene& scene) {
+    const auto& members = scene.preset.video.members.releases;
     std::string before;
-    for (const auto j : differing) before += fmt::format("{}θ{}", before.empty() ? "" : ", ", subscript(j + 1));
-    std::vector<std::string> words;
-    for (const auto& member : members) {
-        auto& text = words.emplace_back();
-        for (const auto j : differing) text += fmt::format("{}{}°", text.empty() ? "" : ", ", text_of(member[j]));
-    }
+    std::vector<std::string> words(members.size());
+    const auto add = [&](const Release::List& list, std::size_t j) {
+        before += fmt::format("{}{}{}", before.empty() ? "" : ", ", list.symbol, subscript(j + 1));
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            const auto& chain = *scene.members[k].chain;
+            const auto number = list.symbol == "θ"   ? chain.angle[j] * 180 / pi_of<Quad>()
+                                : list.symbol == "m" ? chain.mass[j]
+                                                     : chain.length[j];
+            const auto& given = members[k].*list.member;
+            words[k] += fmt::format(
+                "{}{}{}", words[k].empty() ? "" : ", ",
+                given.empty() ? fmt::format("{:.6g}", static_cast<double>(number)) : text_of(given[j]), list.unit);
+        }
+    };
+    for (const auto& list : Release::lists)
+        for (std::size_t j = 0; j < scene.preset.a.links(); ++j)
+            if (std::ranges::any_of(members, [&](const Release& member) {
+                    const auto &one = member.*list.member, &first = members[0].*list.member;
+                    return one.empty() != first.empty() || (!one.empty() && one[j] != first[j]);
+                }))
+                add(list, j);
+    if (before.empty()) add(Release::lists[0], 0);
     return {before + " =", words};
 }
 
 /// The listed members' angles, each after a dot of its colour.
 void add_legend(Layout& layout, const Scene& scene, const Area& panel) {
-    const auto [before, words] = legend_words(scene.preset.video.members.angles_deg);
+    const auto [before, words] = legend_words(scene);
     const float t = layout.text, base = panel.top - 14 * t;
     float size = 0.85f * px(layout.style.font.heading);
     constexpr float dot = 0.32f, after_dot = 0.85f, after_word = 0.8f;  // em
@@ -186,26 +205,36 @@ float place_header(Layout& layout, const Scene& scene) {
     const auto title = video.shows("title") ? scene.preset.title : "";
     auto below = video.shows("subtitle") ? scene_caption(scene, tall ? Wording::plain : Wording::exact) : "";
     if (title.empty() && below.empty() && !has_clock) return page.top;
-    const float first = page.top + 36 * t, second = first + (tall ? 52 : 30) * t;
-    const auto time = clock_text(scene, scene.time(scene.samples));
+    const auto width_of = [&](const std::string& text, double size, Weight weight = Weight::regular) {
+        return layout.style.type.width(text, px(size), weight);
+    };
     // a little picture says what moves, in words that can be read, and not how it is integrated
-    constexpr float least = 0.8f;
-    if (!scene.preset.subtitle && layout.style.type.width(below, least * px(font.subtitle)) > 0.85f * page.width())
+    if (!scene.preset.subtitle && 0.8f * width_of(below, font.subtitle) > 0.85f * page.width())
         below = scene_caption(scene, Wording::plain);
-    auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
+    const auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
     if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
         below += (below.empty() ? "" : " · ") + speed;
-    // long text shrinks until it fits beside what stands at the right
-    const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, float beside) {
-        const float size =
-            layout.style.type.fitting_size(text, px(wanted), weight, page.width() - (beside > 0 ? beside + gap : 0));
-        layout.words.push_back(label(text, {page.left, y}, size, color, Align::left, weight));
+    // long text shrinks a little until it fits beside what stands at the right, then goes on below
+    const float first = page.top + 36 * t;
+    float base = first;
+    const auto add = [&](const std::string& text, double size, Weight weight, Color color, float beside) {
+        const float width = page.width() - (beside > 0 ? beside + gap : 0);
+        const auto& type = layout.style.type;
+        const float least = std::max(0.75f * px(size), std::min(px(size), layout.least_text));
+        const float fits = std::max(least, type.fitting_size(text, px(size), weight, width));
+        std::vector<std::string> lines{text};
+        if (const float own = type.width(text, fits, weight); own > width + 1)
+            lines = wrapped(text, fits, weight, width * text_width(text, fits, weight) / own);
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+            if (k > 0) base += 1.24f * fits;
+            layout.words.push_back(label(lines[k], {page.left, base}, fits, color, Align::left, weight));
+        }
     };
-    const float clock = has_clock ? layout.style.type.width(time, px(font.clock)) : 0;
-    const float beside_title = !tall ? clock : changes ? layout.style.type.width(speed, px(font.subtitle)) : 0;
-    add(title, first, font.title, Weight::bold, theme.text, beside_title);
-    add(below, second, font.subtitle, Weight::regular, theme.quiet_text,
-        tall ? clock : layout.style.type.width(speed, px(font.subtitle)));
+    const float clock = has_clock ? width_of(clock_text(scene, scene.time(scene.samples)), font.clock) : 0;
+    const float speed_width = width_of(speed, font.subtitle), line = (tall ? 52 : 36) * t;
+    add(title, font.title, Weight::bold, theme.text, !tall ? clock : changes ? speed_width : 0);
+    const float second = base += line;
+    add(below, font.subtitle, Weight::regular, theme.quiet_text, tall ? clock : speed_width);
     if (has_clock) {
         const auto words =
             label(speed, {page.right, tall ? first : second}, px(font.subtitle), theme.quiet_text, Align::right);
@@ -215,45 +244,57 @@ float place_header(Layout& layout, const Scene& scene) {
             layout.words.push_back(words);
         layout.clock = label("", {page.right, tall ? second : first}, px(font.clock), theme.text, Align::right);
     }
-    return second + 18 * t;
+    return base + 18 * t;
+}
+
+FittedText fitted_text(const Layout& layout, const std::string& text, float size, Weight weight, float width) {
+    const auto& type = layout.style.type;
+    const float least = std::min(size, std::max(0.75f * size, layout.least_text));
+    FittedText fits{text, std::max(least, type.fitting_size(text, size, weight, width))};
+    for (auto end = text.size(); end > 0 && type.width(fits.text, fits.size, weight) > width;) {
+        end = text.find_last_of(' ', end - 1);
+        if (end == std::string::npos) break;
+        fits.text = text.substr(0, text.find_last_not_of(" ,", end) + 1) + " …";
+    }
+    return fits;
 }
 
 Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs) {
-    if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split_regions(room, needs);
+    if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split(room, needs);
     const float t = layout.text;
     const auto headings = headings_of(scene);
     if (needs.tall) {
-        auto rooms = split_regions(room, needs);
+        auto regions = split(room, needs);
         DisplayList words;
         for (const auto& heading : headings)
-            if (const auto found = in_corner(layout, heading, rooms.panels[heading.panel]);
-                found && headings[0].panel != headings[1].panel)
+            if (const auto found = in_corner(layout, heading, regions.panels[heading.panel]);
+                found && headings.front().panel != headings.back().panel)
                 words.push_back(*found);
         if (words.size() == headings.size()) {
             layout.words.insert(layout.words.end(), words.begin(), words.end());
-            return rooms;
+            return regions;
         }
     }
-    needs.heading = 42 * t;
-    auto rooms = split_regions(room, needs);
-    if (!scene.preset.video.members.angles_deg.empty()) {
-        add_legend(layout, scene, rooms.panels[0]);
-        return rooms;
+    needs.heading = 46 * t;
+    auto regions = split(room, needs);
+    if (!scene.preset.video.members.releases.empty()) {
+        add_legend(layout, scene, regions.panels[0]);
+        return regions;
     }
     if (!scene.members.empty()) {
-        add_color_bar(layout, {headings[0].said, headings[1].said}, rooms.panels[0]);
-        return rooms;
+        add_color_bar(layout, {headings[0].said, headings[1].said}, regions.panels[0]);
+        return regions;
     }
-    const float share = headings[0].panel == headings[1].panel ? 0.48f : 1;
-    const auto width = [&] { return share * rooms.panels[0].width() - 14 * t; };  // apart from the words beside it
+    const float share = headings.size() > 1 && headings[0].panel == headings[1].panel ? 0.48f : 1;
+    const auto width = [&] { return share * regions.panels[0].width() - 14 * t; };  // apart from the words beside it
     auto sizes = fitted(headings, layout, width());
     if (sizes.two_lines) {
-        needs.heading = 71 * t;
-        rooms = split_regions(room, needs);
+        needs.heading = 81 * t;
+        regions = split(room, needs);
         sizes = fitted(headings, layout, width());
     }
-    for (const auto& heading : headings) add_above(layout, heading, sizes, rooms.panels[heading.panel]);
-    return rooms;
+    for (const auto& heading : headings) add_above(layout, heading, sizes, regions.panels[heading.panel]);
+    return regions;
 }
 
 }  // namespace doppel

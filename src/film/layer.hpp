@@ -29,9 +29,9 @@ public:
     void add(Point at, double time, double now);
 
     /// Up to the head, where there is one; broken where it leaves the area, or where a point is NaN, and between
-    /// points more than `jump` px apart across.
+    /// points more than `jump` px apart across. All is moved by `shift`.
     void draw(const Area& area, double now, std::optional<Point> head, DisplayList& list,
-              float jump = std::numeric_limits<float>::infinity()) const;
+              float jump = std::numeric_limits<float>::infinity(), Point shift = {}) const;
 
 private:
     struct TrailPoint {
@@ -46,7 +46,7 @@ private:
     void simplify(Points& points) const;
     double end_of(long group) const;
     double faded_until(long group, double now) const;
-    void draw_piece(Points points, const Area& area, double now, DisplayList& list) const;
+    void draw_piece(Points points, const Area& area, double now, Point shift, DisplayList& list) const;
 
     double sample_hz_, trail_s_;
     Stroke pen_;  // without a path

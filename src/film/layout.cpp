@@ -3,6 +3,7 @@
 #include "film/strips.hpp"
 #include "image/color.hpp"
 #include "numeric/state.hpp"
+#include "plot/labels.hpp"
 #include "render/typeface.hpp"
 #include "scene/captions.hpp"
 
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 namespace doppel {
@@ -36,48 +36,70 @@ bool is_dark(const Theme& theme) {
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
 }
 
-/// From the bottom up: labels of the time axis, then the strips, each with its words above it.
-void place_strips(Layout& layout, const Scene& scene, const Area& room, const MotionBounds& seen) {
-    const auto& strips = scene.preset.video.strips;
-    if (strips.empty()) return;
-    const float t = layout.text;
-    layout.time_labels = room.bottom - 4 * t;
-    const float labels = std::round((room.width() < 0.5f * layout.page.width() ? 72 : 84) * t);
-    const auto captions = plan_captions(layout, scene, room, labels);
-    float shares = 0, words_sum = 0;
-    for (std::size_t i = 0; i < strips.size(); ++i) {
-        shares += share_of(strips[i]);
-        words_sum += captions.height(i);
-    }
-    float bottom = room.bottom - time_labels_height * t;
-    const float unit = (bottom - room.top - words_sum) / shares;
-    for (std::size_t i = strips.size(); i-- > 0;) {
-        const auto kind = strips[i];
-        const float top = bottom - std::max(share_of(kind) * unit, 8 * t);
-        const Area area{room.left + labels, std::round(top), room.right, std::round(bottom)};
-        const auto& asked = scene.preset.video.ranges[static_cast<std::size_t>(kind)];
+/// The words of all strips in columns so wide, px.
+float caption_height(const Layout& layout, const Scene& scene, float width) {
+    int lines = 1;
+    for (const auto kind : scene.preset.video.strips)
+        lines = std::max(lines, caption_lines(kind, scene, layout, width));
+    return static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
+}
+
+/// px of the numbers below an axis.
+float numbers_height(const Layout& layout) {
+    return 1.75f * px(layout.style.font.axis);
+}
+
+/// In cells of one column or of rows: words, then the axes, which begin right of the widest number of all, and end where the
+/// last number of the time keeps to the cell.
+void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& cells, const MotionBounds& seen) {
+    const auto& video = scene.preset.video;
+    const float em = px(layout.style.font.axis);
+    float left = 0, right = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto kind = video.strips[i];
+        const auto& cell = cells[i];
+        const bool is_lowest = std::ranges::none_of(
+            cells, [&](const Area& other) { return other.left == cell.left && other.top > cell.top; });
+        // the lowest number of the strip above ends below its curves
+        const float below = is_lowest ? numbers_height(layout) : 0.35f * em;
+        // words before curves, but not where many strips share a little room
+        const float high = cell.height() - below - above_curves(layout);
+        const int most = std::max(1, static_cast<int>(0.4f * high / caption_line(layout)));
+        const int lines = std::min(caption_lines(kind, scene, layout, cell.width()), most);
+        const float words = static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
+        const Area area{cell.left, std::round(cell.top + words), cell.right, std::round(cell.bottom - below)};
+        const auto& asked = video.ranges[static_cast<std::size_t>(kind)];
         const auto range = asked ? *asked : fitted_range(kind, seen);
-        const float words = captions.height(i);
-        const float left = captions.from_edge ? room.left : area.left;
-        layout.strips.push_back({kind,
-                                 area,
-                                 {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
-                                 {.low = range.low,
-                                  .high = range.high,
-                                  .from = area.bottom,
-                                  .to = area.top,
-                                  .logarithmic = is_logarithmic(kind)},
-                                 {left, area.top - words, area.right, area.top},
-                                 area.top - captions.apart,
-                                 captions.lines[i]});
-        bottom = top - words;
+        layout.strips.push_back(
+            {.kind = kind,
+             .cell = cell,
+             .area = area,
+             .time = {.low = 0, .high = scene.time(scene.samples), .from = area.left, .to = area.right},
+             .value = {.low = range.low,
+                       .high = range.high,
+                       .from = area.bottom,
+                       .to = area.top,
+                       .logarithmic = is_logarithmic(kind)},
+             .lines = lines,
+             .baseline = area.top - words + caption_line(layout)});
+        left = std::max(left, widest(spaced_ticks(layout.strips.back().value, false, em), em) + 0.55f * em);
     }
-    std::reverse(layout.strips.begin(), layout.strips.end());
+    for (auto& strip : layout.strips) {
+        strip.time.from = strip.area.left = std::round(strip.cell.left + left);
+        const auto ticks = spaced_ticks(strip.time, true, em);
+        if (ticks.empty()) continue;
+        const float end =
+            strip.time.at(ticks.back().value) + text_width(ticks.back().text, em) / 2 + text_width(" s", em);
+        right = std::max(right, std::ceil(end - strip.cell.right));
+    }
+    for (auto& strip : layout.strips) strip.time.to = strip.area.right = strip.cell.right - right;
 }
 
 std::size_t panel_count(const VideoSpec& video) {
     if (!video.pendulums) return 0;
-    return video.layout == Arrangement::overlay || video.layout == Arrangement::ensemble ? 1 : 2;
+    const bool is_one = video.layout == Arrangement::overlay || video.layout == Arrangement::ensemble ||
+                        video.layout == Arrangement::single;
+    return is_one ? 1 : 2;
 }
 
 /// Which sides each panel shows, and the axes of phase space.
@@ -88,16 +110,15 @@ void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& a
         return;
     }
     layout.panels.push_back({.area = areas[0], .sides = {0, 1}});
+    if (kind == Arrangement::single) layout.panels[0].sides = {0};
     if (kind != Arrangement::phase) return;
-    const float t = layout.text;
     const Area& area = areas[1];
-    const Area axes{area.left + std::round(96 * t), area.top + std::round(26 * t), area.right - std::round(40 * t),
-                    area.bottom - std::round(54 * t)};
+    const float em = px(layout.style.font.axis);
     const double fastest = 1.08 * std::max(seen.fastest, 1e-6) * 180 / pi;
-    layout.phase = {area,
-                    axes,
-                    {.low = -180, .high = 180, .from = axes.left, .to = axes.right},
-                    {.low = -fastest, .high = fastest, .from = axes.bottom, .to = axes.top}};
+    Axis rate{.low = -fastest, .high = fastest, .from = area.bottom - 2.6f * em, .to = area.top + 1.3f * em};
+    const Area axes{std::round(area.left + widest(spaced_ticks(rate, false, em), em) + 1.4f * em), rate.to,
+                    std::round(area.right - 2 * em), rate.from};
+    layout.phase = {area, axes, {.low = -180, .high = 180, .from = axes.left, .to = axes.right}, rate};
 }
 
 /// How large each of many pendulums in one panel is drawn, to one alone.
@@ -113,14 +134,17 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     const auto& style = layout.style;
     const auto view = fitted_view(scene, seen);
     const auto across = static_cast<float>(view.width), up = static_cast<float>(view.height);
+    const auto& asked = scene.preset.video.view;
     for (auto& panel : layout.panels) {
         const Area& area = panel.area;
         panel.center = {(area.left + area.right) / 2, (area.top + area.bottom) / 2};
-        panel.center_x = view.x;
-        panel.center_y = view.y;
+        const auto& center = asked.center_m;
+        panel.center_x = center ? static_cast<double>((*center)[0]) : asked.follow > 0 ? 0 : view.x;
+        panel.center_y = center ? static_cast<double>((*center)[1]) : asked.follow > 0 ? 0 : view.y;
         const float edges = 80 * layout.unit;
         panel.px_per_m = view.is_circle ? std::min(area.width(), area.height()) / around_circle / across
                                         : std::min((area.width() - edges) / across, (area.height() - edges) / up);
+        if (asked.height_m) panel.px_per_m = area.height() / px(*asked.height_m);
     }
     const float radius = layout.panels.front().px_per_m * std::max(across, up) / 2;
     layout.reach = view.is_circle ? radius : 0;
@@ -134,8 +158,9 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), thinnest);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
-    if (style.width.rod > 0) layout.rod_radius = static_cast<float>(style.width.rod / 2);
-    if (style.width.bob > 0) layout.bob_radius = px(style.width.bob);
+    if (style.width.rod) layout.rod_radius = px(*style.width.rod / 2);
+    if (style.width.bob) layout.bob_radius = px(*style.width.bob);
+    if (style.width.bob) layout.last_bob_radius = std::min(layout.last_bob_radius, layout.bob_radius);
 }
 
 /// px of a tile's panels to one of a film's.
@@ -149,6 +174,9 @@ float tile_text(float unit) {
     return std::max(2 * unit, 0.5f);
 }
 
+/// px of a picture to one of 1920×1080, at least, as text has it; px an em of the smallest words.
+constexpr float least_unit = 1.0f / 3, least_text = 9;
+
 constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
 
 Layout make_tile(const Scene& scene, const MotionBounds& seen) {
@@ -161,9 +189,9 @@ Layout make_tile(const Scene& scene, const MotionBounds& seen) {
     layout.page = {0, 0, width, height};
     layout.clock =
         label("", {4 * layout.text, 33 * layout.text}, 0.8f * px(layout.style.font.clock), layout.style.theme.text);
-    const auto rooms = split_regions({0, std::round(tile_clock * layout.text), width, height},
-                                     {.panels = panel_count(video), .gap = std::round(24 * layout.unit), .strips = {}});
-    place_panels(layout, scene, rooms.panels, seen);
+    const auto regions = split({0, std::round(tile_clock * layout.text), width, height},
+                               {.panels = panel_count(video), .gap = std::round(24 * layout.unit)});
+    place_panels(layout, scene, regions.panels, seen);
     place_pendulums(layout, scene, seen);
     return layout;
 }
@@ -181,6 +209,8 @@ Size tile_size(const Scene& scene, int width) {
 Style make_style(const VideoSpec& video, float unit, float text) {
     Style style{themed(video), video.widths, video.fonts, 0, video.typeface};
     for (const auto& width : width_names) style.width.*width.member *= unit;
+    for (auto* width : {&style.width.rod, &style.width.bob})
+        if (*width) **width *= unit;
     for (const auto& size : font_size_names) style.font.*size.member *= text;
     // small pictures keep lines that can be seen
     style.width.trail = std::max(style.width.trail, video.widths.trail > 0 ? 1.6 : 0);
@@ -198,7 +228,8 @@ Color member_color(const Style& style, double share) {
 }
 
 Color member_color(const Style& style, const Scene& scene, std::size_t k) {
-    if (!scene.preset.video.members.angles_deg.empty()) return style.theme.palette[k % style.theme.palette.size()];
+    if (const auto& listed = scene.preset.video.members.releases; !listed.empty())
+        return listed[k].color.value_or(style.theme.palette[k % style.theme.palette.size()]);
     const auto last = static_cast<double>(std::max<std::size_t>(scene.members.size(), 2) - 1);
     return member_color(style, static_cast<double>(k) / last);
 }
@@ -206,21 +237,6 @@ Color member_color(const Style& style, const Scene& scene, std::size_t k) {
 Point PendulumPanel::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
-}
-
-std::string axis_number(double value) {
-    return fmt::format("{}{:.6g}", value < 0 ? "−" : "", std::abs(value));
-}
-
-std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across) {
-    const TickLabels labels{.size = size, .gap = 0, .spacing = spacing, .across = across};
-    if (axis.logarithmic) {
-        const float decade = std::abs(axis.to - axis.from) / static_cast<float>(std::log10(axis.high / axis.low));
-        return chart_ticks(axis, labels, std::max(1.0f, std::ceil(spacing / decade)));
-    }
-    auto ticks = chart_ticks(axis, labels);
-    for (auto& tick : ticks) tick.text = axis_number(tick.value);
-    return ticks;
 }
 
 Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind dress) {
@@ -231,23 +247,26 @@ Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind dre
     Layout layout;
     layout.unit = tall ? std::min(width / 1080, height / 1920) : std::min(width / 1920, height / 1080);
     // upright pictures are seen on telephones: larger words, and none where an app has its buttons
-    layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, 0.45f);
+    layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, least_unit);
+    layout.least_text = tall ? 1080.0f / 390 * least_text * layout.unit : least_text;
     layout.style = make_style(video, layout.unit, layout.text);
     const float u = layout.unit;
     const float top = is_portrait ? 0.06f * height : 28 * u, bottom = is_portrait ? 0.14f * height : 26 * u;
     layout.page = {std::round(60 * u), std::round(top), width - std::round(60 * u), height - std::round(bottom)};
 
     const float header = std::round(place_header(layout, scene));
-    const auto rooms = place_headings(layout, scene, {layout.page.left, header, layout.page.right, layout.page.bottom},
-                                      {.panels = panel_count(video),
-                                       .tall = tall,
-                                       .gap = std::round(24 * u),
-                                       .text = layout.text,
-                                       .height = height,
-                                       .strips = video.strips});
-    place_strips(layout, scene, rooms.strips, seen);
+    const auto regions =
+        place_headings(layout, scene, {layout.page.left, header, layout.page.right, layout.page.bottom},
+                       {.panels = panel_count(video),
+                        .strips = video.strips.size(),
+                        .tall = tall,
+                        .gap = std::round(24 * u),
+                        .height = height,
+                        .numbers = numbers_height(layout),
+                        .caption = [&](float strip_width) { return caption_height(layout, scene, strip_width); }});
+    place_strips(layout, scene, regions.strips, seen);
     if (!video.pendulums) return layout;
-    place_panels(layout, scene, rooms.panels, seen);
+    place_panels(layout, scene, regions.panels, seen);
     place_pendulums(layout, scene, seen);
     return layout;
 }

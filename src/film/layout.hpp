@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,14 +59,14 @@ struct PhasePanel {
     Axis angle, rate;
 };
 
-/// A strip of the chart: time across, a quantity up.
+/// A strip: a chart of a quantity over time, with words above it.
 struct StripLayout {
     StripKind kind;
-    Area area;
-    Axis time, value;
-    Area caption;    // the words above it
-    float base = 0;  // of their last line, px
-    int lines = 1;   // of them
+    Area cell;           // all of it
+    Area area;           // within the axes
+    Axis time, value;    // across, up
+    int lines = 1;       // of its caption
+    float baseline = 0;  // of the first, px
 };
 
 /// Upright: for a telephone.
@@ -73,16 +74,11 @@ inline bool is_tall(const VideoSpec& video) {
     return video.size.height > video.size.width;
 }
 
-/// "−1.5": with a true minus sign, and no more decimals than it has.
-std::string axis_number(double value);
-
-/// Ticks `spacing` px apart or more, labels of `size` px an em; whole numbers and the fewest decimals.
-std::vector<Tick> axis_ticks(const Axis& axis, float size, float spacing, bool across);
-
 /// Where everything of a film's picture goes: a function of the scene, and of how far its motion gets.
 struct Layout {
-    float unit = 1;  // 1 px of a 1920×1080 picture
-    float text = 1;  // the same for text, which stays legible in small pictures and on telephones
+    float unit = 1;        // 1 px of a 1920×1080 picture
+    float text = 1;        // the same for text, which stays legible in small pictures and on telephones
+    float least_text = 9;  // px an em, of any word
     Style style;
     Area page;          // within the margins
     DisplayList words;  // that never change: the title, what is said beside it, the headings above panels
@@ -94,7 +90,6 @@ struct Layout {
     float bob_radius = 0;             // px, of the heaviest
     float last_bob_radius = 0;        // px, at least, of the one that leaves the trail; of long chains
     float rod_radius = 0;             // half its width, px
-    float time_labels = 0;            // their baseline, px
 };
 
 /// A film's picture, or a tile of a contact sheet: pendulums and time alone.
@@ -106,32 +101,30 @@ Layout make_layout(const Scene& scene, const MotionBounds& bounds, PictureKind d
 /// The size of a tile of that width, px.
 Size tile_size(const Scene& scene, int width);
 
-/// What decides how a picture is shared out; lengths in px.
+/// What decides how a picture is split; lengths in px.
 struct RegionNeeds {
-    std::size_t panels = 2;  // 0 = none
-    bool tall = false;       // panels and strips one above the other
-    float heading = 0;       // height of the words above each panel
-    float gap = 0;           // between panels, and between them and a column of strips
-    float text = 1;          // px of the words to those of a 1920×1080 picture
-    float height = 0;        // of the whole picture
-    std::vector<StripKind> strips;
+    std::size_t panels = 2, strips = 0;        // how many
+    bool tall = false;                         // strips below one another, below the panels
+    float heading = 0;                         // height of the words above each panel
+    float gap = 0;                             // between panels, and between them and strips
+    float height = 0;                          // of the whole picture
+    float numbers = 0;                         // height of the numbers of the time, below the lowest strip of a column
+    std::function<float(float)> caption = {};  // height of the words above strips that wide
 };
 
-/// A picture's room below the header, shared out.
+/// A picture below the header, split.
 struct Regions {
     std::vector<Area> panels;  // without their headings
-    Area strips;               // with captions and the labels of the time; empty where there are none
+    std::vector<Area> strips;  // with captions and numbers
 };
 
 /// A panel's size to that of the circle in it: a bob at the circle's rim stays inside.
 inline constexpr float around_circle = 1.08f;
 
-/// px of a 1920×1080 picture: a line of a strip's caption, what is around its lines, the labels of the time below.
-inline constexpr float caption_line = 27, caption_edge = 16, time_labels_height = 36;
-
-/// The panels first. Two beside each other get circles of 55 to 60 % of the picture's height, with the strips below
-/// or, where that leaves too little for these, in a column at the right. A panel alone is a square beside its strips.
-Regions split_regions(const Area& room, const RegionNeeds& needs);
+/// Strips get a fifth of the picture's height each, without their words, as far as there is room: up to three in a row
+/// below panels beside each other, more, or in small pictures, in a column at the right; below one another in upright
+/// pictures. Panels get the largest circles then.
+Regions split(const Area& room, const RegionNeeds& needs);
 
 /// How a film's words put it: upright ones are for a telephone.
 Wording wording_of(const Scene& scene);
@@ -144,8 +137,16 @@ std::string speed_text(const Scene& scene, double time);
 /// Adds the title, the line below it, the speed, and the clock's place. Returns where they end, px from the top.
 float place_header(Layout& layout, const Scene& scene);
 
-/// Shares the room below the header out, and adds what sets the sides apart: above the panels in a line, in two where
-/// it is long; in a corner of an upright film's panel where the circle leaves it free.
+/// Splits the room below the header, and adds what sets the sides apart: above the panels in a line, in two where it is
+/// long; in a corner of an upright film's panel where the circle leaves it free.
 Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs);
+
+/// Text in as much as `width` px: shrunk to no less than three quarters and to what can be read, then without its last
+/// words.
+struct FittedText {
+    std::string text;
+    float size;
+};
+FittedText fitted_text(const Layout& layout, const std::string& text, float size, Weight weight, float width);
 
 }  // namespace doppel

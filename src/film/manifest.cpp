@@ -87,7 +87,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
     for (const auto& [name, side, seen] :
          {std::tuple('a', &scene.a, &record.motion.a), {'b', &scene.b, &record.motion.b}}) {
         const double error = seen->energy_change / scene.energy_range();
-        if (side->has_energy_error && error > most)
+        if (side->has_energy_error && error > most && !(scene.is_single() && name == 'b'))
             record.warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse for {:g} s; use accuracy "
                 "= 1e-3",
@@ -96,7 +96,9 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
     try {
         const TimeLimit limit(std::clamp(record.wall_s, least_patience_s, most_patience_s), stop);
         for (const auto& [name, side] : {std::pair('a', &scene.a), {'b', &scene.b}})
-            if (const auto words = early_error(scene, *side, record.last_sample, limit.reached()))
+            if (scene.is_single() && name == 'b')
+                break;
+            else if (const auto words = early_error(scene, *side, record.last_sample, limit.reached()))
                 record.warnings.push_back(fmt::format("side {} is {}", name, *words));
     } catch (const std::exception&) {
         throw_if_set(stop);  // else it is not known: it takes too long, or there is no thread to watch the time
@@ -117,7 +119,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
                              : side_json(scene, scene.a, record.motion.a)},
         {"b", scene.b.replay ? track_json(*scene.b.replay, scene.preset.b.track)
                              : side_json(scene, scene.b, record.motion.b)},
-        {"largest_distance", outcome.largest_distance},
+        {"largest_distance", scene.is_single() ? Json(nullptr) : Json(outcome.largest_distance)},
         {"parted_s", outcome.parting.since() ? Json(*outcome.parting.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
         {"warnings", record.warnings},
@@ -131,6 +133,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
             {"convert", record.write_cpu_s},
             {"encode_and_rest", record.encode_cpu_s}}}}},
     };
+    if (scene.is_single()) manifest.erase("b");
     if (auto fonts = fonts_json(scene.preset); !fonts.empty()) manifest["fonts"] = std::move(fonts);
     if (!record.failure.empty()) manifest["failed"] = record.failure;
     write_manifest(parts, name, std::move(manifest));

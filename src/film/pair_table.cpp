@@ -12,30 +12,47 @@
 
 namespace doppel {
 
-/// Angles and rates only where the masses hang in a chain.
+namespace {
+
+/// The sides that a scene has, with their letters.
+std::vector<std::pair<char, const Side*>> sides_of(const Scene& scene) {
+    if (scene.is_single()) return {{'a', &scene.a}};
+    return {{'a', &scene.a}, {'b', &scene.b}};
+}
+
+/// Of the masses of a side, or of a member of an ensemble. Angles and rates only where they hang in a chain.
+void add_columns(const std::string& prefix, const Side& side, std::vector<std::string>& names) {
+    const auto add = [&](const std::string& name) { names.push_back(prefix + name); };
+    const auto bobs = side.mass.size();
+    for (std::size_t i = 1; side.has_angles && i <= bobs; ++i) add(fmt::format("theta{}_rad", i));
+    for (std::size_t i = 1; side.has_angles && i <= bobs; ++i) add(fmt::format("omega{}_rad_per_s", i));
+    for (std::size_t i = 1; i <= bobs; ++i) {
+        for (const char* place : {"x", "y"}) add(fmt::format("{}{}_m", place, i));
+        for (const char* velocity : {"vx", "vy"}) add(fmt::format("{}{}_m_per_s", velocity, i));
+    }
+}
+
+}  // namespace
+
 std::vector<std::string> columns_of(const Scene& scene) {
     std::vector<std::string> names{"sample", "time_s"};
-    for (const auto* side : {&scene.a, &scene.b}) {
-        const char letter = side == &scene.a ? 'a' : 'b';
-        const auto add = [&](const std::string& name) { names.push_back(fmt::format("{}_{}", letter, name)); };
-        const auto bobs = side->mass.size();
-        for (std::size_t i = 1; side->has_angles && i <= bobs; ++i) add(fmt::format("theta{}_rad", i));
-        for (std::size_t i = 1; side->has_angles && i <= bobs; ++i) add(fmt::format("omega{}_rad_per_s", i));
-        for (std::size_t i = 1; i <= bobs; ++i) {
-            for (const char* place : {"x", "y"}) add(fmt::format("{}{}_m", place, i));
-            for (const char* velocity : {"vx", "vy"}) add(fmt::format("{}{}_m_per_s", velocity, i));
-        }
-        for (const char* name : {"energy_J", "energy_error", "length_error_m"}) add(name);
+    for (const auto& [letter, side] : sides_of(scene)) {
+        add_columns(fmt::format("{}_", letter), *side, names);
+        for (const char* name : {"energy_J", "energy_error", "length_error_m"})
+            names.push_back(fmt::format("{}_{}", letter, name));
     }
-    names.insert(names.end(), {"distance", "log_ratio"});
-    if (scene.preset.energy_columns)
-        names.insert(names.end(), {"a_kinetic_J", "a_potential_J", "b_kinetic_J", "b_potential_J"});
-    for (const auto* side : {&scene.a, &scene.b}) {
-        const char letter = side == &scene.a ? 'a' : 'b';
+    if (!scene.is_single()) names.insert(names.end(), {"distance", "log_ratio"});
+    for (const auto& [letter, side] : sides_of(scene)) {
+        if (!scene.preset.energy_columns) break;
+        for (const char* name : {"kinetic", "potential"}) names.push_back(fmt::format("{}_{}_J", letter, name));
+    }
+    for (const auto& [letter, side] : sides_of(scene)) {
         if (side->has_work) names.push_back(fmt::format("{}_work_J", letter));
         if (side->pivot_reach > 0)
             for (const char axis : {'x', 'y'}) names.push_back(fmt::format("{}_pivot_{}_m", letter, axis));
     }
+    for (std::size_t k = 0; scene.preset.member_columns && k < scene.members.size(); ++k)
+        add_columns(fmt::format("member{}_", k + 1), scene.a, names);
     return names;
 }
 
@@ -58,34 +75,42 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
     return all;
 }
 
-void PairTable::add(const PairState& state, double start_distance) {
+void PairTable::add(const Snapshot& snapshot, double start_distance) {
+    const auto& state = snapshot.pair;
+    const auto sides = sides_of(scene_);
+    const auto seen = [&](char letter) -> const Observation& { return letter == 'a' ? state.a : state.b; };
     csv_.add(state.sample);
     csv_.add(scene_.time(state.sample));
-    add_side(scene_.a, state.a, state.energy_error_a);
-    add_side(scene_.b, state.b, state.energy_error_b);
-    csv_.add(state.distance);
-    csv_.add(log_ratio(state.distance, start_distance));
-    for (const auto* seen : {&state.a, &state.b}) {
+    for (const auto& [letter, side] : sides)
+        add_side(*side, seen(letter), letter == 'a' ? state.energy_error_a : state.energy_error_b);
+    if (!scene_.is_single()) {
+        csv_.add(state.distance);
+        csv_.add(log_ratio(state.distance, start_distance));
+    }
+    for (const auto& [letter, side] : sides) {
         if (!scene_.preset.energy_columns) break;
-        const double kinetic = seen->kinetic_energy;
-        csv_.add(kinetic);
-        csv_.add(seen->energy - kinetic);
+        csv_.add(seen(letter).kinetic_energy);
+        csv_.add(seen(letter).energy - seen(letter).kinetic_energy);
     }
-    for (const auto& [side, seen] : {std::pair{&scene_.a, &state.a}, {&scene_.b, &state.b}}) {
-        if (side->has_work) csv_.add(seen->work);
-        if (side->pivot_reach > 0) csv_.add(seen->pivot.x), csv_.add(seen->pivot.y);
+    for (const auto& [letter, side] : sides) {
+        if (side->has_work) csv_.add(seen(letter).work);
+        if (side->pivot_reach > 0) csv_.add(seen(letter).pivot.x), csv_.add(seen(letter).pivot.y);
     }
+    for (const auto& member : snapshot.members)
+        if (scene_.preset.member_columns) add_bobs(scene_.a, member);
     csv_.end_row();
 }
 
+template <class Scalar>
+void PairTable::add_bobs(const Side& side, const Bobs<Scalar>& bobs) {
+    for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].theta);
+    for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].omega);
+    for (const auto& bob : bobs)
+        for (const auto& value : {bob.x, bob.y, bob.vx, bob.vy}) add(value);
+}
+
 void PairTable::add_side(const Side& side, const Observation& seen, std::optional<double> energy_error) {
-    const auto add_all = [&](const auto& bobs) {
-        for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].theta);
-        for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].omega);
-        for (const auto& bob : bobs)
-            for (const auto& value : {bob.x, bob.y, bob.vx, bob.vy}) add(value);
-    };
-    seen.exact.empty() ? add_all(seen.bobs) : add_all(seen.exact);
+    seen.exact.empty() ? add_bobs(side, seen.bobs) : add_bobs(side, seen.exact);
     csv_.add(seen.energy);
     csv_.add(energy_error);
     csv_.add(seen.length_error);

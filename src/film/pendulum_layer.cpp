@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -27,7 +28,14 @@ public:
         : Layer(state),
           panel_(panel),
           heaviest_(std::max({std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass), 1e-300})),
-          paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {}
+          paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {
+        for (const auto& member : state.scene.members) {
+            auto& masses = member_masses_.emplace_back(state.scene.a.mass);
+            for (std::size_t i = 0; i < masses.size(); ++i)
+                if (!member.physical) masses[i] = static_cast<double>(member.chain->mass[i]);
+            heaviest_ = std::max(heaviest_, std::ranges::max(masses));
+        }
+    }
 
     void backdrop(DisplayList& list) const override;
     void add() override {
@@ -55,8 +63,8 @@ private:
     bool swing_as_one() const;
     void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
     void draw_members(DisplayList& list) const;
-    void draw_bobs(std::size_t side, const Bobs<double>& bobs, Color of_last, Color of_others, float least,
-                   DisplayList& list) const;
+    void draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses, Color of_last,
+                   Color of_others, float least, DisplayList& list) const;
     Color member_hue(std::size_t k, float opacity) const;
     float member_trail_width() const;
     void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
@@ -64,14 +72,34 @@ private:
     void draw_tracks(std::size_t side, DisplayList& list) const;
     void draw_pivots(std::size_t side, DisplayList& list) const;
     void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const;
-    float bob_radius(std::size_t side, std::size_t bob) const;
-    Point at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
-    Point at(const Place<double>& place) const { return panel_.at(place[0], place[1]); }
+    float bob_radius(std::size_t side, std::size_t bob) const { return radius_of(side, state_.side(side).mass[bob]); }
+    float radius_of(std::size_t side, double mass) const;
+    bool shows(std::string_view part) const { return video_.shows(part); }
+    void draw_surroundings(DisplayList& list) const;
+    /// Where all is drawn besides, px, where the view follows a mass.
+    Point shift() const {
+        if (video_.view.follow == 0) return {};
+        const auto& members = state_.snapshot.members;
+        const auto& bobs = members.empty() ? state_.seen(panel_.sides.front()).bobs : members.front();
+        const auto& bob = bobs[static_cast<std::size_t>(video_.view.follow - 1)];
+        const Point from = panel_.at(bob.x, bob.y);
+        return {panel_.center.x - from.x, panel_.center.y - from.y};
+    }
+    Point at(double x, double y) const {
+        const Point to = panel_.at(x, y), by = shift();
+        return {to.x + by.x, to.y + by.y};
+    }
+    Point at(const Bob<double>& bob) const { return at(bob.x, bob.y); }
+    Point at(const Place<double>& place) const { return at(place[0], place[1]); }
+    /// Of trails, which are moved as they are drawn.
+    Point still_at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
 
     const PendulumPanel& panel_;
+    const VideoSpec& video_ = state_.scene.preset.video;
     double heaviest_;  // kg
     std::array<Path, 2> paths_;
-    std::vector<Path> member_paths_;  // of an ensemble
+    std::vector<Path> member_paths_;                  // of an ensemble
+    std::vector<std::vector<double>> member_masses_;  // kg
 };
 
 void PendulumLayer::backdrop(DisplayList& list) const {
@@ -79,8 +107,16 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     const auto& area = panel_.area;
     if (!state_.scene.preset.video.transparent)
         list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
+    if (video_.view.follow == 0) draw_surroundings(list);
+}
+
+/// The circle that the outstretched chain reaches, where the panel holds it, and slots.
+void PendulumLayer::draw_surroundings(DisplayList& list) const {
     const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
-    if (reach > 0) list.push_back(Ring{panel_.center, reach, px(style_.width.grid), theme_.grid});
+    const Point pivot = at(0, 0);
+    const bool is_within = panel_.area.holds(Area{pivot.x - reach, pivot.y - reach, pivot.x + reach, pivot.y + reach});
+    if (reach > 0 && is_within && shows("circle") && style_.width.grid > 0)
+        list.push_back(Ring{pivot, reach, px(style_.width.grid), theme_.grid});
     for (const auto side : panel_.sides) draw_tracks(side, list);
 }
 
@@ -94,7 +130,8 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     if (path.last) {
         const auto& [from, from_time] = *path.last;
         const double dt = now - from_time;
-        const int pieces = std::clamp(static_cast<int>(std::ceil(distance(at(from), at(bob)) / piece)), 1, 32);
+        const int pieces =
+            std::clamp(static_cast<int>(std::ceil(distance(still_at(from), still_at(bob)) / piece)), 1, 32);
         for (int i = 1; i <= pieces; ++i) {
             const double s = static_cast<double>(i) / pieces;
             go_on(panel_.at(hermite(from.x, from.vx, bob.x, bob.vx, dt, s),
@@ -102,14 +139,16 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
                   from_time + s * dt);
         }
     } else {
-        go_on(at(bob), now);
+        go_on(still_at(bob), now);
     }
     path.last = {bob, now};
 }
 
 /// Up to the bob.
 void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const {
-    const auto draw = [&](const Trail& trail) { trail.draw(panel_.area, state_.time(), at(bob), list); };
+    const auto draw = [&](const Trail& trail) {
+        trail.draw(panel_.area, state_.time(), still_at(bob), list, std::numeric_limits<float>::infinity(), shift());
+    };
     if (!state_.is_between() || !path.last) return draw(path.trail);
     auto ahead = path;
     extend(ahead, bob);
@@ -117,17 +156,19 @@ void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, Display
 }
 
 void PendulumLayer::frame(DisplayList& list) const {
+    if (video_.view.follow > 0) draw_surroundings(list);
     if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
     // where the other pendulum is now, faintly and behind all else; as long as they swing as one this side hides it
-    if (alone && !swing_as_one()) {
+    if (alone && shows("twin") && !state_.scene.is_single() && !swing_as_one()) {
         const std::size_t other = 1 - panel_.sides.front();
         const Color hue = theme_.sides[other];
         const Color ghost =
             state_.scene.preset.video.transparent ? hue.with_alpha(0.4f) : mixed(theme_.panel, hue, 0.26f);
         draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
         const auto& bobs = state_.seen(other).bobs;
-        for (std::size_t i = 0; i < bobs.size(); ++i) draw_disc(at(bobs[i]), bob_radius(other, i), ghost, list);
+        for (std::size_t i = 0; shows("bobs") && layout_.bob_radius > 0 && i < bobs.size(); ++i)
+            draw_disc(at(bobs[i]), bob_radius(other, i), ghost, list);
     }
     for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side)
         draw_trail(paths_[*side], state_.seen(*side).bobs.back(), list);
@@ -152,15 +193,17 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
     const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
     draw_lines(side, bobs, layout_.rod_radius, hued(theme_.rod, 0.55f), list);
     draw_pivots(side, list);
-    draw_bobs(side, bobs, theme_.sides[side], hued(theme_.bob, 0.4f), layout_.last_bob_radius, list);
+    draw_bobs(side, bobs, state_.side(side).mass, theme_.sides[side], hued(theme_.bob, 0.4f), layout_.last_bob_radius,
+              list);
 }
 
 /// Each on a rim that sets it off, the last one `least` px or more.
-void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, Color of_last, Color of_others, float least,
-                              DisplayList& list) const {
+void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses,
+                              Color of_last, Color of_others, float least, DisplayList& list) const {
+    if (!shows("bobs") || !(layout_.bob_radius > 0)) return;
     for (std::size_t i = 0; i < bobs.size(); ++i) {
         const bool last = i + 1 == bobs.size();
-        const float radius = std::max(bob_radius(side, i), last ? least : 0);
+        const float radius = std::max(radius_of(side, masses[i]), last ? least : 0);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
         if (!state_.scene.preset.video.transparent) draw_disc(at(bobs[i]), radius + rim, theme_.panel, list);
         draw_disc(at(bobs[i]), radius, last ? of_last : of_others, list, last ? style_.glow : 0);
@@ -189,10 +232,10 @@ void PendulumLayer::draw_members(DisplayList& list) const {
     for (std::size_t k = members.size(); k-- > 0;) {
         draw_lines(0, members[k], layout_.rod_radius, member_hue(k, 0.43f), list);
         const auto hue = member_hue(k, 1);
-        if (few) draw_bobs(0, members[k], hue, mixed(theme_.bob, hue, 0.4f), 0, list);
+        if (few) draw_bobs(0, members[k], member_masses_[k], hue, mixed(theme_.bob, hue, 0.4f), 0, list);
     }
     draw_pivots(0, list);
-    if (few) return;
+    if (few || !shows("bobs") || !(layout_.bob_radius > 0)) return;
     for (std::size_t k = members.size(); k-- > 0;)
         draw_disc(at(members[k].back()), bob_radius(0, members[k].size() - 1), member_hue(k, 1).with_alpha(1), list);
 }
@@ -200,6 +243,7 @@ void PendulumLayer::draw_members(DisplayList& list) const {
 /// Rods, and springs as thin zigzags.
 void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color,
                                DisplayList& list) const {
+    if (!shows("rods") || !(radius > 0)) return;
     const auto end_at = [&](const End<double>& end) {
         if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs[*bob]);
         return place_at(side, std::get<Place<double>>(end));
@@ -226,6 +270,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
 void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
     const float width = px(style_.width.grid);
     const auto& color = theme_.grid;
+    if (!(width > 0)) return;
     for (const auto& line : state_.side(side).lines) {
         const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
         if (!from) continue;
@@ -244,11 +289,12 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
 /// A fixed end; of a chain the pivot, which may move.
 Point PendulumLayer::place_at(std::size_t side, const Place<double>& place) const {
     const auto& pivot = state_.seen(side).pivot;
-    return panel_.at(place[0] + pivot.x, place[1] + pivot.y);
+    return at(place[0] + pivot.x, place[1] + pivot.y);
 }
 
 /// Where the fixed ends are.
 void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
+    if (!shows("rods") || !(layout_.rod_radius > 0)) return;
     const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
     for (const auto& line : state_.side(side).lines) {
         using Kind = MechanismLine::Kind;
@@ -262,15 +308,17 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
 
 /// A disc that is at home in the panel; one that a diverging run has put out of it is not shown.
 void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& list, float glow) const {
-    if (panel_.area.holds(at))
+    // with a view of one's own nothing leaves the panel
+    const float edge = video_.view.height_m || video_.view.center_m || video_.view.follow > 0 ? radius : 0;
+    if (panel_.area.grown(-edge, -edge).holds(at))
         list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});
 }
 
 /// Area by mass, but never too small to see; px.
-float PendulumLayer::bob_radius(std::size_t side, std::size_t bob) const {
-    const auto& drawn = state_.side(side);
-    const auto share = static_cast<float>(std::sqrt(drawn.mass[bob] / heaviest_));
-    const float thickest = drawn.lines.empty() ? 1.0f : std::ranges::max(drawn.lines, {}, &MechanismLine::width).width;
+float PendulumLayer::radius_of(std::size_t side, double mass) const {
+    const auto share = static_cast<float>(std::sqrt(mass / heaviest_));
+    float thickest = 1;
+    for (const auto& line : state_.side(side).lines) thickest = std::max(thickest, line.width);
     return std::max(layout_.bob_radius * share, (thickest > 1 ? 0.5f * thickest : 1.6f) * layout_.rod_radius);
 }
 

@@ -60,27 +60,28 @@ private:
 };
 
 void PhaseLayer::backdrop(DisplayList& list) const {
-    const float t = layout_.text, size = px(style_.font.axis), line = px(style_.width.grid);
+    const float em = px(style_.font.axis), line = px(style_.width.grid);
     const Area &area = panel_.area, around = panel_.panel;
     if (!video_.transparent)
         list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
-    const bool narrow = area.width() < 5 * style_.type.width("−180°", size) + 40 * t;
-    for (const double angle : {-180.0, -90.0, 0.0, 90.0, 180.0}) {
-        if (narrow && std::remainder(angle, 180) != 0) continue;
-        const float x = panel_.angle.at(angle);
-        list.push_back(Capsule{{x, area.top}, {x, area.bottom}, line / 2, theme_.grid});
-        list.push_back(
-            label(axis_number(angle) + "°", {x, area.bottom + 1.5f * size}, size, theme_.quiet_text, Align::center));
-    }
-    for (const auto& tick : axis_ticks(panel_.rate, size, 3 * size, false)) {
-        const float y = panel_.rate.at(tick.value);
-        list.push_back(Capsule{{area.left, y}, {area.right, y}, line / 2, theme_.grid});
-        list.push_back(label(tick.text, {area.left - 12 * t, y + 0.36f * size}, size, theme_.quiet_text, Align::right));
-    }
-    const auto heading = fmt::format("ω{0} over θ{0}, °/s{1}", subscript(link_ + 1),
+    AxisLook look{.edge = AxisLook::Edge::bottom,
+                  .em = em,
+                  .line = line,
+                  .grid = theme_.grid,
+                  .frame = theme_.frame,
+                  .text = theme_.quiet_text,
+                  .unit = {}};
+    const auto add = [&](const Axis& axis, const std::vector<Tick>& ticks) {
+        const auto items = axis_items(axis, ticks, area, around, look);
+        list.insert(list.end(), items.begin(), items.end());
+    };
+    add(panel_.angle, spaced_ticks(panel_.angle, true, em, 90));
+    look.edge = AxisLook::Edge::left;
+    add(panel_.rate, spaced_ticks(panel_.rate, false, em));
+    const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
                                      video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
-    const float fits = style_.type.fitting_size(heading, px(style_.font.strip), Weight::regular, around.width());
-    list.push_back(label(heading, {around.left, around.top - 12 * t}, fits, theme_.text));
+    const auto fits = fitted_text(layout_, heading, px(style_.font.strip), Weight::regular, around.width());
+    list.push_back(label(fits.text, {around.left, around.top - 12 * layout_.text}, fits.size, theme_.text));
 }
 
 /// A point where the way from the last sample crosses the section.

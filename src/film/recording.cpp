@@ -57,7 +57,8 @@ void Recording::simulate(long last, const Visit& visit) {
     record_ = {};
     PairRun pair(scene_);
     std::optional<MotionBatch> members;
-    if (with_pictures_ && !scene_.members.empty() && (is_kept_ || !is_bounded)) members.emplace(scene_.members, 1);
+    const bool has_members = (with_pictures_ || scene_.preset.member_columns) && !scene_.members.empty();
+    if (has_members && (is_kept_ || !is_bounded)) members.emplace(scene_.members, 1);
     const auto spent_s = [&] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s(); };
     double begun = spent_s();
     const auto add_sample = [&](const PairState& state) {

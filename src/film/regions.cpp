@@ -6,79 +6,90 @@
 namespace doppel {
 namespace {
 
-// of the picture's height
-constexpr float least_circle = 0.555f, usual_circle = 0.6f, most_strips = 0.3f;
-// of the width
-constexpr float least_column = 0.23f;
-// px of a 1920×1080 picture: heights of a strip's curves
-constexpr float least_curve = 60, enough_curve = 110;
+// of the picture's height: a strip's curves, and a pair's circles beside which strips may stand below
+constexpr float least_curves = 0.2f, most_curves = 0.34f, least_circle = 0.45f;
+// of the room: all strips below panels; a column of strips
+constexpr float most_below = 0.62f, least_column = 0.285f;
+
+constexpr std::size_t most_in_row = 3;  // strips below panels
 
 /// Panels side by side, or one above the other, each below its heading.
-std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs) {
+std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool stacked) {
     const auto n = static_cast<float>(needs.panels);
     const float gaps = (n - 1) * needs.gap;
-    const float width = needs.tall ? room.width() : std::floor((room.width() - gaps) / n);
-    const float height = std::floor(needs.tall ? (room.height() - gaps) / n : room.height());
+    const float width = stacked ? room.width() : std::floor((room.width() - gaps) / n);
+    const float height = std::floor(stacked ? (room.height() - gaps) / n : room.height());
     std::vector<Area> areas;
     for (std::size_t k = 0; k < needs.panels; ++k) {
         const auto i = static_cast<float>(k);
-        const float left = room.left + (needs.tall ? 0 : i * (width + needs.gap)),
-                    top = room.top + (needs.tall ? i * (height + needs.gap) : 0);
+        const float left = room.left + (stacked ? 0 : i * (width + needs.gap)),
+                    top = room.top + (stacked ? i * (height + needs.gap) : 0);
         areas.push_back({left, std::round(top + needs.heading), left + width, std::round(top + height)});
     }
     return areas;
 }
 
-/// What strips take besides the curves where each has a caption of one line.
-float words_of(const RegionNeeds& needs) {
-    const auto count = static_cast<float>(needs.strips.size());
-    return needs.text * (time_labels_height + count * (caption_line + caption_edge)) + needs.gap / 3;
-}
-
-/// Panels as high as their circles want, up to squares; of what they leave, the strips get no more than serves them.
-Regions with_strips_below(const Area& room, const RegionNeeds& needs) {
-    const auto count = static_cast<float>(needs.strips.size()), n = static_cast<float>(needs.panels);
-    const float words = words_of(needs);
-    float strips = 0;
-    if (needs.tall) {
-        const float squares = n * (room.width() + needs.heading) + (n - 1) * needs.gap;
-        const float least = std::min(words + 85 * count * needs.text, 0.55f * room.height());
-        strips = std::max(least, room.height() - squares);
-    } else {
-        // the panels get more than the least as soon as the curves have enough
-        const float least = least_circle * needs.height * around_circle, most = usual_circle / least_circle * least;
-        const float left = room.height() - needs.heading - words - enough_curve * count * needs.text;
-        const float square = (room.width() - needs.gap) / 2;
-        strips = room.height() - std::min(std::clamp(left, least, most), square) - needs.heading;
+/// Strips in columns, row by row, with curves of one height.
+std::vector<Area> strip_cells(const Area& room, const RegionNeeds& needs, std::size_t columns) {
+    const auto rows = static_cast<float>((needs.strips + columns - 1) / columns), n = static_cast<float>(columns);
+    const float width = std::floor((room.width() - (n - 1) * needs.gap) / n);
+    const float height = (room.height() - needs.numbers) / rows;
+    std::vector<Area> cells;
+    for (std::size_t k = 0; k < needs.strips; ++k) {
+        const auto row = static_cast<float>(k / columns);
+        const float left = room.left + static_cast<float>(k % columns) * (width + needs.gap),
+                    top = room.top + row * height;
+        const float below = row + 1 < rows ? 0 : needs.numbers;
+        cells.push_back({left, std::round(top), left + width, std::round(top + height + below)});
     }
-    strips = std::min(strips, words + most_strips * needs.height);
-    const float split = std::round(room.bottom - strips);
-    return {panel_areas({room.left, room.top, room.right, split}, needs),
-            {room.left, split + needs.gap / 3, room.right, room.bottom}};
+    return cells;
 }
 
-Regions with_strips_beside(const Area& room, const RegionNeeds& needs, float column) {
-    const float split = std::round(room.right - column);
-    return {panel_areas({room.left, room.top, split - needs.gap, room.bottom}, needs),
-            {split, room.top, room.right, room.bottom}};
+/// Of panels' circles, px.
+float circle_in(const Regions& regions) {
+    const auto& panel = regions.panels.front();
+    return std::min(panel.width(), panel.height()) / around_circle;
+}
+
+/// Strips get the least that they need, and what the panels leave of the rest.
+Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_t columns, bool stacked) {
+    const auto rows = static_cast<float>((needs.strips + columns - 1) / columns), n = static_cast<float>(needs.panels),
+               across = static_cast<float>(columns);
+    const float words = rows * needs.caption((room.width() - (across - 1) * needs.gap) / across) + needs.numbers;
+    const float gap = needs.gap / 3, gaps = (n - 1) * needs.gap;
+    const float squares =
+        stacked ? n * (room.width() + needs.heading) + gaps : (room.width() - gaps) / n + needs.heading;
+    const float least = words + rows * least_curves * needs.height, most = words + rows * most_curves * needs.height;
+    const float strips = std::min(std::clamp(room.height() - gap - squares, least, most), most_below * room.height());
+    const float part = std::round(room.bottom - strips);
+    return {panel_areas({room.left, room.top, room.right, part - gap}, needs, stacked),
+            strip_cells({room.left, part, room.right, room.bottom}, needs, columns)};
+}
+
+/// A panel alone is a square; strips get what it leaves.
+Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
+    const float square = room.height() - needs.heading, least = least_column * room.width();
+    const float column = needs.panels == 1 ? std::max(room.width() - square - needs.gap, least) : least;
+    const float part = std::round(room.right - column);
+    return {panel_areas({room.left, room.top, part - needs.gap, room.bottom}, needs, false),
+            strip_cells({part, room.top, room.right, room.bottom}, needs, 1)};
 }
 
 }  // namespace
 
-Regions split_regions(const Area& room, const RegionNeeds& needs) {
-    if (needs.panels == 0) return {{}, room};
-    if (needs.strips.empty()) return {panel_areas(room, needs), {}};
-    if (needs.tall) return with_strips_below(room, needs);
-    if (needs.panels == 1) {
-        const float square = room.height() - needs.heading;
-        return with_strips_beside(room, needs,
-                                  std::max(room.width() - square - needs.gap, least_column * room.width()));
+Regions split(const Area& room, const RegionNeeds& needs) {
+    if (needs.panels == 0) return {{}, strip_cells(room, needs, needs.strips > most_in_row ? 2 : 1)};
+    const bool can_stack = needs.tall && needs.panels > 1;
+    if (needs.strips == 0) return {panel_areas(room, needs, can_stack), {}};
+    if (needs.tall) {
+        auto beside = with_strips_below(room, needs, 1, false), stacked = with_strips_below(room, needs, 1, true);
+        return can_stack && circle_in(stacked) > circle_in(beside) ? stacked : beside;
     }
-    const auto count = static_cast<float>(needs.strips.size());
-    const float panels = least_circle * needs.height * around_circle + needs.heading;
-    const float curves = room.height() - panels - words_of(needs);
-    if (count <= 2 && curves >= least_curve * needs.text * count) return with_strips_below(room, needs);
-    return with_strips_beside(room, needs, least_column * room.width());
+    if (needs.panels > 1 && needs.strips <= most_in_row) {
+        auto below = with_strips_below(room, needs, needs.strips, false);
+        if (circle_in(below) >= least_circle * needs.height) return below;
+    }
+    return with_strips_beside(room, needs);
 }
 
 }  // namespace doppel

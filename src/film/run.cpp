@@ -171,7 +171,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             throw_if_set(stop);
             if (film) film->add(snapshot);
             if (state.share == 0 && state.sample >= record.first_sample) {
-                table.add(state, recording.record().outcome.start_distance);
+                table.add(snapshot, recording.record().outcome.start_distance);
                 if (!options.pictures) report({++done, total});
             }
             if (!film || frame == part.last || state.moment() != scene.frames.at(frame)) return;

@@ -1,7 +1,7 @@
 #include "film/strips.hpp"
 
-#include "film/layout.hpp"
 #include "numeric/state.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 
@@ -12,24 +12,32 @@
 namespace doppel {
 namespace {
 
-/// How much of a height that strips share each kind gets, and its words.
-struct StripRow {
-    float share;
-    const char *what, *how;
-};
-constexpr std::array<StripRow, strip_kinds> rows{{{0.24f, "state-space distance", ""},
-                                                  {0.18f, "finite-time growth rate", "1/s"},
-                                                  {0.15f, "energy error", "of the potential range"},
-                                                  {0.15f, "maximum rod error, m", ""},
-                                                  {0.18f, "rod tension, N", ""},
-                                                  {0.18f, "energy of {}, J", ""},
-                                                  {0.18f, "energy of {}, J", ""},
-                                                  {0.18f, "angles, °", ""},
-                                                  {0.18f, "angular rates, °/s", ""},
-                                                  {0.18f, "energy, J", ""}}};
+/// What strips show: the words before their values or names of curves.
+constexpr std::array<const char*, strip_kinds> titles{"state-space distance",
+                                                      "finite-time growth rate, 1/s",
+                                                      "energy error, of the potential range",
+                                                      "rod length error, m",
+                                                      "rod tension, N",
+                                                      "energy of {}, J",
+                                                      "energy of {}, J",
+                                                      "angles, °",
+                                                      "angular rates, °/s",
+                                                      "energy, J"};
 
-const StripRow& row_of(StripKind kind) {
-    return rows[static_cast<std::size_t>(kind)];
+std::string strip_title(StripKind kind, const Scene& scene) {
+    const auto &a = scene.preset.a, &b = scene.preset.b;
+    std::string title = titles[static_cast<std::size_t>(kind)];
+    if (kind == StripKind::energies_a || kind == StripKind::energies_b) {
+        const bool is_a = kind == StripKind::energies_a;
+        if (scene.is_single()) return "energy, J";
+        return fmt::format("energy of {}, J", (is_a ? a : b).label.value_or(is_a ? "a" : "b"));
+    }
+    if (kind == StripKind::total_energy && (drive_period(a) || drive_period(b)))
+        return title + ", mean over a drive period";
+    if (kind != StripKind::distance) return title;
+    if (wording_of(scene) == Wording::plain) title = "their distance";
+    if (!scene.members.empty()) return title + ", first to last";
+    return differ_in_kind(a, b) ? title + ", of the last masses" : title;
 }
 
 /// A curve for each link or rod: of few, of many the first and the last; the inner ones paler.
@@ -44,46 +52,42 @@ void add_links(std::vector<StripCurve>& curves, char side, std::size_t count, co
                 {value(k), mixed(color, pale, k + 1 == count ? 0 : paleness), width, fmt::format("{}{}", side, k + 1)});
 }
 
-/// The names of a strip's curves.
-std::vector<std::string> curve_names(StripKind kind, const Scene& scene) {
-    PairState any;
-    for (const auto& [seen, side] : {std::pair{&any.a, &scene.a}, {&any.b, &scene.b}}) {
-        seen->bobs.resize(side->mass.size());
-        seen->tension.resize(side->mass.size());
-    }
-    std::vector<std::string> names;
-    for (const auto& curve : strip_curves(kind, scene, any, 0, themes[0], 1))
-        if (!curve.name.empty()) names.push_back(curve.name);
-    return names;
+/// Part of a caption. Where `room` > 0 it stays in one line and keeps that width, px, whatever it says.
+struct Piece {
+    std::string text;
+    Color color;
+    float room = 0;
+};
+
+std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& layout,
+                             const std::vector<StripCurve>& curves, bool is_alike) {
+    const auto& theme = layout.style.theme;
+    const auto width = [&](const char* text) { return layout.style.type.width(text, px(layout.style.font.strip)); };
+    std::vector<Piece> pieces{{strip_title(kind, scene), theme.text}};
+    if (kind == StripKind::distance)
+        pieces.push_back({scientific(*curves[0].value), curves[0].color, width("8.8 × 10⁻⁸⁸")});
+    else if (kind == StripKind::exponent && is_alike)
+        pieces.push_back({"none, d₀ = 0", theme.quiet_text});
+    else if (kind == StripKind::exponent)
+        pieces.push_back(
+            {curves[0].value ? fmt::format("{:.2f}", *curves[0].value) : "", curves[0].color, width("−8.88")});
+    else if (kind == StripKind::energy &&
+             std::ranges::none_of(curves, [](const auto& one) { return one.value.has_value(); }))
+        pieces.push_back({"none: damping removes energy", theme.quiet_text});
+    for (const auto& curve : curves)
+        if (!curve.name.empty()) pieces.push_back({curve.name, curve.color, width(curve.name.c_str())});
+    return pieces;
 }
 
-/// How many lines the words above a strip take in a room that wide, and the width of all in one, px.
-std::pair<int, float> caption_size(const Layout& layout, const Scene& scene, StripKind kind, bool is_first,
-                                   float room) {
-    const float t = layout.text, gap = 14 * t;
-    const auto width = [&](const std::string& text) {
-        return layout.style.type.width(text, px(layout.style.font.strip));
-    };
-    const auto words = strip_words(kind, scene);
-    float value = 0;  // beside the name; below it
-    const auto names = curve_names(kind, scene);
-    for (const auto& name : names) value += width(name) + (&name == &names.back() ? 0 : gap);
-    float second = value;
-    if (kind == StripKind::distance) value = second = value_room * t;
-    if (kind == StripKind::exponent) {
-        const float none = width(alike_words);
-        value = std::max(value_room * t, none);
-        second = std::max(brief_value_room * t + width(words.how), none);
+/// The words of a text, each with the space after it.
+std::vector<std::string> words_of(const std::string& text) {
+    std::vector<std::string> words;
+    for (std::size_t from = 0; from < text.size();) {
+        const auto space = std::min(text.find(' ', from), text.size() - 1);
+        words.push_back(text.substr(from, space + 1 - from));
+        from = space + 1;
     }
-    if (kind == StripKind::energy) {
-        value = width(no_error_words(kind, scene));
-        second = value > 0 ? value : width(words.how);
-    }
-    const float parted = is_first ? width("diverged at 00.0 s") : 0;
-    float one_line = width(words.what) + (words.how.empty() ? 0 : width(", " + words.how));
-    if (value > 0) one_line += 18 * t + value;
-    if (is_first) one_line += gap + parted;
-    return {one_line <= room ? 1 : !is_first || second + parted <= room ? 2 : 3, one_line};
+    return words;
 }
 
 }  // namespace
@@ -91,19 +95,19 @@ std::pair<int, float> caption_size(const Layout& layout, const Scene& scene, Str
 std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const PairState& state, double start_distance,
                                      const Theme& theme, double width) {
     if (kind == StripKind::distance) return {{state.distance, theme.trace, width}};
-    if (kind == StripKind::exponent) return {{exponent_so_far(scene, state, start_distance), theme.trace, width}};
+    if (kind == StripKind::exponent) return {{growth_rate(scene, state, start_distance), theme.trace, width}};
     std::vector<StripCurve> curves;
     constexpr double degree = pi / 180;
     for (const char letter : {'a', 'b'}) {
         const bool is_a = letter == 'a';
+        if (!is_a && scene.is_single()) break;
         const auto& side = is_a ? scene.a : scene.b;
         const auto& seen = is_a ? state.a : state.b;
         const auto color = theme.sides[is_a ? 0 : 1];
-        // of two lines the first is wider, so that it still shows where both run as one
-        const double of_side = (is_a ? 1.5 : 0.64) * width;
-        const double kinetic = seen.kinetic_energy;
+        // the first is the wider, and drawn first: where both run as one, both show
+        const double of_side = (scene.is_single() ? 1 : is_a ? 1.5 : 0.6) * width;
         const auto add_all = [&](std::size_t count, const auto& value) {
-            add_links(curves, letter, count, value, color, theme.text, 0.8 * width);
+            add_links(curves, letter, count, value, color, theme.text, of_side);
         };
         switch (kind) {
             case StripKind::rod_error:
@@ -114,7 +118,8 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
                 if (!side.has_energy_error) curves.back().value.reset();
                 break;
             case StripKind::total_energy:
-                curves.push_back({seen.energy, color, of_side});
+                curves.push_back({is_a ? state.mean_energy_a : state.mean_energy_b, color, of_side});
+                if (auto& mean = curves.back().value) *mean -= side.lowest_potential;
                 break;
             case StripKind::rod_force:
                 add_all(seen.tension.size(), [&](std::size_t k) { return seen.tension[k]; });
@@ -127,67 +132,63 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
                 break;
             default:
                 if (is_a != (kind == StripKind::energies_a)) break;
-                curves.push_back({kinetic, color, 0.8 * width, "kinetic"});
-                curves.push_back(
-                    {seen.energy - kinetic, mixed(color, theme.background, 0.45f), 0.8 * width, "potential"});
-                curves.push_back({seen.energy, theme.text, 0.64 * width, "total"});
+                curves.push_back({seen.kinetic_energy, color, 0.8 * width, "kinetic"});
+                curves.push_back({seen.energy - side.lowest_potential - seen.kinetic_energy,
+                                  mixed(color, theme.background, 0.35f), 0.8 * width, "potential"});
+                curves.push_back({seen.energy - side.lowest_potential, theme.text, 0.6 * width, "total"});
         }
     }
     return curves;
 }
 
-std::optional<double> exponent_so_far(const Scene& scene, const PairState& state, double start_distance) {
+std::optional<double> growth_rate(const Scene& scene, const PairState& state, double start_distance) {
     if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
     if (!(state.distance > 0 && start_distance > 0)) return std::nullopt;
     return std::log(state.distance / start_distance) / scene.time(state.moment());
 }
 
-float share_of(StripKind kind) {
-    return row_of(kind).share;
+float caption_line(const Layout& layout) {
+    return 1.24f * px(layout.style.font.strip);
 }
 
-std::string no_error_words(StripKind kind, const Scene& scene) {
-    const bool none = kind == StripKind::energy && !scene.a.has_energy_error && !scene.b.has_energy_error;
-    return none ? "none: damping removes energy" : "";
+float above_curves(const Layout& layout) {
+    return 0.9f * px(layout.style.font.strip);
 }
 
-StripWords strip_words(StripKind kind, const Scene& scene) {
-    StripWords words{row_of(kind).what, row_of(kind).how};
-    if (kind == StripKind::energies_a || kind == StripKind::energies_b) {
-        const bool is_a = kind == StripKind::energies_a;
-        words.what =
-            fmt::format("energy of {}, J", (is_a ? scene.preset.a : scene.preset.b).label.value_or(is_a ? "a" : "b"));
+std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
+                                 const std::vector<StripCurve>& curves, bool is_alike, float width) {
+    const float size = px(layout.style.font.strip), line = caption_line(layout), gap = 0.66f * size;
+    const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
+    std::vector<Label> labels;
+    Point pen;
+    for (const auto& piece : pieces_of(kind, scene, layout, curves, is_alike)) {
+        if (pen.x > 0) pen.x += gap;
+        const auto parts = piece.room > 0 ? std::vector{piece.text} : words_of(piece.text);
+        bool goes_on = false;  // the label of the part before
+        for (const auto& part : parts) {
+            const float room = std::max(piece.room, width_of(part.substr(0, part.find_last_not_of(' ') + 1)));
+            if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, goes_on = false;
+            if (goes_on)
+                labels.back().text += part;
+            else
+                labels.push_back(label(part, pen, size, piece.color));
+            goes_on = true;
+            pen.x += std::max(piece.room, width_of(part));
+        }
     }
-    if (kind != StripKind::distance) return words;
-    if (wording_of(scene) == Wording::plain) words.what = "their distance";
-    if (!scene.members.empty()) return {words.what, "first to last", "distance, first to last"};
-    if (differ_in_kind(scene.preset.a, scene.preset.b))
-        return {words.what, "of the last masses", "distance of last masses"};
-    return words;
+    for (auto& words : labels) words.text.erase(words.text.find_last_not_of(' ') + 1);
+    return labels;
 }
 
-CaptionPlan plan_captions(const Layout& layout, const Scene& scene, const Area& room, float labels) {
-    const auto& strips = scene.preset.video.strips;
-    const float t = layout.text;
-    CaptionPlan plan{.line = caption_line * t, .edge = 2 * t};
-    plan.from_edge = room.width() < 0.3f * layout.page.width();
-    for (const auto kind : strips) {
-        const auto [lines, width] = caption_size(layout, scene, kind, plan.lines.empty(), room.width());
-        plan.lines.push_back(lines);
-        plan.from_edge |= lines > 1 || width > room.width() - labels;
+int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width) {
+    PairState any;
+    for (const auto& [seen, side] : {std::pair{&any.a, &scene.a}, {&any.b, &scene.b}}) {
+        seen->bobs.resize(side->mass.size());
+        seen->tension.resize(side->mass.size());
     }
-    plan.apart = (plan.from_edge ? 20 : 14) * t;
-    // where many strips share a little room, curves come before words
-    const float least = 26 * t * static_cast<float>(strips.size());
-    const auto curves = [&] {
-        float left = room.height() - time_labels_height * t;
-        for (std::size_t i = 0; i < strips.size(); ++i) left -= plan.height(i);
-        return left;
-    };
-    for (auto most = std::ranges::max_element(plan.lines); *most > 1 && curves() < least;
-         most = std::ranges::max_element(plan.lines))
-        --*most;
-    return plan;
+    const auto curves = strip_curves(kind, scene, any, 0, layout.style.theme, 1);
+    const auto labels = strip_caption(kind, scene, layout, curves, false, width);
+    return 1 + static_cast<int>(std::lround(labels.back().anchor.y / caption_line(layout)));
 }
 
 }  // namespace doppel

@@ -72,28 +72,30 @@ double Trail::faded_until(long g, double now) const {
     return end + (1 - std::pow(std::ceil(steps * light) / steps, 1 / fading)) * trail_s_;
 }
 
-void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, float jump) const {
-    if (!(trail_s_ > 0)) return;
+void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, float jump,
+                 Point shift) const {
+    if (!(trail_s_ > 0) || !(pen_.width > 0)) return;
     Points piece;
     for (const auto& point : points_) {
         if (!piece.empty() && std::abs(point.at.x - piece.back().at.x) > jump) {
-            draw_piece(std::move(piece), area, now, list);
+            draw_piece(std::move(piece), area, now, shift, list);
             piece.clear();
         }
         piece.push_back(point);
     }
     if (piece.empty()) return;
     if (head) piece.push_back({*head, now, piece.back().group});
-    draw_piece(std::move(piece), area, now, list);
+    draw_piece(std::move(piece), area, now, shift, list);
 }
 
-void Trail::draw_piece(Points points, const Area& area, double now, DisplayList& list) const {
+void Trail::draw_piece(Points points, const Area& area, double now, Point shift, DisplayList& list) const {
     simplify(points);
     Stroke stroke = pen_;
     std::optional<long> last_group;
     double until = 0;
     for (const auto& point : points) {
-        if (!area.holds(point.at)) {
+        const Point at{point.at.x + shift.x, point.at.y + shift.y};
+        if (!area.holds(at)) {
             if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
             stroke = pen_;
             continue;
@@ -102,7 +104,7 @@ void Trail::draw_piece(Points points, const Area& area, double now, DisplayList&
         last_group = point.group;
         const double freshness = std::clamp(1 - (until - point.time) / trail_s_, 0.0, 1.0);
         constexpr double thinnest = 0.55;
-        stroke.vertices.push_back({.at = point.at,
+        stroke.vertices.push_back({.at = at,
                                    .alpha = static_cast<float>(std::pow(freshness, fading)),
                                    .width = static_cast<float>(thinnest + (1 - thinnest) * freshness),
                                    .glow = static_cast<float>(std::pow(freshness, 4)),

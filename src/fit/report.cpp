@@ -170,6 +170,9 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     add("omega_deg_per_s", start[2], start[3]);
     text += "accuracy = 1e-6\n\n[b]  # released one standard error further\n";
     add("angle_deg", further[0], further[1]);
+    if (result.horizon && result.horizon->median_s)
+        text += fmt::format("\n[video]\nmodel_limit_s = {:.3g}  # the median of predictions of this track\n",
+                            *result.horizon->median_s);
     return text;
 }
 

@@ -48,74 +48,65 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
     return all.size() == 1 || (need <= width && from_right <= 1);
 }
 
+void append(const DisplayList& items, PageList& list) {
+    for (const auto& item : page_list(items)) list.push_back(item);
+}
+
 void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, bool words,
                  const PlotStyle& style, PageList& list) {
-    const float em = style.tick, baseline = area.bottom + 1.45f * em;
-    for (const Tick& tick : x_ticks(x, plot.x, style)) {
-        const float at = x.at(tick.value);
-        const bool named = !tick.text.empty();
-        if (named && !plot.map) list.push_back(vertical_line(at, area.top, area.bottom, style.line, style.theme.grid));
-        list.push_back(
-            vertical_line(at, area.bottom, area.bottom + (named ? 0.34f : 0.18f) * em, style.line, style.theme.frame));
-        if (!named || !words) continue;
-        const Label text = label(tick.text, {at, baseline}, em, style.theme.quiet_text, Align::center);
-        const Area box = text_area(text);
-        if (box.left >= held.left - 0.5f && box.right <= held.right + 0.5f) list.push_back(text);
-    }
+    const float em = style.tick;
+    append(axis_items(x, x_ticks(x, plot.x, style), area, held,
+                      {.edge = AxisLook::Edge::bottom,
+                       .em = em,
+                       .line = style.line,
+                       .grid = style.theme.grid,
+                       .frame = style.theme.frame,
+                       .text = style.theme.quiet_text,
+                       .has_grid = !plot.map,
+                       .has_numbers = words}),
+           list);
     if (plot.x.label.empty() || !words) return;
     const Weight weight = Weight::regular;
-    const float half = text_width(plot.x.label, style.axis, weight) / 2;
+    const float half = text_width(plot.x.label, style.axis, weight) / 2, baseline = area.bottom + 1.45f * em;
     const float middle =
         std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
     list.push_back(Label{
         plot.x.label, {middle, baseline + 1.5f * style.axis}, style.axis, Align::center, weight, style.theme.text});
 }
 
-/// A vertical axis: its ticks point to `side`, −1 or 1, from `at`.
-void draw_y_axis(const Axis& y, const PlotAxis& asked, float at, float side, const Area& area, bool grid, bool words,
+/// A vertical axis, left or right of the area.
+void draw_y_axis(const Axis& y, const PlotAxis& asked, AxisLook::Edge edge, const Area& area, bool grid, bool words,
                  Color color, const PlotStyle& style, PageList& list) {
-    const float em = style.tick;
-    for (const Tick& tick : y_ticks(y, asked, style)) {
-        const float place = y.at(tick.value), out = at + side * (tick.text.empty() ? 0.18f : 0.34f) * em;
-        const bool named = !tick.text.empty();
-        if (named && grid) list.push_back(horizontal_line(place, area.left, area.right, style.line, style.theme.grid));
-        list.push_back(horizontal_line(place, std::min(at, out), std::max(at, out), style.line, style.theme.frame));
-        if (!named || !words) continue;
-        list.push_back(label(tick.text, {at + side * 0.55f * em, place + 0.36f * em}, em, color,
-                             side < 0 ? Align::right : Align::left));
-    }
+    append(axis_items(y, y_ticks(y, asked, style), area, area,
+                      {.edge = edge,
+                       .em = style.tick,
+                       .line = style.line,
+                       .grid = style.theme.grid,
+                       .frame = style.theme.frame,
+                       .text = color,
+                       .has_grid = grid,
+                       .has_numbers = words}),
+           list);
 }
 
 }  // namespace
 
 std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style) {
-    const float em = style.tick;
-    return chart_ticks(axis,
-                       {.size = em,
-                        .gap = 0.5f * em,
-                        .spacing = std::max(2.4f * em, std::abs(axis.to - axis.from) / 11),
-                        .across = false},
-                       asked.every);
+    return spaced_ticks(axis, false, style.tick, asked.every);
 }
 
 std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style) {
-    const float em = style.tick;
-    return chart_ticks(axis,
-                       {.size = em,
-                        .gap = 1.1f * em,
-                        .spacing = std::max(3.6f * em, std::abs(axis.to - axis.from) / 15),
-                        .across = true},
-                       asked.every);
+    return spaced_ticks(axis, true, style.tick, asked.every);
 }
 
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
                const AxisWords& words, const PlotStyle& style, PageList& list) {
     const Theme& theme = style.theme;
     draw_x_axis(plot, x, area, held, words.x, style, list);
-    draw_y_axis(y, plot.y, area.left, -1, area, !plot.map, words.y, theme.quiet_text, style, list);
+    draw_y_axis(y, plot.y, AxisLook::Edge::left, area, !plot.map, words.y, theme.quiet_text, style, list);
     if (right) {
         const Color color = axis_color(plot, true, style);
-        draw_y_axis(*right, *plot.right, area.right, 1, area, false, true, color, style, list);
+        draw_y_axis(*right, *plot.right, AxisLook::Edge::right, area, false, true, color, style, list);
         list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
     list.push_back(vertical_line(area.left, area.top, area.bottom, style.line, theme.frame));

@@ -214,4 +214,51 @@ std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::o
     return linear_ticks(axis, labels);
 }
 
+std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every) {
+    const float length = std::abs(axis.to - axis.from);
+    // small charts have their numbers closer together
+    const float spacing = across ? std::max(length / 15, std::min(3.6f * em, length / 4))
+                                 : std::max({length / 11, std::min(2.4f * em, length / 4), 1.6f * em});
+    const TickLabels labels{.size = em, .gap = (across ? 1.1f : 0.5f) * em, .spacing = spacing, .across = across};
+    return chart_ticks(axis, labels, every);
+}
+
+DisplayList axis_items(const Axis& axis, const std::vector<Tick>& ticks, const Area& area, const Area& within,
+                       const AxisLook& look) {
+    const bool across = look.edge == AxisLook::Edge::bottom, right = look.edge == AxisLook::Edge::right;
+    const float em = look.em,
+                edge = across  ? area.bottom
+                       : right ? area.right
+                               : area.left,
+                out = across || right ? 1 : -1;
+    DisplayList list;
+    const auto add_line = [&](float at, float from, float to, Color color) {
+        if (!(look.line > 0)) return;
+        const auto [low, high] = std::minmax(from, to);
+        list.push_back(across ? vertical_line(at, low, high, look.line, color)
+                              : horizontal_line(at, low, high, look.line, color));
+    };
+    const auto last = std::find_if(ticks.rbegin(), ticks.rend(), [](const Tick& tick) { return !tick.text.empty(); });
+    for (const Tick& tick : ticks) {
+        const float at = axis.at(tick.value);
+        const bool named = !tick.text.empty();
+        if (named && look.has_grid)
+            add_line(at, across ? area.top : area.left, across ? area.bottom : area.right, look.grid);
+        add_line(at, edge, edge + out * (named ? 0.34f : 0.18f) * em, look.frame);
+        if (!named || !look.has_numbers) continue;
+        if (!across) {
+            list.push_back(label(tick.text, {edge + out * 0.55f * em, at + 0.36f * em}, em, look.text,
+                                 right ? Align::left : Align::right));
+            continue;
+        }
+        // the number stands below its tick, a unit after it
+        const std::string unit = &tick == &*last ? look.unit : "";
+        const float half = text_width(tick.text, em) / 2, end = half + text_width(unit, em);
+        if (at - half < within.left - 0.5f || at + end > within.right + 0.5f) continue;
+        list.push_back(label(tick.text + unit, {unit.empty() ? at : at + end, edge + 1.45f * em}, em, look.text,
+                             unit.empty() ? Align::center : Align::right));
+    }
+    return list;
+}
+
 }  // namespace doppel

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "render/display_list.hpp"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,5 +48,23 @@ struct TickLabels {
 /// `every` is given, every so many decades have a label. Never more digits than the step has; "1.5 × 10⁻⁷" below 0.0001
 /// and from a million on; a true minus sign. None where a double cannot tell neighbours apart.
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every = {});
+
+/// The same with the spacing that figures and films have: labels of `em` px below a chart (`across`) or beside it.
+std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every = {});
+
+/// How an axis is drawn. Sizes in px.
+struct AxisLook {
+    enum class Edge { bottom, left, right } edge = Edge::left;  // of the chart
+    float em = 19;                                              // of the numbers
+    float line = 1;                                             // width of lines; 0 = none
+    Color grid, frame, text;
+    bool has_grid = true, has_numbers = true;
+    std::string unit = {};  // after the last number of an axis below
+};
+
+/// Of a chart in `area`: lines across it at ticks that have labels, marks outside it, and the labels. Those below it that
+/// do not fit `within` are left out.
+DisplayList axis_items(const Axis& axis, const std::vector<Tick>& ticks, const Area& area, const Area& within,
+                       const AxisLook& look);
 
 }  // namespace doppel

@@ -280,6 +280,11 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
         differences = differing_keys(*specs[0], *specs[1]);
         all = {statements(scene, differences, false), statements(scene, differences, true)};
     }
+    if (scene.is_single()) {
+        const auto& spec = *specs[0];
+        const auto start = has_track ? track_words(scene.a, spec.track) : captions_of_kind(spec, all[0]).note;
+        return {SideCaptions{spec.label.value_or(start), spec.note.value_or(spec.label ? start : "")}, {}};
+    }
     std::array<SideCaptions, 2> words;
     for (std::size_t i = 0; i < 2; ++i) {
         const auto& spec = *specs[i];
@@ -293,6 +298,7 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
 
 std::string scene_caption(const Scene& scene, Wording wording) {
     if (scene.preset.subtitle) return *scene.preset.subtitle;
+    if (scene.is_single() && scene.a.replay) return "a real double pendulum";
     if (scene.a.replay && scene.b.replay) return "two real double pendulums";
     if (scene.a.replay || scene.b.replay) return "a real double pendulum and its simulation";
     const auto at_rest = [](const SideSpec& side) {
@@ -309,7 +315,8 @@ std::string scene_caption(const Scene& scene, Wording wording) {
     if (wording == Wording::plain) common.clear();
     const auto number = scene.members.empty() ? std::string("two") : grouped(static_cast<long>(scene.members.size()));
     const auto one = [](const SideSpec& side) { return system_words(side, ""); };
-    const auto systems = differ_in_kind(scene.preset.a, scene.preset.b)
+    const auto systems = scene.is_single() ? "a " + one(scene.preset.a)
+                         : differ_in_kind(scene.preset.a, scene.preset.b)
                              ? fmt::format("a {} and a {}", one(scene.preset.a), one(scene.preset.b))
                              : fmt::format("{} {}", number, system_words(scene.preset.a));
     const auto physical = physical_words(scene.preset.a.physical);

@@ -59,9 +59,13 @@ void measure(const SideSpec& spec, Side& side) {
         side.has_work = !physical.conserves_energy();
         side.pivot_reach = std::hypot(physical.pivot.x, physical.pivot.y);
         constexpr float heavy = 3.2f;  // a body is drawn as broad as that
+        double mass = 0;
+        for (const double of_link : physical.chain.mass) mass += of_link;
+        side.lowest_potential = -mass * side.gravity * std::abs(physical.pivot.y);
         for (std::size_t i = 0; i < side.lines.size(); ++i)
             if (physical.chain.mass[i] > side.mass[i]) side.lines[i].width = heavy;
     }
+    if (side.has_angles) side.lowest_potential -= side.energy_unit / 2;
     if (!side.motion.parts) return;
     const auto parts = side.motion.parts->cast<double>();
     check(parts);

@@ -17,7 +17,11 @@ PairState PairRun::next(const std::atomic<bool>& stop) {
 }
 
 void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
-    const auto advance_b = [&] { now.b = b_.advance_to(now.moment(), stop); };
+    if (!b_) {
+        now.a = now.b = a_.advance_to(now.moment(), stop);
+        return;
+    }
+    const auto advance_b = [&] { now.b = b_->advance_to(now.moment(), stop); };
     std::exception_ptr fault;
     std::vector<std::jthread> other;
     if (are_large_)
@@ -42,7 +46,9 @@ PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& sto
     now.share = moment.share;
     advance_sides(stop, now);
     now.energy_error_a = a_.energy_error(now.a);
-    now.energy_error_b = b_.energy_error(now.b);
+    now.energy_error_b = b_ ? b_->energy_error(now.b) : now.energy_error_a;
+    now.mean_energy_a = a_.mean_energy(now.a);
+    now.mean_energy_b = b_ ? b_->mean_energy(now.b) : now.mean_energy_a;
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
     const auto distance = [&](const auto& a, const auto& b) {
         if (!differ_in_kind(scene_.preset.a, scene_.preset.b)) return static_cast<double>(state_space_distance(a, b));

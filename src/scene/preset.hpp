@@ -182,6 +182,7 @@ struct Preset {
     Rational duration_s{30, 1};
     Rational sample_hz{120, 1};
     bool energy_columns = false;  // of the table: kinetic and potential energies
+    bool member_columns = false;  // of the table: an ensemble's members
     SideSpec a, b;
     VideoSpec video;
 };

@@ -42,6 +42,8 @@ void clock_fields(KeyVisitor& visit, Preset& preset) {
 
 void column_fields(KeyVisitor& visit, Preset& preset) {
     visit({"energy_columns", "kinetic and potential energies as last columns of the CSV"}, preset.energy_columns);
+    visit({"member_columns", "of an ensemble: angles, rates, places and velocities of each member as last columns"},
+          preset.member_columns);
 }
 
 namespace {
@@ -296,14 +298,35 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
     constexpr std::string_view members =
-        "of an ensemble: pendulums from side a to side b, or the angles of each, [[120, 120], [120.01, 120]]";
+        "of an ensemble: pendulums from side a to side b, or a list of angles, [[120, 120], [120.01, 120]], or of "
+        "tables with "
+        "angle_deg, mass_kg, length_m, color";
     visit({"members", members, "", some, "", of_ensemble}, video.members);
     visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
           video.phase);
     visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
     visit({.key = "panels", .help = "\"pendulums\" and strips, in their order"}, static_cast<Panels&>(video));
-    visit({.key = "show", .help = "text elements; credit: Doppel's name on the end card", .names = shown_parts},
+    visit({.key = "show",
+           .help = "what is shown besides trails; credit: by whom, on the end card; twin: the other side as a shadow",
+           .names = shown_parts},
           video.show);
+    visit.table("view", [&](KeyVisitor& table) {
+        table({"follow", "the mass that stays in the middle, from 1; 0 = none", "", from_to(0, 10'000)},
+              video.view.follow);
+        const Only still{video.view.follow == 0, "is of a view that follows no mass", false, false, "follow"};
+        table({"center_m",
+               "the place in the middle of a panel, [x, y]",
+               "m",
+               {},
+               "the pivot, or that of the motion",
+               still},
+              video.view.center_m);
+        table({"height_m", "what the height of a panel shows", "m", positive, "all of the motion"},
+              video.view.height_m);
+    });
+    visit({"model_limit_s", "how long a fitted model predicts what was measured: a line in the first strip", "s",
+           positive},
+          video.model_limit_s);
     constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
     for (std::size_t i = 0; i < strip_kinds; ++i) {
         const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
@@ -320,8 +343,11 @@ void style_fields(KeyVisitor& visit, VideoSpec& video) {
             table({color_names[i].key, color_names[i].help, "", {}, of_theme}, video.colors[i]);
     });
     visit.table("widths_px", [&](KeyVisitor& table) {
+        constexpr std::string_view fitted = "by the size of the panel";
         for (const auto& [key, member, help] : width_names)
-            table({key, help, "px", from_to(0, 200)}, video.widths.*member);
+            table({key, help, "px", from_to(0, 200, "nothing")}, video.widths.*member);
+        table({"rod", "rods", "px", from_to(0, 200, "nothing"), fitted}, video.widths.rod);
+        table({"bob", "radius of the heaviest bob", "px", from_to(0, 200, "nothing"), fitted}, video.widths.bob);
     });
     visit.table("fonts", [&](KeyVisitor& table) {
         table({"text", "font file (TrueType, OpenType), beside the preset or from here", "", {}, "built in"},

@@ -24,6 +24,33 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     return fmt::format("{} or {}", below, above);
 }
 
+/// One pendulum has nothing of a pair.
+void check_single(const Preset& preset, TomlReader& top, const TomlReader& video) {
+    if (preset.video.layout != Arrangement::single) return;
+    if (top.has("b"))
+        throw video.fault("layout",
+                          "\"single\" shows side a alone, but the preset has a table [b]; leave [b] out, or take "
+                          "\"side-by-side\"");
+    for (const auto strip : preset.video.strips)
+        if (strip == StripKind::distance || strip == StripKind::exponent || strip == StripKind::energies_b)
+            throw video.fault("panels", "must be of side a for the layout \"single\"; \"{}\" is of a pair",
+                              name_of(strip));
+}
+
+/// A view follows a mass that is there; columns of members are of an ensemble.
+void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene) {
+    const auto masses = [](const SideSpec& side) {
+        return side.particles.empty() ? side.links() : side.particles.size();
+    };
+    const auto most = std::min(masses(preset.a), masses(preset.b));
+    if (const auto follow = preset.video.view.follow; follow > static_cast<int>(most))
+        throw video.inner(video.read_table("view"), "[video.view]")
+            .fault("follow", "must be from 0 to {}, as there are masses; it is {}", most, follow);
+    if (preset.member_columns && preset.video.layout != Arrangement::ensemble)
+        throw scene.fault("member_columns", "is of the layout \"ensemble\"; it is \"{}\"",
+                          name_of(preset.video.layout));
+}
+
 /// What layouts and strips ask of the system.
 void check_layout(const Preset& preset, const TomlReader& video) {
     const auto layout = preset.video.layout;
@@ -92,14 +119,15 @@ void check_layout(const TomlReader& table, const VideoSpec& video) {
     if (is_portrait && video.size.height < video.size.width)
         throw table.fault("size", "must be higher than wide for the layout \"portrait\"; it is [{}, {}]",
                           video.size.width, video.size.height);
-    if (!video.pendulums && video.layout != Arrangement::side_by_side && !is_portrait)
+    if (!video.pendulums && video.layout != Arrangement::side_by_side && !is_portrait &&
+        video.layout != Arrangement::single)
         throw table.fault("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
 /// Members of an ensemble leave short trails without light.
 void read_style(TomlReader& table, VideoSpec& video) {
     const bool is_ensemble = video.layout == Arrangement::ensemble;
-    if (is_ensemble) video.trail_s = video.members.angles_deg.empty() ? 0.3 : 1;
+    if (is_ensemble) video.trail_s = video.members.releases.empty() ? 0.3 : 1;
     style_fields(table, video);
 }
 
@@ -126,6 +154,7 @@ void read_video(TomlReader& table, VideoSpec& video) {
     time_fields(table, video);
     layout_fields(table, video);
     if (video.layout == Arrangement::portrait && !table.has("size")) video.size = {1080, 1920};
+    if (video.layout == Arrangement::single && !table.has("panels")) video.strips = {StripKind::energies_a};
     read_style(table, video);
     table.finish();
     table.check_together([&] {
@@ -158,26 +187,34 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
 }
 
 /// The pair of an ensemble whose members are listed is its first and its last. Throws where the file gives a side
-/// other angles, or a member too many or too few of them.
+/// other numbers, or a member too many or too few of them.
 void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
-    const auto& members = preset.video.members.angles_deg;
+    const auto& members = preset.video.members.releases;
     if (members.empty()) return;
     for (std::size_t k = 0; k < members.size(); ++k)
-        if (members[k].size() != preset.a.links())
-            throw video.fault("members", "must have {} angles each, one for each link; [{}] has {}", preset.a.links(),
-                              k, members[k].size());
-    const auto check_side = [&](const char* table, const std::vector<Quad>& angles, const std::vector<Quad>& member) {
-        if (video.from_command_line("members") || !document.table(top, table).has("angle_deg") || angles == member)
-            return;
-        throw video.fault("members",
-                          "must begin with side a and end with side b; [{}] angle_deg is {}, the member's {}", table,
-                          toml_value(angles), toml_value(member));
+        for (const auto& list : Release::lists)
+            if (const auto count = (members[k].*list.member).size(); count > 0 && count != preset.a.links())
+                throw video.fault("members", "must have {} numbers each, one a link; {} of [{}] has {}",
+                                  preset.a.links(), list.key, k, count);
+    const auto place = [&](const Release::List& list, std::vector<Quad> SideSpec::*of_side) {
+        const auto &first = members.front().*list.member, &last = members.back().*list.member;
+        const auto check_side = [&](const char* table, const std::vector<Quad>& given,
+                                    const std::vector<Quad>& member) {
+            if (member.empty() || video.from_command_line("members") || !document.table(top, table).has(list.key) ||
+                given == member)
+                return;
+            throw video.fault("members", "begins with side a and ends with side b; [{}] {} is {}, the member's {}",
+                              table, list.key, toml_value(given), toml_value(member));
+        };
+        check_side("a", preset.a.*of_side, first);
+        check_side("b", preset.b.*of_side, last);
+        check_side("system", preset.a.*of_side, first);
+        if (!first.empty()) preset.a.*of_side = first;
+        if (!last.empty()) preset.b.*of_side = last;
     };
-    check_side("a", preset.a.angle_deg, members.front());
-    check_side("b", preset.b.angle_deg, members.back());
-    check_side("system", preset.a.angle_deg, members.front());
-    preset.a.angle_deg = members.front();
-    preset.b.angle_deg = members.back();
+    place(Release::lists[0], &SideSpec::angle_deg);
+    place(Release::lists[1], &SideSpec::mass_kg);
+    place(Release::lists[2], &SideSpec::length_m);
 }
 
 }  // namespace
@@ -268,6 +305,8 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     check_frames(preset, video);
     const auto rate = preset.video.fps ? preset.video.fps : product(preset.sample_hz, preset.video.speed.constant);
     check_format(video, rate_fault(preset.video.options(*rate)));
+    check_single(preset, top, video);
+    check_view(preset, video, scene);
     check_layout(preset, video);
     return preset;
 }

@@ -59,7 +59,21 @@ std::string toml_value(const TomlValues& values) {
 }
 
 std::string toml_value(const Members& members) {
-    return members.angles_deg.empty() ? toml_value(members.count) : toml_value(members.angles_deg);
+    if (members.releases.empty()) return toml_value(members.count);
+    std::vector<std::string> all;
+    for (const auto& release : members.releases) {
+        if (release.mass_kg.empty() && release.length_m.empty() && !release.color && !release.angle_deg.empty()) {
+            all.push_back(toml_value(release.angle_deg));
+            continue;
+        }
+        std::vector<std::string> keys;
+        for (const auto& list : Release::lists)
+            if (!(release.*list.member).empty())
+                keys.push_back(fmt::format("{} = {}", list.key, toml_value(release.*list.member)));
+        if (release.color) keys.push_back("color = " + toml_value(*release.color));
+        all.push_back(fmt::format("{{{}}}", fmt::join(keys, ", ")));
+    }
+    return fmt::format("[{}]", fmt::join(all, ", "));
 }
 
 std::string toml_value(const KeyMember& member) {
@@ -126,12 +140,13 @@ std::string resolved_pair(const Preset& preset) {
     TomlWriter writer;
     auto clock = preset;
     clock_fields(writer, clock);
-    if (preset.energy_columns) column_fields(writer, clock);
+    if (preset.energy_columns || preset.member_columns) column_fields(writer, clock);
     return writer.text() + resolved_sides(preset);
 }
 
 std::string resolved_sides(const Preset& preset, const std::string& above) {
-    return side_toml(above + "a", preset.a) + side_toml(above + "b", preset.b);
+    const auto a = side_toml(above + "a", preset.a);
+    return preset.video.layout == Arrangement::single ? a : a + side_toml(above + "b", preset.b);
 }
 
 std::string resolved_release(SideSpec side) {

@@ -66,7 +66,10 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto& asked = scene.preset.video.members;
     for (std::size_t k = 0; k < asked.size(); ++k) {
         auto member = between(first, last, Quad(k) / Quad(asked.size() - 1));
-        if (!asked.angles_deg.empty()) member.angle_deg = asked.angles_deg[k];
+        for (const auto& [given, into] : {std::pair{&Release::angle_deg, &SideSpec::angle_deg},
+                                          {&Release::mass_kg, &SideSpec::mass_kg},
+                                          {&Release::length_m, &SideSpec::length_m}})
+            if (!asked.releases.empty() && !(asked.releases[k].*given).empty()) member.*into = asked.releases[k].*given;
         members.push_back(scene.a.motion);
         members.back().chain = chain_of(member);
         if (!member.physical.is_none()) members.back().physical = physical_of(member);
@@ -147,11 +150,17 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
       side_(side),
       name_(name),
       motion_(motion_of(scene, side, name)),
-      proportion_(motion_->observe(), side.energy_unit, side.reach) {}
+      proportion_(motion_->observe(), side.energy_unit, side.reach) {
+    if (const auto period = drive_period(name == 'a' ? scene.preset.a : scene.preset.b)) energy_.emplace(*period);
+}
 
 std::optional<double> SideRun::energy_error(const Observation& seen) const {
     if (!side_.has_energy_error) return std::nullopt;
     return seen.energy_change / proportion_.energy;
+}
+
+std::optional<double> SideRun::mean_energy(const Observation& seen) const {
+    return energy_ ? energy_->at(scene_.time(now_), seen.energy) : seen.energy;
 }
 
 RunFailure SideRun::broken(const std::string& what) const {
@@ -188,7 +197,36 @@ Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& s
     }
     auto seen = motion_->observe();
     watch(seen);
+    if (energy_ && moment.share == 0) energy_->add(scene_.time(now_), seen.energy);
     return seen;
+}
+
+std::optional<double> drive_period(const SideSpec& spec) {
+    std::optional<double> longest;
+    const auto add = [&](const Quad& amplitude, const Quad& frequency_hz) {
+        if (amplitude != 0) longest = std::max(longest.value_or(0), 1 / static_cast<double>(frequency_hz));
+    };
+    add(spec.physical.pivot.amplitude_m, spec.physical.pivot.frequency_hz);
+    for (const auto& torque : spec.physical.torques) add(torque.amplitude_N_m, torque.frequency_hz);
+    return longest;
+}
+
+void PeriodMean::add(double time, double value) {
+    points_.push_back(points_.empty() ? Point{time, value, 0} : next(points_.back(), time, value));
+    while (points_.size() > 1 && points_[1].time <= time - period_) points_.pop_front();
+}
+
+std::optional<double> PeriodMean::at(double time, double value) const {
+    constexpr double rounding = 1e-9;
+    const double begin = time - period_;
+    if (points_.empty() || begin < points_.front().time - rounding * period_) return std::nullopt;
+    const auto after = std::ranges::find_if(points_, [&](const Point& point) { return point.time > begin; });
+    const auto last = next(points_.back(), time, value);
+    const auto &to = after == points_.end() ? last : *after,
+               &from = after == points_.begin() ? points_.front() : *std::prev(after);
+    const double share = to.time > from.time ? (begin - from.time) / (to.time - from.time) : 0;
+    const auto first = next(from, begin, std::lerp(from.value, to.value, share));
+    return (last.integral - first.integral) / period_;
 }
 
 }  // namespace doppel

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -83,12 +84,13 @@ struct Side {
     std::string why;                     // this model
     std::optional<MethodChoice> choice;  // where an accuracy was asked for
     MethodEntry method{};
-    Rational step{0, 1};       // s; of methods with a fixed step
-    std::vector<double> mass;  // kg, a bob each
-    bool has_angles = true;    // a chain, whose bobs hang one below the other
-    double gravity = 0;        // m/s²
-    double energy_unit = 0;    // J, what an error of its energy is measured by in pictures (the potential range)
-    double reach = 0;          // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
+    Rational step{0, 1};          // s; of methods with a fixed step
+    std::vector<double> mass;     // kg, a bob each
+    bool has_angles = true;       // a chain, whose bobs hang one below the other
+    double gravity = 0;           // m/s²
+    double energy_unit = 0;       // J, what an error of its energy is measured by in pictures (the potential range)
+    double lowest_potential = 0;  // J, of a chain: hanging straight down, its pivot as low as it goes
+    double reach = 0;  // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
     bool has_energy_error =
         true;                // all that changes the energy is known (Observation::work): simulated, no damped spring
     bool has_work = false;   // by friction or drive on a chain
@@ -142,6 +144,8 @@ struct Scene {
 
     double time(const Moment& moment) const;  // s
     double time(long sample) const { return time(Moment{sample}); }
+    /// Whether side b is none: nothing of it is simulated.
+    bool is_single() const { return preset.video.layout == Arrangement::single; }
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
     /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.
@@ -162,6 +166,7 @@ struct PairState {
     double share = 0;  // of the way to the next one
     Observation a, b;
     std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
+    std::optional<double> mean_energy_a, mean_energy_b;    // as SideRun::mean_energy()
     double distance = 0;                                   // state space, analysis/difference.hpp
 
     Moment moment() const { return {sample, share}; }
@@ -173,6 +178,29 @@ struct RunFailure : Error {
         : Error(ExitCode::method_failed, message), side(side_name), sample(at_sample) {}
     char side;    // 'a' or 'b'
     long sample;  // the first that is wrong
+};
+
+/// Of a side that is driven, s: the longest of its drives'.
+std::optional<double> drive_period(const SideSpec& spec);
+
+/// The mean of a quantity over the last period, from its values at samples, linear between them.
+class PeriodMean {
+public:
+    /// s
+    explicit PeriodMean(double period) : period_(period) {}
+    void add(double time, double value);
+    /// Up to a moment at or after the sample added last; nothing before a period is over.
+    std::optional<double> at(double time, double value) const;
+
+private:
+    struct Point {
+        double time, value, integral;  // s; the quantity; its integral from the first point on
+    };
+    static Point next(const Point& from, double time, double value) {
+        return {time, value, from.integral + (time - from.time) * (from.value + value) / 2};
+    }
+    double period_;
+    std::deque<Point> points_;
 };
 
 /// Steps one side from sample to sample, and watches it.
@@ -191,6 +219,8 @@ public:
 
     /// Relative (analysis/watched_motion.hpp); nothing where damping takes energy, so that no change of it is an error.
     std::optional<double> energy_error(const Observation& seen) const;
+    /// J: of a driven side the mean over the drive's last period, once one is over.
+    std::optional<double> mean_energy(const Observation& seen) const;
     Effort effort() const { return motion_->effort(); }
 
 private:
@@ -202,6 +232,7 @@ private:
     char name_;
     std::unique_ptr<Motion> motion_;
     ErrorScale proportion_;
+    std::optional<PeriodMean> energy_;  // of a driven side
     Moment now_{-1};
 };
 
@@ -221,15 +252,16 @@ public:
     explicit PairRun(const Scene& scene)
         : scene_(scene),
           a_(scene, scene.a, 'a'),
-          b_(scene, scene.b, 'b'),
-          are_large_(std::min(scene.a.mass.size(), scene.b.mass.size()) >= large) {}
+          are_large_(std::min(scene.a.mass.size(), scene.b.mass.size()) >= large) {
+        if (!scene.is_single()) b_.emplace(scene, scene.b, 'b');
+    }
 
-    /// Sample 0, then 1, 2, … Throws as SideRun does.
+    /// Sample 0, then 1, 2, … Of a single pendulum side b is as side a. Throws as SideRun does.
     PairState next(const std::atomic<bool>& stop);
     PairState advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }
-    Effort effort_b() const { return b_.effort(); }
+    Effort effort_b() const { return b_ ? b_->effort() : Effort{}; }
     /// What other threads than the caller's have spent, s.
     double other_cpu_s() const { return other_cpu_s_; }
 
@@ -239,7 +271,8 @@ private:
     void advance_sides(const std::atomic<bool>& stop, PairState& now);
 
     const Scene& scene_;
-    SideRun a_, b_;
+    SideRun a_;
+    std::optional<SideRun> b_;
     bool are_large_;
     double other_cpu_s_ = 0;
     long sample_ = -1;

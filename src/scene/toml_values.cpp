@@ -186,29 +186,52 @@ public:
     }
 
     void read(const toml::node& node, Members& into) const {
-        into.angles_deg.clear();
+        into.releases.clear();
         const auto* releases = node.as_array();
         if (!releases) return read(node, into.count);
         const auto refuse = [&](const std::string& what) {
-            throw fault("must be a whole number, or 2 to {} lists of angles; {}", Members::most_releases, what);
+            throw fault("must be a whole number, or 2 to {} lists of angles or tables; {}", Members::most_releases,
+                        what);
         };
         if (releases->size() < 2 || releases->size() > Members::most_releases) refuse(found(node));
-        const Field angle{.key = field_.key, .bounds = {.low = -1e6, .high = 1e6}};
-        for (const auto& release : *releases) {
-            auto& angles = into.angles_deg.emplace_back();
-            const auto add = [&](const toml::node& element) {
-                const Element place{into.angles_deg.size() - 1, angles.size()};
-                angles.push_back(number(element, place, Quad()));
-                ValueReader(table_, angle).check(angles.back(), place);
-            };
-            const auto* list = release.as_array();
-            if (release.is_number() && is_typed(node))
-                add(release);
-            else if (!list || list->empty())
-                refuse(fmt::format("{} is {}", shown(release), kind_of(release)));
+        for (std::size_t k = 0; k < releases->size(); ++k) {
+            const auto& release = *releases->get(k);
+            auto& member = into.releases.emplace_back();
+            if (const auto* table = release.as_table())
+                read_release(*table, k, member);
+            else if (const auto* list = release.as_array();
+                     (list && !list->empty()) || (release.is_number() && is_typed(node)))
+                read_numbers(release, {"angle_deg"}, k, member.angle_deg);
             else
-                for (const auto& element : *list) add(element);
+                refuse(fmt::format("{} is {}", shown(release), kind_of(release)));
         }
+    }
+
+    /// The keys of a member of an ensemble, number `k` from 0.
+    void read_release(const toml::table& table, std::size_t k, Release& member) const {
+        for (const auto& [key, value] : table) {
+            const auto list = std::ranges::find(Release::lists, key.str(), &Release::List::key);
+            if (list != Release::lists.end())
+                read_numbers(value, list->key, k, member.*list->member);
+            else if (key.str() == "color")
+                read(value, member.color.emplace());
+            else
+                throw fault("[{}] may have angle_deg, mass_kg, length_m and color; \"{}\" is none of them", k,
+                            key.str());
+        }
+    }
+    void read_numbers(const toml::node& node, std::string_view key, std::size_t k, std::vector<Quad>& into) const {
+        const Field field{.key = field_.key, .bounds = key == "angle_deg" ? angle_bounds : positive};
+        const auto add = [&](const toml::node& element) {
+            const Element place{k, into.size()};
+            into.push_back(number(element, place, Quad()));
+            ValueReader(table_, field).check(into.back(), place);
+        };
+        if (const auto* list = node.as_array())
+            for (const auto& element : *list) add(element);
+        else
+            add(node);
+        if (into.empty()) throw fault("[{}] {} must have numbers, one a link; it is []", k, key);
     }
 
     /// One speed, or times with speeds.

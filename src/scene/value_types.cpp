@@ -99,7 +99,8 @@ Json speed_schema(L field) {
 }
 
 Json members_schema(L field) {
-    return any_of({whole_schema(field), list_schema(list_schema(within({}), 1, 0), 2, Members::most_releases)});
+    return any_of({whole_schema(field), list_schema(any_of({list_schema(within({}), 1, 0), Json{{"type", "object"}}}),
+                                                    2, Members::most_releases)});
 }
 
 template <class T>
@@ -118,7 +119,7 @@ constexpr ValueType type_of() {
         return {.words = "list of text, not empty", .schema = texts_schema<1>, .is_list = true};
     if constexpr (is_same_v<T, Speed>) return {"number, \"a/b\", or list of [s, number]", speed_schema};
     if constexpr (is_same_v<T, QuadPair>) return {"[x, y]", pair_schema, "[0, 0]"};
-    if constexpr (is_same_v<T, Members>) return {"whole number, or angles of 2 to 8 pendulums", members_schema};
+    if constexpr (is_same_v<T, Members>) return {"whole number, or list of 2 to 8 pendulums", members_schema};
     if constexpr (is_same_v<T, ChosenText>)
         return {"`true`, `false`, text or list of text", [](L field) {
                     return any_of({truth_schema(field), text_schema(field), texts_schema<0>(field)});

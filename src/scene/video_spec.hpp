@@ -25,11 +25,11 @@ struct Range {
 };
 
 /// How the pendulums of a film are placed: each side in a panel, the other as a shadow; both in one panel; many between
-/// the two, fanning out; both beside a panel of their phase space; panels one above the other.
-enum class Arrangement { side_by_side, overlay, ensemble, phase, portrait };
+/// the two, fanning out; both beside a panel of their phase space; for a telephone; side a alone.
+enum class Arrangement { side_by_side, overlay, ensemble, phase, portrait, single };
 template <>
 inline constexpr auto names_of<Arrangement> = std::to_array<std::string_view>({"side-by-side", "overlay", "ensemble",
-                                                                               "phase", "portrait"});
+                                                                               "phase", "portrait", "single"});
 
 /// What a strip below the pendulums shows over time.
 /// "energy" is the error of the energy, or total_energy where friction or a drive changes it (make_scene()); "energies" are
@@ -85,21 +85,19 @@ struct Member {
 /// Widths of what is drawn, px of a 1920×1080 picture. Finer lines than these lose their hue in 4:2:0 video.
 struct Widths {
     double trail = 4.4, trace = 2.8;
-    double rod = 0, bob = 0;        // a rod's width, the radius of the heaviest bob; 0 = by the size of the panel
-    double grid = 1.4, mark = 1.6;  // lines of charts; now, the divergence, the horizon
+    double grid = 1.4, mark = 1.6;   // lines of charts; now, the divergence, limits
+    std::optional<double> rod, bob;  // a rod's width, the radius of the heaviest bob; by the size of the panel
 };
-inline constexpr std::array<Member<Widths, double>, 6> width_names{{
+inline constexpr std::array<Member<Widths, double>, 4> width_names{{
     {"trail", &Widths::trail, "the path behind the last bob"},
     {"trace", &Widths::trace, "curves of strips"},
-    {"rod", &Widths::rod, "rods; 0 = by the size of the panel"},
-    {"bob", &Widths::bob, "radius of the heaviest bob; 0 = by the size of the panel"},
     {"grid", &Widths::grid, "lines of charts"},
-    {"mark", &Widths::mark, "lines that mark now, the divergence and the horizon"},
+    {"mark", &Widths::mark, "lines that mark now, the divergence and the predictability limit"},
 }};
 
-/// Sizes of words, px an em in a 1920×1080 picture.
+/// Sizes of words, px an em in a 1920×1080 picture: at a third of that size they can still be read.
 struct FontSizes {
-    double title = 40, subtitle = 22, clock = 40, heading = 31, note = 21, strip = 21, axis = 20, card = 84;
+    double title = 42, subtitle = 27, clock = 42, heading = 34, note = 27, strip = 27, axis = 27, card = 84;
 };
 inline constexpr std::array<Member<FontSizes, double>, 8> font_size_names{{
     {"title", &FontSizes::title, "the title"},
@@ -127,8 +125,10 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
     {"trace", &Theme::trace, "curves of both sides together"},
 }};
 
-/// What a film's picture says around its pendulums; "credit": Doppel's name on the end card.
-inline constexpr auto shown_parts = std::to_array<std::string_view>({"title", "subtitle", "clock", "labels", "credit"});
+/// What a film shows: words around its pendulums ("credit": Doppel's name on the end card), and parts of these ("circle":
+/// what the outstretched chain reaches; "twin": the other side as a shadow). Trails and pivots are always shown.
+inline constexpr auto shown_parts = std::to_array<std::string_view>(
+    {"title", "subtitle", "clock", "labels", "credit", "rods", "bobs", "circle", "twin"});
 
 /// The speeds that a film may change to.
 inline constexpr auto changing_speeds = from_to(0.001, 1000);
@@ -149,13 +149,37 @@ struct Speed {
     }
 };
 
-/// The pendulums of an ensemble: so many from side a to side b, or each by its angles at the start.
+/// A member of an ensemble. What it does not give goes from side a to side b in equal steps.
+struct Release {
+    std::vector<Quad> angle_deg, mass_kg, length_m;  // one a link; none where not given
+    std::optional<Color> color;
+
+    /// Its lists with their keys, those of SideSpec, and how pictures write them.
+    struct List {
+        std::string_view key;
+        std::vector<Quad> Release::*member;
+        std::string_view symbol, unit;
+    };
+    static const std::array<List, 3> lists;
+};
+inline constexpr std::array<Release::List, 3> Release::lists{{{"angle_deg", &Release::angle_deg, "θ", "°"},
+                                                              {"mass_kg", &Release::mass_kg, "m", " kg"},
+                                                              {"length_m", &Release::length_m, "l", " m"}}};
+
+/// The pendulums of an ensemble: so many from side a to side b, or each by itself.
 struct Members {
     static constexpr std::size_t most_releases = 8;
-    int count = 100;                            // the pair included
-    std::vector<std::vector<Quad>> angles_deg;  // by member and link; none, or 2 to most_releases members
+    int count = 100;                // the pair included
+    std::vector<Release> releases;  // none, or 2 to most_releases
 
-    std::size_t size() const { return angles_deg.empty() ? static_cast<std::size_t>(count) : angles_deg.size(); }
+    std::size_t size() const { return releases.empty() ? static_cast<std::size_t>(count) : releases.size(); }
+};
+
+/// The part of the plane that a panel of pendulums shows, in place of what fits the motion.
+struct ViewSpec {
+    std::optional<std::array<Quad, 2>> center_m;  // x and y
+    std::optional<double> height_m;
+    int follow = 0;  // the mass that stays in the middle, from 1; 0 = none
 };
 
 /// Whether a film shows the pendulums, and the strips below them.
@@ -186,7 +210,9 @@ struct VideoSpec : Panels {
     std::vector<std::string> show{shown_parts.begin(), shown_parts.end()};
     Members members;  // of an ensemble
     PhaseKind phase = PhaseKind::rate;
-    int phase_link = 2;                                    // whose angle and rate
+    int phase_link = 2;  // whose angle and rate
+    ViewSpec view;
+    std::optional<double> model_limit_s;                   // how long a fitted model predicts what was measured
     std::array<std::optional<Range>, strip_kinds> ranges;  // of strips; fitted to the scene where not given
 
     std::string theme = "dark";

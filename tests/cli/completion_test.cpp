@@ -89,10 +89,10 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     const auto folder = folder_with_doppel();
     EXPECT_EQ(completed(folder, "render calm --set video.lay"), Lines{"video.layout="});
     EXPECT_EQ(completed(folder, "render calm --set video.layout="),
-              (Lines{"ensemble", "overlay", "phase", "portrait", "side-by-side"}));
+              (Lines{"ensemble", "overlay", "phase", "portrait", "side-by-side", "single"}));
     EXPECT_EQ(completed(folder, "render calm --set video.layout=ov"), Lines{"overlay"});
     EXPECT_EQ(completed(folder, "render calm --set 'video.layout=ov"), Lines{"video.layout=overlay"});
-    EXPECT_EQ(completed(folder, "render calm --set 'video.layo").size(), 5);  // a key alone would close the quote
+    EXPECT_EQ(completed(folder, "render calm --set 'video.layo").size(), 6);  // a key alone would close the quote
     EXPECT_EQ(completed(folder, "render calm --set b.mass_kg="), Lines{"\\[1,\\ 1\\]"});
     EXPECT_EQ(completed(folder, "render calm --set system.integrator=").size(), methods().size());
     EXPECT_EQ(completed(folder, "render calm --set b.integrator=ta"), Lines{"taylor"});

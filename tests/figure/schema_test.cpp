@@ -45,7 +45,7 @@ bool is_of_one_key(const std::string& message) {
         R"(|of 1 to \d+ numbers)");
     // what more than the key decides: the values of others, the font, how long a number is
     static const std::regex of_more(
-        R"(one a link|must be at most \d+ samples|as a frame of a GIF takes|must be at most [a-z_]+ = |\(-?9223372036854775\d+\)|at most 1000 and|from 1 to \d+, as|\[system\] gravity|mass_kg(\[\d+\])? must be > 0; it is -?0$|\[video\] crf must be from 0 to 51|must be "mechanism" or|\[links\] to must|°|must be that of|must be higher|or "one/other"|more digits|a fraction such as .*e-?[0-9]{2}|are both 0|whole number of samples|must be at most \d+ steps|must (not )?be (above|below)|must be another|must be 0 for|, as [a-z0-9_.\[\]]+ is;|for equal ratios|must keep|logarithmic scale|takes points|title is missing)");
+        R"(one a link|must be at most \d+ samples|as a frame of a GIF takes|must be at most [a-z_]+ = |\(-?9223372036854775\d+\)|at most 1000 and|from 1 to \d+, as|\[system\] gravity|mass_kg(\[\d+\])? must be > 0; it is -?0$|\[video\] crf must be from 0 to 51|must be "mechanism" or|\[links\] to must|°|must be that of|must be higher|or "one/other"|more digits|a fraction such as .*e-?[0-9]{2}|are both 0|whole number of samples|must be at most \d+ steps|must (not )?be (above|below)|must be another|must be 0 for|, as [a-z0-9_.\[\]]+ is;|for equal ratios|must keep|logarithmic scale|takes points|title is missing|and to as well)");
     return std::regex_search(message, one_key) && !std::regex_search(message, of_more);
 }
 

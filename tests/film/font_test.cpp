@@ -33,7 +33,7 @@ TEST(Fonts, AFilmsWordsAreInTheUsersFontAndFindTheirRoom) {
     const auto labels = labels_of(scene, 60);
     // what leaves no room shrinks: the subtitle, not the short title
     EXPECT_LT(size_of(labels, "real time"), 10);
-    EXPECT_EQ(size_of(labels, "Two"), 18);
+    EXPECT_EQ(size_of(labels, "Two"), 14);
     expect_apart(labels, {480, 270}, "wide", type);  // large letters: twice the height that box_of() takes
     EXPECT_NE(frame_of(scene, 0).rgba,
               frame_of(scene_of(folder / "film.toml",

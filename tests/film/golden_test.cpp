@@ -43,6 +43,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"rods-1s", "rods", 120, {}}, Golden{"damped-3s", "damped", 360, {}},
                     Golden{"kapitza-2s", "kapitza", 240, {"video.theme=\"light\""}},
                     Golden{"measured-2s", "measured", 480, {}}, Golden{"fan-3s", "fan", 360, {"video.members=40"}},
+                    Golden{"one-pendulum-2s", "one-pendulum", 240, {}},
                     Golden{"phase-dance-3s", "phase-dance", 360, {}},
                     Golden{"section-3s", "butterfly", 360, {"video.layout=\"phase\"", "video.phase=\"section\""}},
                     Golden{"slow-parting-2s", "slow-parting", 480, {}},

@@ -104,10 +104,10 @@ TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {
     PairState state;
     state.distance = 1e-4 * std::exp(0.7 * 10);
     state.sample = 1200;
-    EXPECT_NEAR(*exponent_so_far(scene, state, 1e-4), 0.7, 1e-15);  // measured 0
-    EXPECT_FALSE(exponent_so_far(scene, state, 0));
+    EXPECT_NEAR(*growth_rate(scene, state, 1e-4), 0.7, 1e-15);  // measured 0
+    EXPECT_FALSE(growth_rate(scene, state, 0));
     state.sample = 179;  // before a twentieth of 30 s
-    EXPECT_FALSE(exponent_so_far(scene, state, 1e-4));
+    EXPECT_FALSE(growth_rate(scene, state, 1e-4));
 }
 
 TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
@@ -205,11 +205,11 @@ TEST(Layouts, OnlyWhoStartsTogetherParts) {
         const auto scene = scene_of("butterfly", keys);
         const auto composer = composed(scene, scene.samples);
         const auto end = composer->end_card(1);
-        EXPECT_EQ(says(composer->frame(), "parted at"), says(end, "parted after"));
-        return says(end, "parted after") ? "parted"
-               : says(end, "together")   ? "together"
-               : says(end, "apart")      ? "apart"
-                                         : "";
+        EXPECT_EQ(says(composer->frame(), "diverged at"), says(end, "diverged after"));
+        return says(end, "diverged after") ? "parted"
+               : says(end, "together")     ? "together"
+               : says(end, "apart")        ? "apart"
+                                           : "";
     };
     EXPECT_STREQ(outcome({"scene.duration_s=20"}), "parted");
     EXPECT_STREQ(outcome({"scene.duration_s=1"}), "together");

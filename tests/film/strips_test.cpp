@@ -1,11 +1,18 @@
-#include "film/support.hpp"
+#include "film/strips.hpp"
+
 #include "film/words.hpp"
+#include "render/pixels.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace doppel {
 namespace strips_test {
@@ -29,6 +36,153 @@ TEST(Strips, TheLastTimeStandsBelowItsTick) {
     }
 }
 
+const std::vector<std::string> films{
+    "butterfly",    "calm",       "damped",   "driven",      "fan",      "horizon", "kapitza",
+    "loop",         "mass-ratio", "measured", "phase-dance", "raindrop", "rods",    "single-and-double",
+    "slow-parting", "springs",    "triple",   "two-methods", "whip",     "whip-256"};
+
+/// The film of a preset, begun.
+Scene beginning(const std::string& film, std::vector<std::string> keys) {
+    if (film != "measured") keys.emplace_back("scene.duration_s=3");
+    if (film == "whip-256") keys.emplace_back("system.integrator=\"taylor\"");
+    return scene_of(film, keys);
+}
+
+TEST(Strips, EachHasAFifthOfThePictureAndEachWordNinePixels) {
+    const auto check = [](const Scene& scene, const std::string& what) {
+        const auto layout = make_layout(scene);
+        float together = 0;
+        const auto fifth = 0.197f * static_cast<float>(scene.preset.video.size.height);  // of whole pixels
+        for (const auto& strip : layout.strips) {
+            together += strip.area.height();
+            if (!is_tall(scene.preset.video)) {
+                EXPECT_GE(strip.area.height(), fifth) << what;
+            }
+        }
+        EXPECT_GE(together, fifth) << what;
+        const auto labels = labels_of(scene, 60);
+        for (const auto& label : labels) {
+            EXPECT_GE(label.size, 8.999f) << what << label.text;
+            EXPECT_LE(box_of(label).right, layout.page.right + 1) << what << label.text;
+        }
+        expect_apart(labels, scene.preset.video.size, what);
+    };
+    for (const auto& film : films)
+        for (const char* size : {"[1920, 1080]", "[640, 360]"})
+            check(beginning(film, {fmt::format("video.size={}", size)}), fmt::format("{} {}: ", film, size));
+    for (const char* film : {"pendulum-portrait", "kapitza", "raindrop", "slow-parting"})
+        check(beginning(film, {"video.layout=\"portrait\"", "video.size=[390, 694]"}),
+              fmt::format("{} on a phone: ", film));
+}
+
+TEST(Strips, LongWordsGoOnBelowOrEndEarly) {
+    const auto scene =
+        scene_of("butterfly", {"video.size=[640, 360]",
+                               "title=\"Two pendulums that begin three thousandths of a degree apart, and "
+                               "what becomes of them within half a minute of swinging\"",
+                               "a.note=\"with a note that is a good deal longer than the half of the "
+                               "picture above which it stands in a film\""});
+    const auto labels = labels_of(scene, 0);
+    expect_apart(labels, {640, 360}, "");
+    for (const auto& label : labels) EXPECT_GE(label.size, 8.999f) << label.text;
+    EXPECT_TRUE(label_of(labels, "Two pendulums"));
+    EXPECT_TRUE(std::ranges::any_of(labels, [](const Label& label) { return label.text.ends_with(" …"); }));
+}
+
+TEST(Strips, LogarithmicOnesOfADecadeHaveNumbersAt1And2And5) {
+    const auto labels = labels_of(scene_of("butterfly", {"video.distance_range=[0.7, 7.1]"}), 0);
+    for (const char* number : {"1", "2", "5"})
+        EXPECT_TRUE(std::ranges::any_of(labels, [&](const Label& label) { return label.text == number; })) << number;
+}
+
+TEST(Strips, WhenTheyDivergedStandsAtItsLine) {
+    for (const auto& [film, size, sample] : {std::tuple("butterfly", "[1920, 1080]", 16 * 120),
+                                             {"butterfly", "[480, 270]", 16 * 120},
+                                             {"pendulum-portrait", "[1080, 1920]", 14 * 120},
+                                             {"fan", "[1920, 1080]", 12 * 120}}) {
+        const auto scene = scene_of(film, {fmt::format("video.size={}", size)});
+        const auto layout = make_layout(scene);
+        const auto words = label_of(labels_of(scene, sample), "diverged");
+        ASSERT_TRUE(words) << film;
+        const auto composer = composed(scene, sample);
+        double since = 0;
+        Outcome outcome;
+        for_each_snapshot(scene, sample, [&](const Snapshot& seen) {
+            outcome.add(scene.time(seen.pair.sample), seen.pair);
+            since = outcome.parting.since().value_or(0);
+        });
+        const auto& strip = layout.strips[0];
+        const auto box = box_of(*words);
+        EXPECT_TRUE(strip.area.holds(box)) << film << size;
+        EXPECT_LT(std::abs(box.left - strip.time.at(since)), 14 * layout.text + 1) << film << size;
+    }
+}
+
+TEST(Strips, LimitsAreNamedForWhatTheyAre) {
+    const auto scene = scene_of("horizon", {"video.model_limit_s=5.3", "video.size=[960, 540]"});
+    const auto layout = make_layout(scene);
+    const auto labels = labels_of(scene, 0);
+    EXPECT_FALSE(label_of(labels, "predictable"));
+    const auto numerical = label_of(labels, "numerical predictability limit 3"),
+               model = label_of(labels, "predictability limit of the model 5.3 s");
+    ASSERT_TRUE(numerical);
+    ASSERT_TRUE(model);
+    EXPECT_TRUE(layout.strips[0].area.holds(box_of(*numerical)));
+    EXPECT_NEAR(model->anchor.x, layout.strips[0].time.at(5.3), 10 * layout.text + 1);
+    expect_apart(labels, {960, 540}, "");
+    // no line of the grid crosses the words
+    const auto picture = frame_of(scene, 0);
+    const int y = static_cast<int>(numerical->anchor.y - 0.3f * numerical->size),
+              x = static_cast<int>(numerical->anchor.x) - 2;
+    for (int up = -3; up < 3; ++up) EXPECT_LT(picture.at(x, y + up)[0], 0x18) << up;
+}
+
+TEST(Strips, OneSideDoesNotCoverTheOther) {
+    // both run as one
+    for (const char* panel : {"angles", "rates", "rod-force", "total-energy", "rod-error"}) {
+        const auto scene = scene_of("butterfly", {fmt::format("video.panels=[\"pendulums\", \"{}\"]", panel),
+                                                  "system.model=\"constraints\"", "scene.duration_s=4"});
+        const auto picture = frame_of(scene, 240);
+        const auto strip = make_layout(scene).strips[0];
+        const int x = static_cast<int>(strip.time.at(1.3));
+        std::array<int, 2> seen{};
+        for (int y = static_cast<int>(strip.area.top) - 2; y < static_cast<int>(strip.area.bottom) + 3; ++y)
+            for (std::size_t side = 0; side < 2; ++side)
+                seen[side] += is_color(picture.at(x, y), themes[0].sides[side], 60);
+        EXPECT_GE(seen[0], 1) << panel;
+        EXPECT_GE(seen[1], 1) << panel;
+    }
+}
+
+TEST(Strips, TheEnergyOfADrivenSideIsAMeanOverItsPeriod) {
+    const auto scene = scene_of("kapitza", {"scene.duration_s=3"});
+    Spread raw, mean;
+    for_each_snapshot(scene, scene.samples, [&](const Snapshot& seen) {
+        const auto value = strip_curves(StripKind::total_energy, scene, seen.pair, 0, themes[0], 1)[0].value;
+        EXPECT_EQ(value.has_value(), scene.time(seen.pair.sample) >= 1 / 15.76) << seen.pair.sample;
+        if (!value) return;
+        raw.low = std::min(raw.low, seen.pair.a.energy), raw.high = std::max(raw.high, seen.pair.a.energy);
+        if (mean.high == 0) mean.low = *value;
+        mean.low = std::min(mean.low, *value), mean.high = std::max(mean.high, *value);
+    });
+    EXPECT_LT(mean.high - mean.low, 0.15 * (raw.high - raw.low));  // measured 0.09
+    PeriodMean of_line(0.5);  // a straight line's is its value half a period ago, at samples and between them
+    for (int n = 0; n <= 10; ++n) of_line.add(0.12 * n, 3 + 0.12 * n);
+    EXPECT_NEAR(*of_line.at(1.2, 4.2), 3.95, 1e-14);
+    EXPECT_NEAR(*of_line.at(1.27, 4.27), 4.02, 1e-14);
+}
+
+TEST(Strips, PotentialEnergyCountsFromTheLowestPoint) {
+    const auto scene =
+        scene_of("butterfly", {"system.mass_kg=[2, 3]", "system.length_m=[0.5, 0.25]", "system.angle_deg=[0, 60]",
+                               "b.angle_deg=[0, 0]", "system.omega_deg_per_s=[0, 0]"});
+    PairRun pair(scene);
+    const auto start = pair.next(never_stopped);
+    const auto potential = [&](StripKind kind) { return *strip_curves(kind, scene, start, 0, themes[0], 1)[1].value; };
+    EXPECT_NEAR(potential(StripKind::energies_a), 3 * 9.8 * 0.25 / 2, 1e-12);
+    EXPECT_NEAR(potential(StripKind::energies_b), 0, 1e-12);
+}
+
 TEST(Strips, WordsAboveAreClearOfTheirAxis) {
     for (const char* size : {"[1920, 1080]", "[720, 406]", "[480, 270]"})
         for (const char* film : {"slow-parting", "two-methods", "raindrop"}) {
@@ -37,44 +191,15 @@ TEST(Strips, WordsAboveAreClearOfTheirAxis) {
             const auto labels = labels_of(scene, 60);
             for (const auto& strip : layout.strips)
                 for (const auto& label : labels)
-                    if (label.anchor.y <= strip.area.top && label.anchor.y > strip.caption.top &&
-                        label.anchor.x < strip.area.left) {
+                    if (label.anchor.y <= strip.area.top && label.anchor.y > strip.cell.top &&
+                        label.anchor.x >= strip.cell.left && label.anchor.x < strip.area.left) {
                         EXPECT_LE(box_of(label).bottom, strip.area.top - 0.6f * px(layout.style.font.axis))
                             << film << size << label.text;
                     }
         }
 }
 
-TEST(Strips, WhenTheyPartedIsSaidInUprightFilmsToo) {
-    const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=15"});
-    EXPECT_TRUE(label_of(labels_of(scene, 14 * 120), "parted at 10.1 s"));
-}
-
-TEST(Strips, TheHorizonIsSaidWhereNoLineCrossesTheWords) {
-    const auto words = [](const char* size, long sample) {
-        const auto scene = scene_of("horizon", {fmt::format("video.size={}", size)});
-        const auto layout = make_layout(scene);
-        const auto found = label_of(labels_of(scene, sample), "predictability limit 3");
-        return found ? std::optional(layout.strips[0].area.holds(box_of(*found))) : std::nullopt;
-    };
-    EXPECT_EQ(words("[1920, 1080]", 120), true);             // beside its line
-    EXPECT_EQ(words("[480, 270]", 120), false);              // no room there: above
-    EXPECT_EQ(words("[480, 270]", 34 * 120), std::nullopt);  // until they part, which is said there
-    // a box clears the grid beneath
-    const auto scene = scene_of("horizon", {"video.size=[960, 540]"});
-    const auto label = *label_of(labels_of(scene, 0), "predictability limit 3");
-    const auto picture = frame_of(scene, 0);
-    const int y = static_cast<int>(label.anchor.y) - static_cast<int>(0.3f * label.size);
-    for (int x = static_cast<int>(label.anchor.x) - 2; x < static_cast<int>(label.anchor.x); ++x)
-        for (int up = -3; up < 3; ++up)
-            EXPECT_EQ(std::vector<int>(picture.at(x, y + up), picture.at(x, y + up) + 3),
-                      (std::vector<int>{0x0b, 0x0e, 0x13}))
-                << x << ' ' << up;
-}
-
 TEST(Strips, AxesHaveTrueMinusSigns) {
-    EXPECT_EQ(axis_number(-180), "−180");
-    EXPECT_EQ(axis_number(0.5), "0.5");
     for (const auto& label : labels_of(scene_of("phase-dance", {"scene.duration_s=1"}), 60))
         EXPECT_EQ(label.text.starts_with('-'), false) << label.text;
 }

@@ -24,7 +24,7 @@ inline const std::vector<RefusedPreset> refused_keys{
     RefusedPreset{"[vidoe]\nfps = 3", R"(presets/x.toml:1:2: a preset has no "vidoe"; did you mean "video"?)"},
     RefusedPreset{
         "[scene]\nzzzzzzzz = 1",
-        R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has duration_s, energy_columns, kind, sample_hz)"},
+        R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has duration_s, energy_columns, kind, member_columns, sample_hz)"},
     RefusedPreset{"scene = 3", "presets/x.toml:1:1: scene must be a table; it is a whole number (3)"},
     RefusedPreset{"[scene", "presets/x.toml:1:7: Error while parsing table header: encountered end-of-file"}};
 
@@ -172,7 +172,7 @@ inline const std::vector<RefusedPreset> refused_video{
 inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{
         "layout = \"fan\"",
-        R"([video] layout must be "side-by-side", "overlay", "ensemble", "phase" or "portrait"; it is "fan")"},
+        R"([video] layout must be "side-by-side", "overlay", "ensemble", "phase", "portrait" or "single"; it is "fan")"},
     RefusedPreset{"members = 5", R"([video] members is for the layout "ensemble"; it is "side-by-side")"},
     RefusedPreset{"members = 1\nlayout = \"ensemble\"", "[video] members must be from 2 to 1000; it is 1"},
     RefusedPreset{"phase_link = 3\nlayout = \"phase\"",
@@ -214,12 +214,13 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   "[video] contact_sheet must be two whole numbers from 1 to 32; it is [4, 33]"},
     RefusedPreset{"hold_end_s = -1", "[video] hold_end_s must be ≥ 0; it is -1"},
     RefusedPreset{"title_card_s = 4000", "[video] title_card_s must be from 0 (none) to 3600; it is 4000"},
-    RefusedPreset{"members = [[1, 2]]\nlayout = \"ensemble\"",
-                  "[video] members must be a whole number, or 2 to 8 lists of angles; it is an array ([[1, 2]])"},
+    RefusedPreset{
+        "members = [[1, 2]]\nlayout = \"ensemble\"",
+        "[video] members must be a whole number, or 2 to 8 lists of angles or tables; it is an array ([[1, 2]])"},
     RefusedPreset{"members = [[1, 2], 3]\nlayout = \"ensemble\"",
-                  "[video] members must be a whole number, or 2 to 8 lists of angles; 3 is a whole number"},
+                  "[video] members must be a whole number, or 2 to 8 lists of angles or tables; 3 is a whole number"},
     RefusedPreset{"members = [[1, 2], [3]]\nlayout = \"ensemble\"",
-                  "[video] members must have 2 angles each, one for each link; [1] has 1"},
+                  "[video] members must have 2 numbers each, one a link; angle_deg of [1] has 1"},
     RefusedPreset{
         "members = [[1, 2], [3, 4]]\nlayout = \"ensemble\"\n[b]\nangle_deg = [5, 6]",
         "[video] members must begin with side a and end with side b; [b] angle_deg is [5, 6], the member's [3, "
@@ -234,8 +235,9 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   R"([video.colors] has no "backgruond"; did you mean "background"?)"},
     RefusedPreset{"colors.background = 3",
                   "[video.colors] background must be a colour such as \"#ff9f40\"; it is a whole number (3)"},
-    RefusedPreset{"show = [\"titel\"]",
-                  R"([video] show must be of title, subtitle, clock, labels, credit; "titel" is not)"},
+    RefusedPreset{
+        "show = [\"titel\"]",
+        R"([video] show must be of title, subtitle, clock, labels, credit, rods, bobs, circle, twin; "titel" is not)"},
     RefusedPreset{"fps = 1001",
                   "[video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is 1001"},
     RefusedPreset{
@@ -253,7 +255,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{"speed = [[0, 1], [5, 1e-9]]", "[video] speed must be from 0.001 to 1000; it is 1e-09"},
     RefusedPreset{"speed_ease_s = 1",
                   "[video] speed_ease_s is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]"},
-    RefusedPreset{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 to 200 px; it is 1000"},
+    RefusedPreset{"widths_px.trail = 1000", "[video.widths_px] trail must be from 0 (nothing) to 200 px; it is 1000"},
     RefusedPreset{"fonts_px.title = 1", "[video.fonts_px] title must be from 4 to 400 px; it is 1"}};
 
 }  // namespace doppel

@@ -1,0 +1,149 @@
+#include "film/runs.hpp"
+#include "film/words.hpp"
+#include "render/pixels.hpp"
+#include "scene/resolved.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace doppel {
+namespace single_test {
+
+const std::string one = "[system]\nangle_deg = [120, 90]\n[scene]\nduration_s = 1\n[video]\nlayout = \"single\"\n";
+
+bool is_at(const Picture& picture, Point at, Color color) {
+    return is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), color, 60);
+}
+
+TEST(Single, ShowsOnePendulumAndNothingOfAPair) {
+    const auto scene = scene_of_text(one);
+    const auto layout = make_layout(scene);
+    ASSERT_EQ(layout.panels.size(), 1u);
+    EXPECT_EQ(layout.panels[0].sides, std::vector<std::size_t>{0});
+    ASSERT_EQ(layout.strips.size(), 1u);
+    EXPECT_GE(layout.strips[0].area.height(), 0.2f * 1080);
+    const auto composer = composed(scene, scene.samples);
+    const auto words =
+        words_of({composer->backdrop(), composer->frame(), composer->title_card(1), composer->end_card(1)});
+    for (const char* word : {"θ₁ = 120°, θ₂ = 90°", "energy, J", "kinetic", "after 1 s"})
+        EXPECT_NE(std::ranges::find(words, word), words.end()) << word;
+    for (const auto& word : words) {
+        EXPECT_EQ(word.find("two "), std::string::npos) << word;
+        EXPECT_EQ(word.find("apart"), std::string::npos) << word;
+    }
+    PairState last;
+    for_each_snapshot(scene, 60, [&](const Snapshot& seen) { last = seen.pair; });
+    const auto picture = frame_of(scene, 60);
+    EXPECT_TRUE(is_at(picture, layout.panels[0].at(last.a.bobs[1].x, last.a.bobs[1].y), themes[0].sides[0]));
+}
+
+TEST(Single, ItsTableIsThatOfSideA) {
+    const auto single = table_of(scene_of_text(one));
+    const auto pair =
+        table_of(scene_of("butterfly", {"system.angle_deg=[120, 90]", "b.angle_deg=[120, 91]", "scene.duration_s=1"}));
+    const auto cells = cells_of(single.at(0));
+    EXPECT_EQ(cells.back(), "a_length_error_m");
+    ASSERT_EQ(single.size(), pair.size());
+    for (const std::size_t row : {0ul, 1ul, 60ul, 120ul}) EXPECT_TRUE(pair[row].starts_with(single[row])) << row;
+    const auto manifest = manifest_of(scene_of_text(one));
+    EXPECT_FALSE(manifest.contains("b"));
+    EXPECT_TRUE(manifest["largest_distance"].is_null());
+}
+
+TEST(Single, RefusesWhatIsOfAPair) {
+    const auto refused = [](const std::string& text, const char* words) {
+        const auto message = error_of([&] { scene_of_text(text); }).second;
+        EXPECT_NE(message.find(words), std::string::npos) << message;
+    };
+    refused(one + "[b]\nangle_deg = [91, 90]\n",
+            "[video] layout \"single\" shows side a alone, but the preset has a table [b]; leave [b] out");
+    refused(one + "panels = [\"pendulums\", \"distance\"]\n",
+            "[video] panels must be of side a for the layout \"single\"; \"distance\" is of a pair");
+    refused(one + "[video.view]\nfollow = 3\n",
+            "[video.view] follow must be from 0 to 2, as there are masses; it is 3");
+    refused(one + "[video.view]\nfollow = 1\ncenter_m = [0, 0]\n", "center_m is of a view that follows no mass");
+    refused("[scene]\nmember_columns = true\n",
+            "[scene] member_columns is for the layout \"ensemble\"; it is \"side-by-side\"");
+    const std::string ensemble = "[scene]\nduration_s = 1\n[video]\nlayout = \"ensemble\"\nmembers = ";
+    refused(ensemble + "[{angle_deg = [1, 2]}, {weight = 3}]",
+            "[1] may have angle_deg, mass_kg, length_m and color; \"weight\" is none of them");
+    refused(ensemble + "[{mass_kg = [1, 2]}, {mass_kg = [1, -2]}]", "must be > 0");
+    refused(ensemble + "[{mass_kg = [1, 2]}, {mass_kg = [1, 2, 3]}]",
+            "must have 2 numbers each, one a link; mass_kg of [1] has 3");
+}
+
+TEST(Single, MembersOfAnEnsembleHaveMassesLengthsAndColoursOfTheirOwn) {
+    const std::string text =
+        "[scene]\nduration_s = 1\nmember_columns = true\n[system]\nintegrator = \"dop853\"\n[video]\nlayout = "
+        "\"ensemble\"\nmembers = [{angle_deg = [60, 60], length_m = [1, 1]}, {angle_deg = [90, 90], mass_kg = [1, 4], "
+        "length_m = [0.5, 0.5], color = \"#00ff00\"}, {angle_deg = [90, 90], length_m = [0.25, 0.5]}]\n";
+    const auto scene = scene_of_text(text);
+    ASSERT_EQ(scene.members.size(), 3u);
+    EXPECT_EQ(scene.members[1].chain->mass[1], 4);
+    EXPECT_EQ(scene.members[1].chain->length[0], Quad(1) / 2);
+    EXPECT_EQ(scene.preset.b.length_m[0], Quad(1) / 4);
+    // its last bob is in its colour, and as large as its mass
+    const auto layout = make_layout(scene);
+    const auto picture = frame_of(scene, 0);
+    EXPECT_TRUE(is_at(picture, layout.panels[0].at(1, 0), {0, 1, 0, 1}));
+    // the table ends with the members'; the first and the last are the pair
+    const auto table = table_of(scene);
+    const auto names = cells_of(table[0]), last = cells_of(table.back());
+    const auto cell = [&](const std::string& name) {
+        return last.at(static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()));
+    };
+    EXPECT_EQ(names.back(), "member3_vy2_m_per_s");
+    EXPECT_EQ(names.size(), 2 + 2 * 15 + 2 + 3 * 12);
+    EXPECT_NEAR(std::stod(cell("member3_x2_m")), std::stod(cell("b_x2_m")), 1e-9);
+    EXPECT_NEAR(std::stod(cell("member1_theta2_rad")), std::stod(cell("a_theta2_rad")), 1e-9);
+    const auto plain = table_of(scene_of_text("[scene]\nduration_s = 1\n" + text.substr(text.find("[system]"))));
+    for (std::size_t row = 0; row < plain.size(); ++row) EXPECT_TRUE(table[row].starts_with(plain[row])) << row;
+    const auto resolved = resolved_toml(scene.preset);
+    EXPECT_EQ(resolved_toml(read_preset({"x", "resolved", resolved})), resolved);
+}
+
+TEST(Single, AViewHasItsCentreAndHeightAndFollowsAMass) {
+    const auto view = [](const std::string& keys) {
+        return make_layout(scene_of_text(one + "[video.view]\n" + keys)).panels[0];
+    };
+    const auto zoomed = view("center_m = [0.5, -1]\nheight_m = 2");
+    EXPECT_FLOAT_EQ(zoomed.px_per_m, zoomed.area.height() / 2);
+    EXPECT_FLOAT_EQ(zoomed.at(0.5, -1).x, (zoomed.area.left + zoomed.area.right) / 2);
+    EXPECT_FLOAT_EQ(zoomed.at(0, 0).y, zoomed.area.top);
+    // the mass that is followed stays in the middle
+    const auto scene = scene_of_text(one + "[video.view]\nfollow = 2\nheight_m = 2\n");
+    const auto panel = make_layout(scene).panels[0];
+    for (const long sample : {0L, 50L})
+        EXPECT_TRUE(is_at(frame_of(scene, sample), panel.center, themes[0].sides[0])) << sample;
+}
+
+TEST(Single, TrailsAlone) {
+    for (const char* keys : {"show = []\n", "[video.widths_px]\nrod = 0\nbob = 0\ngrid = 0\ntrace = 0\nmark = 0\n"}) {
+        const auto scene = scene_of_text(one + keys);
+        const auto list = composed(scene, 60)->frame();
+        EXPECT_FALSE(std::ranges::any_of(list, [&](const Item& item) {
+            const auto* capsule = std::get_if<Capsule>(&item);
+            return capsule && capsule->from.y < 600 && make_layout(scene).panels[0].area.holds(capsule->from);
+        })) << keys;
+        EXPECT_TRUE(std::ranges::any_of(list, [](const Item& item) { return std::holds_alternative<Stroke>(item); }));
+        EXPECT_FALSE(std::ranges::any_of(composed(scene, 0)->backdrop(), [](const Item& item) {
+            return std::holds_alternative<Ring>(item);
+        })) << keys;
+    }
+    const auto none =
+        composed(scene_of_text(one + "panels = [\"pendulums\"]\n[video.widths_px]\ntrail = 0\n"), 60)->frame();
+    EXPECT_FALSE(std::ranges::any_of(none, [](const Item& item) { return std::holds_alternative<Stroke>(item); }));
+    // a pair without its twins' shadows
+    const auto capsules = [](const std::string& show) {
+        const auto list = composed(scene_of("butterfly", {"b.angle_deg=[60, 90]", "video.show=" + show}), 60)->frame();
+        return std::ranges::count_if(list, [](const Item& item) { return std::holds_alternative<Capsule>(item); });
+    };
+    EXPECT_EQ(capsules(R"(["rods", "bobs", "twin"])") - capsules(R"(["rods", "bobs"])"), 2 * 4);
+}
+
+}  // namespace single_test
+}  // namespace doppel
