@@ -54,10 +54,16 @@ constexpr std::string_view video_introduction = R"(# Presets: keys of pictures
 After reading this page you can look up every key of `[video]`: format, speed, layout, strips, colours and sizes. [films.md](films.md) shows examples.
 )";
 
-constexpr std::string_view figure_introduction = R"(# Presets: keys of figures
+constexpr std::string_view figure_introduction = R"(# Presets: keys of figures and grids
 
-After reading this page you can look up every key of figures. [figures.md](figures.md) shows examples. `kind` of `[scene]` selects the kind of figure. In
-place of `[video]` a figure has `[chart]` and a table of its own kind. `[system]`, `[a]` and `[b]` are as in [films](presets.md).
+After reading this page you can look up the keys that all figures have, and those of grids. [figures.md](figures.md) shows examples. `kind` of `[scene]`
+selects the kind of figure. In place of `[video]` a figure has `[chart]` and a table of its own kind; [presets-series.md](presets-series.md) has those
+of the other kinds. `[system]`, `[a]` and `[b]` are as in [films](presets.md).
+)";
+
+constexpr std::string_view series_introduction = R"(# Presets: keys of series, sections and work-precision diagrams
+
+After reading this page you can look up the keys of these kinds of figures, beside [those of all figures](presets-figures.md).
 )";
 
 /// The keys outside all tables.
@@ -213,10 +219,15 @@ std::vector<ReferencePage> reference_pages() {
         for (const auto& table : tables) text += table.markdown();
         return text;
     };
+    const auto figures = figure_tables();
+    const auto series = std::find_if(figures.begin(), figures.end(), [](const FieldTable& table) {
+        return table.text.find("`kind = \"series\"`") != std::string::npos;
+    });
     const auto all = std::span(film);
     return {{"presets.md", std::string(film_introduction) + markdown(all.first(all.size() - 1))},
             {"presets-video.md", std::string(video_introduction) + markdown(all.last(1))},
-            {"presets-figures.md", std::string(figure_introduction) + markdown(figure_tables())}};
+            {"presets-figures.md", std::string(figure_introduction) + markdown({figures.begin(), series})},
+            {"presets-series.md", std::string(series_introduction) + markdown({series, figures.end()})}};
 }
 
 }  // namespace doppel
