@@ -101,8 +101,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"Doppel steps two pendulums that are a hair apart, films them side by side
-with the trace of how they part, and writes videos, pictures and tables.
-It needs no display and no graphics card, and repeats every figure to the
-last digit: for teaching, for videos, for research and for tests.")
+"Doppel simulates pairs of pendulums that differ slightly, films them side
+by side with the trace of how they diverge, and writes videos, pictures and
+tables. It needs no display and no graphics card. It is made for teaching,
+videos, research and tests.")
 include(CPack)

@@ -102,7 +102,7 @@ struct ErrorRange {
 /// next finer one errs more than twice as much was lucky and does not count.
 std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, const ErrorRange& range);
 
-/// The step-size study that takes the least to err by no more than `error`: by the cheapest setting that does so, and whose next finer
+/// The step-size study that takes the least for an error of at most `error`: by the cheapest setting that does so, and whose next finer
 /// one does, too, for now and then a coarse one is lucky.
 struct Cheapest {
     const StepStudy* ladder = nullptr;  // none does; of equals the first

@@ -52,12 +52,11 @@ void add_fit(CLI::App& app) {
     auto& command =
         *app.add_subcommand("fit", "Fits a double pendulum to a track: parameters, errors, prediction horizon");
     command.footer(
-        "A track is CSV with time_s and theta1_rad, theta2_rad (from the downward vertical), or x0_px, y0_px,\n"
-        "x1_px, y1_px, x2_px, y2_px (pivot, joint and end in a picture, y down); any rate, with gaps, in one\n"
-        "or more pieces. Models from point masses without friction to bodies with viscous and Coulomb friction\n"
-        "and drag are fitted, and the smallest is chosen that predicts pieces left out as well as any.\n"
-        "DIR/NAME/ gets NAME.toml, a preset; NAME.fit.json, all numbers with errors; NAME.residuals.csv, the\n"
-        "residuals; NAME.png, a page to judge it by.\n"
+        "A track is a CSV with time_s and the angles theta1_rad, theta2_rad from the downward vertical.\n"
+        "Places in a picture are possible, too: x0_px, y0_px, x1_px, y1_px, x2_px, y2_px (pivot, joint, end; y down).\n"
+        "It may have any rate, gaps, and several pieces. Nine models are fitted, from point masses without friction\n"
+        "to bodies with friction and drag. The smallest is chosen that predicts pieces left out as well as the best.\n"
+        "DIR/NAME/ gets a preset (NAME.toml), all numbers (NAME.fit.json), NAME.residuals.csv and a page (NAME.png).\n"
         "Examples:\n"
         "  doppel fit swing.csv\n"
         "  doppel fit piece-*.csv --name lab --out fits\n"

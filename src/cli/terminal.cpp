@@ -83,7 +83,7 @@ std::string duration(double seconds) {
     return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
-/// "PATH (size)", or "FOLDER/"; a terminal shows it and obeys nothing in it.
+/// "PATH (size)", or "FOLDER/"; sanitised for a terminal.
 std::string file_line(const std::filesystem::path& file) {
     std::error_code unknown;  // somebody may have moved it by now
     const auto size = std::filesystem::file_size(file, unknown);

@@ -25,7 +25,7 @@ constexpr std::array looks{GrowthLook{Growth::Kind::bounded, "stays bounded", ""
                            GrowthLook{Growth::Kind::root, "grows like √t", " ∝ √t", 2},
                            GrowthLook{Growth::Kind::linear, "grows linearly", " ∝ t", 0},
                            GrowthLook{Growth::Kind::steeper, "grows like t²", " ∝ t²", 3},
-                           GrowthLook{Growth::Kind::failed, "breaks down", "", 6}};
+                           GrowthLook{Growth::Kind::failed, "fails", "", 6}};
 
 const GrowthLook& look_of(const Growth& growth) {
     return *std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.kind == growth.kind; });

@@ -30,7 +30,7 @@ PartHeader header_of(const FigurePreset& figure, int shard = 1, int of = 1);
 
 /// "fig8.3-of-8.shard": the file of a part's numbers, for a merge.
 std::string shard_name(const PartHeader& header);
-/// "fig8.3-of-8.c0ffee123456.resume": the file that an interrupted run goes on from; other headers have other names.
+/// "fig8.3-of-8.c0ffee123456.resume": the file from which an interrupted run resumes; other headers have other names.
 std::string resume_name(const PartHeader& header);
 /// The files in the folder that are named like it but are of other presets or versions.
 std::vector<std::filesystem::path> other_resumes(const std::filesystem::path& folder, const PartHeader& header);

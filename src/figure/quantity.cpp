@@ -75,7 +75,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
             return {.label = fmt::format("greatest energy error in {} s, of the energy released", seconds),
                     .columns = {"energy_error"},
                     .logarithmic = true,
-                    .none = "blow-up",
+                    .none = "failed run",
                     .none_is_bad = true,
                     .is_of_side_a = true,
                     .range = Range{1e-12, failure_error}};

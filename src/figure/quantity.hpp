@@ -37,14 +37,7 @@ template <>
 inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>(
     {"divergence", "exponent", "flip_time", "distance_at_end", "greatest_distance", "energy_error", "parting_time",
      "deviation", "period", "stroboscopic", "step_cost", "stability", "convergence"});
-inline constexpr std::string_view quantity_help =
-    "what is found of each pair: the mean of ln(d/d₀), or the distance at the end, or the greatest; when they part; of "
-    "side a the largest Lyapunov exponent, the time of the first flip, the largest energy error, how far an angle goes "
-    "from its start, of one link the period of its swing, of a driven one the rate once a period of its drive, or what "
-    "a step "
-    "of Euler costs on either model, or the largest energy error, of the energy released, none for a blow-up; of pairs "
-    "that "
-    "differ in their setting the greatest distance over the step";
+inline constexpr std::string_view quantity_help = "what is computed for each pair; docs/figures.md explains each";
 
 /// Whether it compares the two of a pair by their distances.
 constexpr bool is_of_distance(Quantity quantity) {

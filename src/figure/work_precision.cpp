@@ -82,7 +82,7 @@ public:
 
     std::size_t trials() const override { return problems_.all.size() + ladders_.size() * repeats(); }
     bool measures_time() const override { return cost_ == Cost::time; }
-    std::string unit() const override { return "ladders"; }
+    std::string unit() const override { return "step-size studies"; }
     double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {

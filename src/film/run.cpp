@@ -57,7 +57,7 @@ std::string step_that_holds(const Scene& scene, const RunFailure& fault, const s
     return fmt::format("no step down to {} s works", finest.text());
 }
 
-/// "NAME.failed.csv": what stays of a run that broke down.
+/// "NAME.failed.csv": what stays of a failed run.
 std::string failed_name(const std::string& name, const std::string& ending) {
     return name + ".failed" + ending;
 }

@@ -209,7 +209,7 @@ Json fit_json(const FitResult& result) {
                    {"notes", track.notes}}},
                  {"model", model_json(result.chosen(), uncertainty)},
                  {"starts", list_of(result.chosen().fit.shots, start_json)},
-                 {"ladder", list_of(result.ladder.candidates, candidate_json)},
+                 {"models", list_of(result.ladder.candidates, candidate_json)},
                  {"residuals",
                   {{"like_noise", uncertainty.is_white},
                    {"neighbour_correlation", uncertainty.neighbour},

@@ -47,7 +47,7 @@ Json manifest_of(const fs::path& path) {
 
 /// Of the run that wrote the manifest.
 std::string kind_of_manifest(const Json& manifest) {
-    return manifest.contains("ladder") ? "fit" : manifest.contains("figure") ? "figure" : "film";
+    return manifest.contains("models") ? "fit" : manifest.contains("figure") ? "figure" : "film";
 }
 
 void add_files(WrittenFiles& written, const Json& files, const std::string& kind) {

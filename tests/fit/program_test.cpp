@@ -94,7 +94,7 @@ TEST(FitProgram, FitsARealPendulum) {
     EXPECT_NEAR(json["pendulum"]["length_m"][0].get<double>(), 0.1727, 0.002);  // measured 0.1730
     EXPECT_FALSE(json["residuals"]["like_noise"].get<bool>());
     EXPECT_NEAR(json["track"]["period"]["seconds"].get<double>(), 5.334, 0.005);
-    EXPECT_EQ(json["ladder"].size(), 9u);
+    EXPECT_EQ(json["models"].size(), 9u);
     EXPECT_EQ(read_png(folder / "out/lab/lab.png").size, (Size{1600, 1300}));
     // the preset, of bodies, dry joints and the air that they meet, swings as the track did
     EXPECT_LT(worst_of_preset(folder, "lab", read_tracks(lab).pieces[0], "500"), 0.02);  // measured below 5e-3
@@ -123,7 +123,7 @@ TEST(FitProgram, ItsPresetRunsBesideATrack) {
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(fs::exists(folder / "out/lab/lab.residuals.csv"));
     EXPECT_TRUE(
-        nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json")).contains("ladder"));  // still the fit's
+        nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json")).contains("models"));  // still the fit's
     auto columns = columns_of(folder / "out/lab/lab.csv");
     for (const char* theta : {"theta1_rad", "theta2_rad"})  // measured 2.2e-3 rad
         EXPECT_LT(worst_difference(columns[fmt::format("a_{}", theta)], columns[fmt::format("b_{}", theta)]), 5e-3);

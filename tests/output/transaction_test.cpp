@@ -249,7 +249,7 @@ TEST(Transaction, LeavesWhatSomebodyChangedButWhereForced) {
 
 TEST(Transaction, LeavesFilesOfAnotherKindOfRunButWhereForced) {
     const auto out = fresh_folder();
-    write_bytes(out / "x.json", R"({"doppel": {}, "ladder": [], "files": {"x.csv": {}}})");
+    write_bytes(out / "x.json", R"({"doppel": {}, "models": [], "files": {"x.csv": {}}})");
     write_bytes(out / "x.csv", "residuals");
     for (const char* name : {"x.json", "x.csv"}) {
         Transaction(out, "run", "fit").file(name);
