@@ -124,7 +124,7 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     number.is_step = found.step != nullptr;
     const bool is_real = !found.is_whole && !found.step,
                is_array = is_real && (!field.each.empty() || values.size() > 1);
-    const auto demand_counting = [&] {
+    const auto require_counting = [&] {
         if (!field.only.holds && !field.only.fault.empty())
             throw table.fault(key, "\"{}\" {}", number.path, field.only.fault);
     };
