@@ -241,18 +241,14 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
     } catch (const std::exception& error) {
         const auto* ours = dynamic_cast<const Error*>(&error);
         if (ours && ours->code() == ExitCode::interrupted) throw;
-        throw Error(ours ? ours->code() : ExitCode::io_failed, error.what() + keep());
+        std::string kept;
+        for (const Part& part : parts_)
+            if (part.finished)
+                kept += (kept.empty() ? "; what is finished stays until the next run: " : ", ") +
+                        hidden(part.name).string();
+        keeps_hidden_ = keeps_hidden_ || !kept.empty();
+        throw Error(ours ? ours->code() : ExitCode::io_failed, error.what() + kept);
     }
-}
-
-/// Keeps what is finished; returns the sentence that says so.
-std::string Transaction::keep() {
-    std::string names;
-    for (const Part& part : parts_)
-        if (part.finished) names += (names.empty() ? "" : ", ") + hidden(part.name).string();
-    if (names.empty()) return "";
-    keeps_hidden_ = true;
-    return "; what is finished stays until the next run: " + names;
 }
 
 void Transaction::keep_only(const std::string& name, const std::string& new_name) {
@@ -269,9 +265,11 @@ std::vector<std::pair<std::string, WrittenFile>> Transaction::finished_files() c
         files.push_back({name, {fs::file_size(hidden(name)), sha256_of_file(hidden(name))}});
     };
     for (const auto& [name, finished] : parts_) {
-        if (finished && !fs::is_directory(hidden(name))) add(name);
-        if (!finished || !fs::is_directory(hidden(name))) continue;
-        for (const auto& file : names_in(hidden(name))) add(name + "/" + file);
+        if (!finished) continue;
+        if (!fs::is_directory(hidden(name)))
+            add(name);
+        else
+            for (const auto& file : names_in(hidden(name))) add(name + "/" + file);
     }
     return files;
 }
@@ -279,12 +277,10 @@ std::vector<std::pair<std::string, WrittenFile>> Transaction::finished_files() c
 std::map<std::string, WrittenFile> Transaction::earlier_files() const {
     std::map<std::string, WrittenFile> earlier;
     for (const auto& [name, about] : written_) {
-        const auto is_it = [first = name.substr(0, name.find('/'))](const std::string& other) {
-            return other == first;
-        };
-        if (std::ranges::none_of(parts_, is_it, &Part::name) && std::ranges::none_of(removed_, is_it) &&
-            type_of(folder_ / name) == Type::regular)
-            earlier.emplace(name, about);
+        const auto first = name.substr(0, name.find('/'));
+        const bool is_of_run = std::ranges::find(parts_, first, &Part::name) != parts_.end() ||
+                               std::ranges::find(removed_, first) != removed_.end();
+        if (!is_of_run && type_of(folder_ / name) == Type::regular) earlier.emplace(name, about);
     }
     return earlier;
 }

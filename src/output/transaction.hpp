@@ -82,7 +82,6 @@ private:
     void refuse_foreign_file(const std::string& name) const;
     void commit();
     void move_in(const std::string& name) const;
-    std::string keep();
 
     std::filesystem::path folder_, hidden_;
     std::string kind_;

@@ -96,8 +96,8 @@ bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const s
 /// A chain, and what a real one has besides.
 void read_physical_chain(TomlReader& table, SideSpec& side) {
     const auto& rods = side.physical.rod_mass_kg;
-    const bool has_rods =
-        table.has("rod_mass_kg") || std::any_of(rods.begin(), rods.end(), [](const Quad& mass) { return mass > 0; });
+    const bool has_rods = table.has("rod_mass_kg") || !table.elements_of("rod_mass_kg").empty() ||
+                          std::any_of(rods.begin(), rods.end(), [](const Quad& mass) { return mass > 0; });
     chain_fields(table, side, has_rods ? not_negative : positive);
     if (table.has("center_m")) side.physical.center_m.resize(side.links());
     physical_fields(table, side.physical);

@@ -1,5 +1,6 @@
 #include "base/text.hpp"
 #include "numeric/rational.hpp"
+#include "scene/resolved.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>

@@ -72,6 +72,8 @@ public:
                const Typeface* typeface = &built_in_typeface, Faults* faults = nullptr);
 
     bool has(std::string_view key);
+    /// What the command line gives of elements of a list: the keys "mass_kg[1]", 1.
+    std::vector<std::pair<std::string_view, std::size_t>> elements_of(std::string_view key) const;
     /// Whether the key was given on the command line, and not in the preset's file.
     bool from_command_line(std::string_view key) override;
 
@@ -125,8 +127,6 @@ public:
 
 private:
     const toml::node* find(std::string_view key);
-    /// What the command line gives of elements of a list: the keys "mass_kg[1]", 1.
-    std::vector<std::pair<std::string_view, std::size_t>> elements_of(std::string_view key) const;
     std::optional<toml::source_region> source_of(std::string_view key) const;
     void note(std::string_view key, const Error& fault) const;
     bool counts(const Field& field);

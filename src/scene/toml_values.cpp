@@ -454,14 +454,14 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
     };
     try {
         std::visit(read, member);
-        for (const auto& [key, element] : elements_of(field.key)) {
+        for (const auto& given : elements_of(field.key)) {  // clang 14 captures no structured binding
             auto one = field;
-            one.key = key;
+            one.key = given.first;
             const auto put = [&]<class M>(M into) {
                 if constexpr (!std::is_same_v<M, ChosenName>)
-                    ValueReader(*this, one).read_element(*find(key), element, *into);
+                    ValueReader(*this, one).read_element(*find(one.key), given.second, *into);
                 else
-                    throw fault(key, "is of no list of numbers");
+                    throw fault(one.key, "is of no list of numbers");
             };
             std::visit(put, member);
         }
