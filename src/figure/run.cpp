@@ -53,13 +53,6 @@ Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
     return compose(page_of(figure, trials), layout.picture, theme_named(figure.chart.theme), layout.scale, layout.unit);
 }
 
-KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop) {
-    Computation computation(figure, header_of(figure), std::nullopt, jobs,
-                            {[](const FigureProgress&) {}, [](const std::string&) {}});
-    parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, stop); });
-    return computation.take_all();
-}
-
 namespace {
 
 /// Throws Error (exit 2) where the trials of `header` are so many cells of maps that memory, or the disk of `folder`,

@@ -39,8 +39,7 @@ struct FigureReport {
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report);
 
-/// Numbers and picture of a figure, without files.
-KnownTrials compute_figure(const FigurePreset& figure, int jobs, const std::atomic<bool>& stop);
+/// The picture of a figure, without files.
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials);
 
 }  // namespace doppel

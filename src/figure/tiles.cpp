@@ -50,7 +50,9 @@ std::string scale_markup(const HeatMap& map, const Theme& theme) {
         colors += (i == 0 ? "" : ",") + hexadecimal(scale.color(static_cast<double>(i) / stops));
     scale.axis.to = 380;  // px on the page
     for (const auto& tick : chart_ticks(scale.axis, {.size = 14, .across = false}, map.threshold))
-        numbers += fmt::format("<span style=\"--at:{:.1f}%\">{}</span>", 100 * scale.axis.share(tick.value), tick.text);
+        if (!tick.text.empty())
+            numbers +=
+                fmt::format("<span style=\"--at:{:.1f}%\">{}</span>", 100 * scale.axis.share(tick.value), tick.text);
     auto text = fmt::format("{}<div id=\"scale\" style=\"--colors:{}\">{}</div>", markup(map.label), colors, numbers);
     if (map.none_label.empty()) return text;
     return fmt::format("{}<div id=\"none\" style=\"border-color:{}\">{}</div>", text,

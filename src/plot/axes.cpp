@@ -120,11 +120,20 @@ float axis_labels_height(const Plot& plot, float width, const AxisWords& words, 
     return side_by_side(all, width, style) ? line : line * static_cast<float>(all.size());
 }
 
-void fit_labels(const Plot& plot, float width, PlotStyle& style) {
-    style.axis = fitting_size(plot.x.label, style.axis, Weight::regular, width);
+void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle& fitted) {
+    const auto fit = [](std::string_view text, float size, Weight weight, float room, float& into) {
+        into = std::min(into, fitting_size(text, size, weight, room));
+    };
+    fit(plot.x.label, style.axis, Weight::regular, width, fitted.axis);
     for (const Heading& heading : headings(plot, {}, style))
-        style.axis = fitting_size(heading.text, style.axis, Weight::regular, width);
-    style.heading = fitting_size(plot.title, style.heading, Weight::bold, width);
+        fit(heading.text, style.axis, Weight::regular, width, fitted.axis);
+    // rather a smaller title than no note beside it
+    constexpr float least = 0.85f;
+    const float beside = plot.note.empty() ? 0 : 1.5f * style.heading + text_width(plot.note, style.tick);
+    const bool has_note =
+        fitting_size(plot.title, style.heading, Weight::bold, width - beside) >= least * style.heading;
+    fit(plot.title, style.heading, Weight::bold, width - (has_note ? beside : 0), fitted.heading);
+    fitted.has_notes = fitted.has_notes && has_note;
 }
 
 void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
@@ -139,8 +148,7 @@ void draw_headings(const Plot& plot, const Area& area, const Area& held, float t
     };
     const float first = held.top + 0.95f * style.heading;
     if (!plot.title.empty()) write({plot.title, Align::left, style.theme.text}, first, style.heading, Weight::bold);
-    const float room = right - left - text_width(plot.title, style.heading, Weight::bold) - style.heading;
-    if (!plot.note.empty() && text_width(plot.note, style.tick) <= room)
+    if (style.has_notes && !plot.note.empty())
         write({plot.note, Align::right, style.theme.quiet_text}, first, style.tick, Weight::regular);
     const auto all = headings(plot, words, style);
     const bool together = !all.empty() && side_by_side(all, held.width(), style);

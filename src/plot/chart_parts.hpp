@@ -15,6 +15,7 @@ struct PlotStyle {
     float unit;             // of a picture of 1600 × 900, px
     float scale;            // pixels that one px becomes in the end: what images are drawn for
     bool on_paper = false;  // small, with text of the size that was asked for: the title is little larger
+    bool has_notes = true;  // beside the titles of panels, where all have room
 
     float title = (on_paper ? 26 : 37) * unit, subtitle = 21 * unit, heading = 24 * unit;
     float axis = 20 * unit, tick = 18.5f * unit, text = 20 * unit, caption = 18 * unit;
@@ -59,8 +60,9 @@ void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right
 /// px that the labels above a panel `width` px wide take: one line if all fit side by side, else one each.
 float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style);
 
-/// Makes the sizes of labels and titles in `style` so small that those of the panel, `width` px wide with its labels, fit.
-void fit_labels(const Plot& plot, float width, PlotStyle& style);
+/// Makes the sizes of labels and titles in `fitted`, which begins as `style`, so small that those of the panel, `width` px
+/// wide with its labels, fit.
+void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle& fitted);
 
 /// The panel's title in the uppermost `title` px of `held`; in the `labels` px below, the labels of the vertical axes
 /// and of the map's bar.
@@ -70,15 +72,12 @@ void draw_headings(const Plot& plot, const Area& area, const Area& held, float t
 /// The map's cells as seen through the axes.
 CellImage map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
 
-/// px that the colour bar of a map and its labels take on the right of a panel `height` px high.
+/// px that the colour bar of a map and its labels take on the right of a panel `height` px high; of a bar that maps share
+/// with its label above it.
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 
 /// The bar beside `area`, from `left` on: colours with ticks, and below them what stands for no value.
-void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list);
-
-/// The same for a bar that maps share, with its label above it.
-float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
-void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list);
+void draw_bar(const HeatMap& map, Area area, float left, const PlotStyle& style, PageList& list);
 
 /// The colour of what has no value.
 Color none_color(const HeatMap& map, const Theme& theme);
@@ -103,12 +102,12 @@ LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& ce
                       const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list);
 
 /// Of panels.
-struct Grid {
+struct PanelGrid {
     int columns, rows;
 };
 
 /// The figure's columns, or those that give the panels the most room.
-Grid grid_of(const Figure& figure, const Area& body);
+PanelGrid grid_of(const Figure& figure, const Area& body);
 
 /// All panels of the figure, and the bar that they share.
 void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list);

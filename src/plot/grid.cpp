@@ -52,7 +52,7 @@ struct Cells {
 
 /// Of whole pixels, so that all panels come out alike. Where they share axes, a column or row takes no more than its own
 /// words need; else all take as much as the largest.
-Cells cells_of(const std::vector<Gutters>& own, const Grid& grid, float width, float height, bool shares_axes,
+Cells cells_of(const std::vector<Gutters>& own, const PanelGrid& grid, float width, float height, bool shares_axes,
                const PlotStyle& style) {
     const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
     Cells cells{std::vector<Gutters>(columns), std::vector<Gutters>(rows), 0, 0};
@@ -82,15 +82,15 @@ Cells cells_of(const std::vector<Gutters>& own, const Grid& grid, float width, f
 
 }  // namespace
 
-Grid grid_of(const Figure& figure, const Area& body) {
+PanelGrid grid_of(const Figure& figure, const Area& body) {
     const int panels = static_cast<int>(figure.panels.size());
-    const auto grid = [&](int columns) { return Grid{columns, (panels + columns - 1) / columns}; };
+    const auto grid = [&](int columns) { return PanelGrid{columns, (panels + columns - 1) / columns}; };
     if (figure.columns > 0) return grid(std::min(figure.columns, panels));
     const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // width to height that suits
-    Grid best = grid(1);
+    PanelGrid best = grid(1);
     float most = 0;
     for (int columns = 1; columns <= panels; ++columns) {
-        const Grid tried = grid(columns);
+        const PanelGrid tried = grid(columns);
         const float room = std::min(body.width() / static_cast<float>(columns),
                                     shape * (body.height() / static_cast<float>(tried.rows)));
         if (room > 1.001f * most) most = room, best = tried;
@@ -99,10 +99,10 @@ Grid grid_of(const Figure& figure, const Area& body) {
 }
 
 void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
-    const Grid grid = grid_of(figure, body);
+    const PanelGrid grid = grid_of(figure, body);
     if (const HeatMap* map = sharing_map(figure)) {
-        const float gutter = shared_bar_gutter(*map, body.height(), style);
-        draw_shared_bar(*map, body, body.right - gutter, style, list);
+        const float gutter = bar_gutter(*map, body.height(), style);
+        draw_bar(*map, body, body.right - gutter, style, list);
         body.right -= gutter;
     }
     const auto columns = static_cast<std::size_t>(grid.columns);
@@ -128,7 +128,7 @@ void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageLi
             const auto& panel = figure.panels[i];
             const Gutters around = cells.around(i % columns, i / columns);
             const float wide = panel.square ? std::min(cells.width, cells.height) : cells.width;
-            fit_labels(panel, around.left + wide + around.right, fitted);
+            fit_labels(panel, around.left + wide + around.right, style, fitted);
         }
         LabelNeeds needs = given;
         float left = body.left, top = body.top;

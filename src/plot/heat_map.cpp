@@ -53,14 +53,16 @@ Image colors(const Bar& bar, float left, float top, float scale) {
     return {left, top, left + bar.thickness, top + bar.axis.from, std::move(pixels)};
 }
 
-/// The label of a bar by itself, in lines above it.
+/// The label of a bar that maps share, in lines above it.
 TextBlock bar_heading(const HeatMap& map, const PlotStyle& style) {
+    if (!map.shares_bar) return {};
     return {evenly_wrapped(map.label, style.tick, Weight::regular, heading_width * style.tick), style.tick,
             Weight::regular, style.theme.text};
 }
 
-float below_heading(const HeatMap& map, float height, const PlotStyle& style) {
-    return std::max(height - bar_heading(map, style).height() - style.tick, 1.0f);
+/// What a heading leaves of a height.
+float below(const TextBlock& heading, float height, const PlotStyle& style) {
+    return heading.lines.empty() ? height : std::max(height - heading.height() - style.tick, 1.0f);
 }
 
 }  // namespace
@@ -92,25 +94,19 @@ Color none_color(const HeatMap& map, const Theme& theme) {
     return map.none_is_bad ? theme.bad : theme.none;
 }
 
-float shared_bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
-    return 1.2f * style.tick + std::max(widest(bar_heading(map, style).lines, style.tick),
-                                        make_bar(map, below_heading(map, height, style), style).width);
-}
-
-void draw_shared_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list) {
-    bar_heading(map, style).draw({std::round(left + 1.2f * style.tick), area.top}, list);
-    Area below = area;
-    below.top = std::round(area.bottom - below_heading(map, area.height(), style));
-    draw_bar(map, below, left, style, list);
-}
-
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {
-    return 1.2f * style.tick + make_bar(map, height, style).width;
+    const auto heading = bar_heading(map, style);
+    return 1.2f * style.tick +
+           std::max(widest(heading.lines, style.tick), make_bar(map, below(heading, height, style), style).width);
 }
 
-void draw_bar(const HeatMap& map, const Area& area, float left, const PlotStyle& style, PageList& list) {
+void draw_bar(const HeatMap& map, Area area, float left, const PlotStyle& style, PageList& list) {
+    const auto heading = bar_heading(map, style);
+    const float em = style.tick, start = std::round(left + 1.2f * em);
+    heading.draw({start, area.top}, list);
+    area.top = std::round(area.bottom - below(heading, area.height(), style));
     const Bar bar = make_bar(map, area.height(), style);
-    const float em = style.tick, start = std::round(left + 1.2f * em), ticks_left = start + bar.thickness;
+    const float ticks_left = start + bar.thickness;
     list.push_back(colors(bar, start, area.top, style.scale));
     const auto write = [&](const std::string& text, float middle) {
         const Point at{start + bar.text_left, area.top + middle + 0.36f * em};

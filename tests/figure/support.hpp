@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/threads.hpp"
 #include "figure/run.hpp"
 #include "output/files.hpp"
 #include "output/fixtures.hpp"
@@ -26,7 +27,10 @@ inline FigurePreset figure_from(const std::string& text, const std::vector<std::
 
 inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
     const std::atomic<bool> never = false;
-    return compute_figure(figure, jobs, never);
+    Computation computation(figure, header_of(figure), std::nullopt, jobs,
+                            {[](const FigureProgress&) {}, [](const std::string&) {}});
+    parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, never); });
+    return computation.take_all();
 }
 
 /// The table as its file holds it.

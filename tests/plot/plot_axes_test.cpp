@@ -90,7 +90,11 @@ TEST(Plot, CurvesOnSharedAxesHaveOneRange) {
 TEST(Plot, ANoteStandsBesideTheTitleWhereThereIsRoom) {
     EXPECT_EQ(words_in(composed(four_maps(true, false), size, light))["17 s"], 4);
     auto figure = four_maps(true, false);
+    // a title shrinks a little for it
     for (auto& plot : figure.panels) plot.title = "a title of a panel that leaves a note no room beside it";
+    EXPECT_EQ(words_in(composed(figure, size, light))["17 s"], 4);
+    for (auto& plot : figure.panels)
+        plot.title = "a title of a panel that is so long that it leaves a note no room at all";
     const auto words = words_in(composed(figure, size, light));
     EXPECT_EQ(words.count("17 s"), 0u);
     EXPECT_EQ(words.count(figure.panels[0].title), 1u);
