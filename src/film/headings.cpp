@@ -83,20 +83,6 @@ void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, 
     add(tail, left + head_width + note_gap * t, base, theme.quiet_text, Weight::regular, Align::left);
 }
 
-/// Whether a heading leaves the circle of a panel free in its upper left corner; where it stands there.
-std::optional<Label> in_corner(const Layout& layout, const Heading& words, const Area& panel) {
-    if (!words.said.note.empty()) return std::nullopt;
-    const float size = px(layout.style.font.heading), edge = 24 * layout.unit;
-    const Point base{panel.left + edge, panel.top + edge + 0.73f * size};
-    const float right = base.x + layout.style.type.width(words.said.heading, size, Weight::bold),
-                bottom = base.y + 0.24f * size;
-    const float radius = std::min(panel.width(), panel.height()) / around_circle / 2;
-    const Point away{std::max(0.0f, (panel.left + panel.right) / 2 - right),
-                     std::max(0.0f, (panel.top + panel.bottom) / 2 - bottom)};
-    if (right > panel.right - edge || std::hypot(away.x, away.y) < radius + 8 * layout.unit) return std::nullopt;
-    return label(words.said.heading, base, size, layout.style.theme.sides[words.side], Align::left, Weight::bold);
-}
-
 /// A bar of the members' colours between what the first and what the last one is.
 void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, const Area& panel) {
     const float t = layout.text, base = panel.top - 14 * t, gap = 14 * t;
@@ -146,25 +132,32 @@ std::pair<std::string, std::vector<std::string>> legend_words(const Scene& scene
     return {before + " =", words};
 }
 
-/// The listed members' angles, each after a dot of its colour.
-void add_legend(Layout& layout, const Scene& scene, const Area& panel) {
+/// What the listed members are, each after a dot of its colour, in as many lines as need be, the last one `base` px down.
+/// Returns how many.
+int add_legend(Layout& layout, const Scene& scene, float left, float width, float base) {
     const auto [before, words] = legend_words(scene);
-    const float t = layout.text, base = panel.top - 14 * t;
-    float size = 0.85f * px(layout.style.font.heading);
-    constexpr float dot = 0.32f, after_dot = 0.85f, after_word = 0.8f;  // em
-    float wide = layout.style.type.width(before, size) + after_word * size;
-    for (const auto& word : words) wide += layout.style.type.width(word, size) + (after_dot + after_word) * size;
-    size *= std::min(1.0f, panel.width() / (wide - after_word * size));
     const auto& theme = layout.style.theme;
-    layout.words.push_back(label(before, {panel.left, base}, size, theme.quiet_text));
-    float x = panel.left + layout.style.type.width(before, size) + after_word * size;
-    for (std::size_t k = 0; k < words.size(); ++k) {
-        const Point at{x + dot * size, base - 0.36f * size};
-        layout.words.push_back(Capsule{at, at, dot * size, member_color(layout.style, scene, k)});
-        x += after_dot * size;
-        layout.words.push_back(label(words[k], {x, base}, size, theme.text));
-        x += layout.style.type.width(words[k], size) + after_word * size;
+    const float size = 0.85f * px(layout.style.font.heading), line = 1.3f * size;
+    constexpr float dot = 0.32f, after_dot = 0.85f, after_word = 0.8f;  // em
+    const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
+    std::vector<Point> places;  // from the left end of the first line
+    Point pen{width_of(before) + after_word * size, 0};
+    for (const auto& word : words) {
+        const float end = pen.x + after_dot * size + width_of(word);
+        if (end > width && pen.x > 0) pen = {0, pen.y + line};
+        places.push_back(pen);
+        pen.x += after_dot * size + width_of(word) + after_word * size;
     }
+    const float first = base - pen.y;
+    layout.words.push_back(label(before, {left, first}, size, theme.quiet_text));
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        const Point at{left + places[k].x + dot * size, first + places[k].y - 0.36f * size};
+        layout.words.push_back(Capsule{at, at, dot * size, member_color(layout.style, scene, k)});
+        const auto text = fitted_text(layout, words[k], size, Weight::regular, width - after_dot * size);
+        layout.words.push_back(
+            label(text.text, {left + places[k].x + after_dot * size, first + places[k].y}, text.size, theme.text));
+    }
+    return 1 + static_cast<int>(std::lround(pen.y / line));
 }
 
 }  // namespace
@@ -263,22 +256,20 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
     if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split(room, needs);
     const float t = layout.text;
     const auto headings = headings_of(scene);
-    if (needs.tall) {
-        auto regions = split(room, needs);
-        DisplayList words;
-        for (const auto& heading : headings)
-            if (const auto found = in_corner(layout, heading, regions.panels[heading.panel]);
-                found && headings.front().panel != headings.back().panel)
-                words.push_back(*found);
-        if (words.size() == headings.size()) {
-            layout.words.insert(layout.words.end(), words.begin(), words.end());
-            return regions;
-        }
-    }
     needs.heading = 46 * t;
     auto regions = split(room, needs);
     if (!scene.preset.video.members.releases.empty()) {
-        add_legend(layout, scene, regions.panels[0]);
+        const auto words = layout.words;
+        const auto add = [&] {
+            layout.words = words;
+            const auto& panel = regions.panels[0];
+            return add_legend(layout, scene, panel.left, panel.width(), panel.top - 14 * t);
+        };
+        if (const int lines = add(); lines > 1) {
+            needs.heading += static_cast<float>(lines - 1) * 1.3f * 0.85f * px(layout.style.font.heading);
+            regions = split(room, needs);
+            add();
+        }
         return regions;
     }
     if (!scene.members.empty()) {

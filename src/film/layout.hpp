@@ -138,7 +138,7 @@ std::string speed_text(const Scene& scene, double time);
 float place_header(Layout& layout, const Scene& scene);
 
 /// Splits the room below the header, and adds what sets the sides apart: above the panels in a line, in two where it is
-/// long; in a corner of an upright film's panel where the circle leaves it free.
+/// long.
 Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs);
 
 /// Text in as much as `width` px: shrunk to no less than three quarters and to what can be read, then without its last

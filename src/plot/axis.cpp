@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <string_view>
 
@@ -143,12 +144,12 @@ std::vector<Tick> asked_ticks(const Axis& axis, const TickLabels& labels, double
     return {};
 }
 
-/// 1, 2 and 5 times each decade, with labels.
-std::vector<Tick> subdivided(double low, double high) {
+/// Some multiples of each decade, with labels.
+std::vector<Tick> subdivided(double low, double high, std::initializer_list<long long> multiples_of_it) {
     std::vector<Tick> ticks;
     const bool plain = low >= 1e-4 && high < 1e6;
     for (int exponent = decade_below(low); exponent <= decade_below(high); ++exponent) {
-        for (const long long nice : {1, 2, 5}) {
+        for (const long long nice : multiples_of_it) {
             const double value = Step{nice, exponent}.times(1);
             if (value < low || value > high) continue;
             ticks.push_back({value, plain       ? decimal(nice, exponent)
@@ -186,7 +187,7 @@ std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels, 
     if (every) return decades(axis, low, high, static_cast<int>(*every));
     const double span = std::log10(high) - std::log10(low);
     if (span < 2) {
-        auto ticks = subdivided(low, high);
+        auto ticks = subdivided(low, high, {1, 2, 5});
         if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
     }
     if (span >= 1) {
@@ -194,6 +195,10 @@ std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels, 
             auto ticks = decades(axis, low, high, n);
             if (named(ticks) >= 2 && fits(ticks, axis, labels)) return ticks;
         }
+    }
+    if (span < 2) {  // less than two whole decades
+        auto ticks = subdivided(low, high, {1, 3});
+        if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
     }
     return linear_ticks(axis, labels);
 }
@@ -218,7 +223,7 @@ std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::opt
     const float length = std::abs(axis.to - axis.from);
     // small charts have their numbers closer together
     const float spacing = across ? std::max(length / 15, std::min(3.6f * em, length / 4))
-                                 : std::max({length / 11, std::min(2.4f * em, length / 4), 1.6f * em});
+                                 : std::max({length / 11, std::min(2.4f * em, length / 5), 1.6f * em});
     const TickLabels labels{.size = em, .gap = (across ? 1.1f : 0.5f) * em, .spacing = spacing, .across = across};
     return chart_ticks(axis, labels, every);
 }

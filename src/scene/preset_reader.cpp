@@ -46,6 +46,10 @@ void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene
     if (const auto follow = preset.video.view.follow; follow > static_cast<int>(most))
         throw video.inner(video.read_table("view"), "[video.view]")
             .fault("follow", "must be from 0 to {}, as there are masses; it is {}", most, follow);
+    const auto& view = preset.video.view;
+    if (!preset.video.pendulums && (view.follow > 0 || view.center_m || view.height_m))
+        throw video.fault("view",
+                          "is of the pendulums, but panels does not hold \"pendulums\"; leave [video.view] out");
     if (preset.member_columns && preset.video.layout != Arrangement::ensemble)
         throw scene.fault("member_columns", "is of the layout \"ensemble\"; it is \"{}\"",
                           name_of(preset.video.layout));

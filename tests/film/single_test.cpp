@@ -66,6 +66,8 @@ TEST(Single, RefusesWhatIsOfAPair) {
     refused(one + "[video.view]\nfollow = 3\n",
             "[video.view] follow must be from 0 to 2, as there are masses; it is 3");
     refused(one + "[video.view]\nfollow = 1\ncenter_m = [0, 0]\n", "center_m is of a view that follows no mass");
+    refused(one + "panels = [\"angles\"]\n[video.view]\nheight_m = 2\n",
+            "[video] view is of the pendulums, but panels does not hold \"pendulums\"");
     refused("[scene]\nmember_columns = true\n",
             "[scene] member_columns is for the layout \"ensemble\"; it is \"side-by-side\"");
     const std::string ensemble = "[scene]\nduration_s = 1\n[video]\nlayout = \"ensemble\"\nmembers = ";
@@ -104,6 +106,18 @@ TEST(Single, MembersOfAnEnsembleHaveMassesLengthsAndColoursOfTheirOwn) {
     for (std::size_t row = 0; row < plain.size(); ++row) EXPECT_TRUE(table[row].starts_with(plain[row])) << row;
     const auto resolved = resolved_toml(scene.preset);
     EXPECT_EQ(resolved_toml(read_preset({"x", "resolved", resolved})), resolved);
+}
+
+TEST(Single, TheLegendOfMembersCanBeReadInASmallPicture) {
+    const auto scene = scene_of_text(
+        "[scene]\nduration_s = 1\n[system]\nintegrator = \"dop853\"\n[video]\nsize = [640, 360]\nlayout = "
+        "\"ensemble\"\nmembers = [{mass_kg = [1, 1], length_m = [1, 1]}, {mass_kg = [1.25, 4.75], length_m = [0.55, "
+        "0.45]}, {mass_kg = [0.5, 0.5], length_m = [0.25, 0.65]}, {mass_kg = [1.5, 0.5], length_m = [0.2, 0.6]}]\n");
+    const auto labels = labels_of(scene, 0);
+    for (const auto& label : labels) EXPECT_GE(label.size, 8.999f) << label.text;
+    expect_apart(labels, {640, 360}, "legend");
+    EXPECT_TRUE(
+        std::ranges::any_of(labels, [](const Label& label) { return label.text == "0.5 kg, 0.5 kg, 0.25 m, 0.65 m"; }));
 }
 
 TEST(Single, AViewHasItsCentreAndHeightAndFollowsAMass) {

@@ -139,5 +139,40 @@ TEST(ChartTicks, TakeTheSmallestStepThatLeavesTheSpacing) {
     EXPECT_EQ(chart_ticks({0, 1, 0, 1000}, words)[3].text, "0.3");
 }
 
+/// The labels beside a strip of a film, 216 px high.
+std::vector<std::string> beside_strip(double low, double high, bool logarithmic) {
+    std::vector<std::string> labels;
+    for (const auto& tick : spaced_ticks({low, high, 0, 216, logarithmic}, false, 27))
+        if (!tick.text.empty()) labels.push_back(tick.text);
+    return labels;
+}
+
+TEST(ChartTicks, OfAFewDecadesAreEnoughToReadValuesBy) {
+    using Labels = std::vector<std::string>;
+    EXPECT_EQ(beside_strip(0.7, 7.1, true), (Labels{"1", "2", "5"}));
+    EXPECT_EQ(beside_strip(0.2, 5, true), (Labels{"0.2", "0.5", "1", "2", "5"}));
+    EXPECT_EQ(beside_strip(0.15, 9, true), (Labels{"0.3", "1", "3"}));
+    EXPECT_EQ(beside_strip(1e-24, 30, true), (Labels{"10⁻²⁰", "10⁻¹⁰", "1"}));
+    EXPECT_EQ(beside_strip(-170, 220, false), (Labels{"−100", "0", "100", "200"}));
+}
+
+TEST(AxisItems, HaveNumbersInTheMarginAndTheirUnitAfterTheLast) {
+    const Axis time{0, 30, 40, 560};
+    const Area area{40, 10, 560, 200}, within{0, 0, 600, 240};
+    AxisLook look{.edge = AxisLook::Edge::bottom, .em = 20, .unit = " s"};
+    const auto ticks = spaced_ticks(time, true, 20);
+    const auto last_of = [&](const Area& around) {
+        std::string text;
+        for (const auto& item : axis_items(time, ticks, area, around, look))
+            if (const auto* label = std::get_if<Label>(&item)) text = label->text;
+        return text;
+    };
+    EXPECT_EQ(last_of(within), "30 s");
+    EXPECT_NE(last_of({0, 0, 565, 240}), "30 s") << "it would leave the margin";
+    look.line = 0;
+    for (const auto& item : axis_items(time, ticks, area, within, look))
+        EXPECT_TRUE(std::holds_alternative<Label>(item));
+}
+
 }  // namespace ticks_test
 }  // namespace doppel
