@@ -194,6 +194,9 @@ TEST(FitProgram, NamesOfStrangersGiveNoOrders) {
     EXPECT_TRUE(preset.starts_with("# Fitted by doppel fit to a [video] format=\"png\" #.csv: ")) << preset;
     const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
     EXPECT_EQ(json["track"]["files"][0], "a [video] format=\"png\" #.csv");  // not from the root
+    const auto& horizon = json["horizon"];
+    EXPECT_EQ(preset.find("\n[video]\nmodel_limit_s = ") != std::string::npos,
+              horizon.contains("median_s") && horizon["median_s"].is_number());
 }
 
 /// The preset is one that "check" and "simulate" take, and swings as the track did.
