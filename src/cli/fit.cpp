@@ -52,11 +52,12 @@ void add_fit(CLI::App& app) {
     auto& command =
         *app.add_subcommand("fit", "Fits a double pendulum to a track: parameters, errors, prediction horizon");
     command.footer(
-        "A track is a CSV with time_s and the angles theta1_rad, theta2_rad from the downward vertical.\n"
-        "Places in a picture are possible, too: x0_px, y0_px, x1_px, y1_px, x2_px, y2_px (pivot, joint, end; y down).\n"
-        "It may have any rate, gaps, and several pieces. Nine models are fitted, from point masses without friction\n"
-        "to bodies with friction and drag. The smallest is chosen that predicts pieces left out as well as the best.\n"
-        "DIR/NAME/ gets a preset (NAME.toml), all numbers (NAME.fit.json), NAME.residuals.csv and a page (NAME.png).\n"
+        "A track is a CSV with time_s and the angles theta1_rad, theta2_rad from the downward vertical, or\n"
+        "places in a picture: x0_px, y0_px, x1_px, y1_px, x2_px, y2_px (pivot, joint, end; y down).\n"
+        "It may have any rate, gaps, and several pieces. Nine models are fitted, from point masses\n"
+        "without friction to bodies with friction and drag. The smallest is chosen that predicts pieces\n"
+        "left out as well as the best. DIR/NAME/ gets a preset (NAME.toml), all numbers (NAME.fit.json),\n"
+        "NAME.residuals.csv and a page (NAME.png).\n"
         "Examples:\n"
         "  doppel fit swing.csv\n"
         "  doppel fit piece-*.csv --name lab --out fits\n"

@@ -61,7 +61,7 @@ LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(s
         throw io_failed("{} is {}; give another file name", path_.string(),
                         type == Type::symlink ? "a symbolic link" : "no regular file");
     if (type == Type::regular && (start.empty() || start_of_file(path_, start.size()) != start))
-        throw io_failed("{} was not written by Doppel for this; give the name of another file", path_.string());
+        throw io_failed("{} was not written by Doppel for this; give another file name", path_.string());
     const auto folder = path_.parent_path();
     std::error_code error;
     if (!folder.empty()) std::filesystem::create_directories(folder, error);

@@ -76,10 +76,9 @@ int run_program(int argc, char** argv) {
                      "doppel");
         app.set_version_flag("--version", fmt::format("doppel {} ({})", version(), revision()));
         app.footer(
-            "doppel COMMAND --help explains each command. Exit codes: 0 done, 1 compare found a difference, 2 bad "
-            "usage\n"
-            "or input, 3 the method failed, 4 reading, writing or encoding failed, 75 the same, where trying\n"
-            "again may help, 130 interrupted, 143 terminated.");
+            "doppel COMMAND --help explains each command. Exit codes: 0 done, 1 compare found a difference,\n"
+            "2 bad usage or input, 3 the method failed, 4 reading, writing or encoding failed, 75 the same,\n"
+            "where trying again may help, 130 interrupted, 143 terminated.");
         app.require_subcommand(1);
         app.get_formatter()->column_width(26);
 

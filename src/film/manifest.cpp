@@ -99,7 +99,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
             if (scene.is_single() && name == 'b')
                 break;
             else if (const auto words = early_error(scene, *side, record.last_sample, limit.reached()))
-                record.warnings.push_back(fmt::format("side {} is {}", name, *words));
+                record.warnings.push_back(fmt::format("side {}: {}", name, *words));
     } catch (const std::exception&) {
         throw_if_set(stop);  // else it is not known: it takes too long, or there is no thread to watch the time
     }

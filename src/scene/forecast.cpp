@@ -95,7 +95,7 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
 }
 
 std::string error_words(const Side& side, double from_s) {
-    return fmt::format("its error exceeds half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
+    return fmt::format("error above half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
 }
 
 std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop) {

@@ -34,7 +34,7 @@ struct Forecast {
 /// Errors  exit 130 soon after `stop` is set; exit 3 where the method fails at once.
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
 
-/// "off by half a rad from 11 s on".
+/// "error above half a rad from 11 s on".
 std::string error_words(const Side& side, double from_s);
 
 /// Such words of a side whose run is off at a sample up to `last`, or whose accuracy does not hold so far; nothing where

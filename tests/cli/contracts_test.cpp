@@ -84,7 +84,7 @@ TEST(Contracts, CheckIsJson) {
     EXPECT_EQ(a["precision"], "double");
     EXPECT_NEAR(a["forecast"]["off_from_s"].get<double>(), 11, 0.1);  // measured 10.98
     EXPECT_EQ(a["forecast"]["motion"], "chaotic");
-    EXPECT_EQ(film["warnings"][0], "side a: off by half a rad from 11 s on");
+    EXPECT_EQ(film["warnings"][0], "side a: error above half a rad from 11 s on");
     EXPECT_EQ(keys_of(all[1]), (Words{"compute_s", "format", "kind", "name", "path", "size", "theme", "threads",
                                       "times_are_least", "title", "trials", "unit", "units", "warnings", "width_pt"}));
     EXPECT_EQ(all[2]["a"]["model"], "track");
@@ -199,10 +199,10 @@ TEST(Contracts, RunsSayFromWhenOnTheyAreOffAsCheckDoes) {
     const auto folder = fresh_folder();
     const auto run = doppel(folder, {"simulate", "butterfly", "--progress", "none"});
     EXPECT_EQ(run.err,
-              "butterfly: side a is off by half a rad from 11 s on\n"
-              "butterfly: side b is off by half a rad from 11 s on\n");
+              "butterfly: side a: error above half a rad from 11 s on\n"
+              "butterfly: side b: error above half a rad from 11 s on\n");
     const auto manifest = Json::parse(bytes_of(folder / "out/butterfly/butterfly.json"));
-    EXPECT_EQ(manifest["warnings"][1], "side b is off by half a rad from 11 s on");
+    EXPECT_EQ(manifest["warnings"][1], "side b: error above half a rad from 11 s on");
     const auto brief = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "scene.duration_s=10"});
     EXPECT_EQ(brief.err, "");
     const auto lost = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.accuracy=1e-3"});

@@ -156,7 +156,7 @@ TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
     EXPECT_EQ(wait_for(child_), 130);
     const auto said = bytes_of(folder_ / "stderr");
     EXPECT_TRUE(contains(said, "doppel: interrupted; ")) << said;
-    EXPECT_TRUE(contains(said, "kept in " + record_ + ": the same command goes on")) << said;
+    EXPECT_TRUE(contains(said, "kept in " + record_ + ": the same command resumes")) << said;
     expect_record_alone();
     // another preset does not, and leaves it as it is
     const auto bytes = bytes_of(folder_ / record_);

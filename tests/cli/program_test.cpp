@@ -61,9 +61,9 @@ TEST(Program, ListsShowsAndChecks) {
     const auto check = doppel(folder, {"check", "butterfly"});
     EXPECT_EQ(check.code, 0);
     for (const char* words :
-         {"angles, explicit Euler, 1/30 000 s, 250 steps a sample", "the smallest model that serves",
+         {"angles, explicit Euler, 1/30 000 s, 250 steps a sample", "the smallest model",
           "samples 0 to 3600 at 120 Hz, 1 800 000 steps in all", "3601 frames of 1920×1080", "to render",
-          "off by half a rad from 1", "chaotic: errors grow tenfold every 2.", "double: about 3"})
+          "error above half a rad from 1", "chaotic: errors grow tenfold every 2.", "double: about 3"})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
@@ -76,8 +76,8 @@ TEST(Program, AnAccuracyIsChosenByExplainedAndRecorded) {
     const auto check = doppel(folder, arguments);
     EXPECT_EQ(check.code, 0) << check.err;
     for (const char* words :
-         {"Taylor series, tolerance ", "smallest model that serves; fastest method: taylor",
-          "rad to the end; verified by Taylor series in quad", "regular: no Lyapunov exponent to be seen",
+         {"Taylor series, tolerance ", "smallest model; fastest method: taylor",
+          "rad to the end; verified by Taylor series in quad", "regular: the Lyapunov exponent is not above 0",
           "half the accuracy takes ", "ten times the accuracy takes 1."})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
 
@@ -108,7 +108,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"render", "nonesuch"}, "there is no preset \"nonesuch\""},
         {{"render", "butterfly", "--size", "641x360"}, "--size 641x360: [video] size must be even"},
         {{"render", "butterfly", "--size", "wide"}, "--size must be WIDTHxHEIGHT, such as 1280x720; it is \"wide\""},
-        {{"render", "butterfly", "--frames", "9:3"}, "--frames wants A:B"},
+        {{"render", "butterfly", "--frames", "9:3"}, "--frames must be A:B"},
         {{"render", "butterfly", "--format", "avi"}, "--format"},
         {{"render", "butterfly", "--quality", "best", "--set", "video.crf=3"},
          "video.crf is given twice: --set video.crf and --quality best"},
@@ -129,7 +129,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"figure", "bad.toml"}, "bad.toml:4:1: [grid.x] step must be > 0; it is 0"},
         {{"figure", "fig6", "fig6"}, "would both be written to fig6/"},
         {{"figure", "all", "fig6"}, "would both be written to fig6/"},
-        {{"figure", "fig6", "--shard", "0/3"}, "--shard wants I/N"},
+        {{"figure", "fig6", "--shard", "0/3"}, "--shard must be I/N"},
         {{"figure", "fig6", "--shard", "4/3"}, "\"4/3\""},
         {{"figure", "fig6", "--shard", "x"}, "\"x\""},
         {{"figure", "fig6", "--shard", "1/0"}, "\"1/0\""},
@@ -139,7 +139,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"figure", "fig6", "--shard", "1/9999999999999999999"}, "--shard"},
         {{"figure", "fig6", "--shard", "1/2", "--merge"}, "--shard makes a part and --merge joins them"},
         {{"figure", "fig6", "--merge"}, "--shard I/N"},
-        {{"figure", "fig6", "--size", "wide"}, "--size wants WIDTHxHEIGHT"},
+        {{"figure", "fig6", "--size", "wide"}, "--size must be WIDTHxHEIGHT"},
         {{"figure", "fig6", "--scale", "0"}, "--scale"},
         {{"figure", "fig6", "--scale", "2", "--set", "chart.scale=3"}, "chart.scale is given twice"},
         {{"figure", "fig6", "--jobs", "0"}, "--jobs"},

@@ -21,7 +21,7 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
              {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
              {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""}, "and still, which draws PNG"},
              {{"render", "measured", "--to", "99"}, "--to 99: measured ends at 2.65 s"},
-             {{"render", "calm", "--from", "-1"}, "--from wants seconds ≥ 0"},
+             {{"render", "calm", "--from", "-1"}, "--from must be seconds ≥ 0"},
              {{"render", "calm", "--from", "1", "--frames", "0:3"},
               "--frames counts frames, --from and --to seconds; give one"},
              {{"render", "calm", "--from", "3", "--to", "2"},

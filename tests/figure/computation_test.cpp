@@ -113,7 +113,7 @@ TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
                       static_cast<double>(expected.size() + 1) - static_cast<double>(lines_before))
                 << at;
             const bool cut = text.size() < bytes.size() || at + 1 == bytes.size();
-            EXPECT_EQ(resumed.said.has("is damaged, and what follows it is computed anew"), !cut) << at;
+            EXPECT_EQ(resumed.said.has("is damaged, and what follows is computed again"), !cut) << at;
         }
     }
 }

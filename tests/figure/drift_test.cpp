@@ -86,7 +86,7 @@ TEST(Drift, TellsWhatGrowsHow) {
     EXPECT_EQ(found.words.at("rk4_angles_energy_growth"), "grows linearly");
     EXPECT_EQ(found.words.at("rk4_constraints_rods_growth"), "grows like t²");
     EXPECT_EQ(found.words.at("gauss6_angles_energy_growth"), "stays bounded");
-    EXPECT_EQ(found.words.at("euler_angles_energy_growth"), "breaks down");
+    EXPECT_EQ(found.words.at("euler_angles_energy_growth"), "fails");
     EXPECT_NEAR(found.number("euler_angles_broken_at_s"), 87, 1);  // measured 87.25
 }
 

@@ -141,7 +141,7 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
         const auto figure = figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=80", "grid.x.step=5",
                                                      "scene.sample_hz=1", "scene.duration_s=3000", "system.step_s=1",
                                                      fmt::format("system.integrator=\"{}\"", method)});
-        expect_error(ExitCode::method_failed, {"fig2-right: all of the 5 pairs failed", "a finer step"},
+        expect_error(ExitCode::method_failed, {"fig2-right: all of the 5 pairs failed", "a smaller step"},
                      [&] { run_figure(figure, {.out = out}); });
         EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
     }

@@ -98,7 +98,7 @@ TEST(GoldenPolicy, RejectsWhatIsAnotherPicture) {
                            int c) { return (3 * f.at(x, y)[c] + f.at(std::min(x + 1, f.size.width - 1), y)[c]) / 4; }},
         {"a blob", less(0, {200, 100, 203, 103}, -60)},
         {"a glaring pixel", less(2, {3, 3, 4, 4}, -255)},
-        {"opacity by a level", less(3, {0, 0, 480, 270}, 1), "opacity is -1.000/255 off on average"},
+        {"opacity by a level", less(3, {0, 0, 480, 270}, 1), "opacity is off by -1.000/255 on average"},
         {"opacity of half a disc", less(3, {200, 100, 203, 103}, 60), "9 pixels differ by more than 3/255"},
         {"opacity of a pixel", less(3, {3, 3, 4, 4}, 255), "a pixel differs by 255/255"},
         // a level in a third of a tile's pixels, which none of the other rules sees

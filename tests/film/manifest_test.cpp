@@ -24,7 +24,7 @@ TEST(Manifest, WarnsWhereEnergyIsNotKept) {
     const auto warnings = manifest_of(scene_of("butterfly", coarse))["warnings"];
     ASSERT_EQ(warnings.size(), 4u);
     const std::string first = warnings[0], third = warnings[2];
-    EXPECT_TRUE(third.starts_with("side a is off by half a rad from ")) << third;
+    EXPECT_TRUE(third.starts_with("side a: error above half a rad from ")) << third;
     EXPECT_NE(first.find("the energy of side a changed by "), std::string::npos) << first;
     EXPECT_NE(first.find("1/10 s is too coarse for 20 s"), std::string::npos) << first;
     EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=5"}))["warnings"].empty());
