@@ -122,7 +122,7 @@ Part part_of(const Scene& scene, const RunOptions& options) {
     const auto part = by_time ? part_between(scene, options) : part_of_frames(scene, options);
     const auto poster = options.pictures ? poster_frame(scene) : std::nullopt;
     if (poster && (*poster < part.first || *poster >= part.last))
-        throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is frame {}; --frames {}:{} would have it",
+        throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is frame {}; --frames {}:{} includes it",
                         part.first, part.last, scene.preset.name, scene.preset.video.poster_s->value(), *poster,
                         std::min(part.first, *poster), std::max(part.last, *poster + 1));
     return part;

@@ -51,7 +51,7 @@ void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene
         throw video.fault("view",
                           "is of the pendulums, but panels does not hold \"pendulums\"; leave [video.view] out");
     if (preset.member_columns && preset.video.layout != Arrangement::ensemble)
-        throw scene.fault("member_columns", "is of the layout \"ensemble\"; it is \"{}\"",
+        throw scene.fault("member_columns", "is for the layout \"ensemble\"; it is \"{}\"",
                           name_of(preset.video.layout));
 }
 
@@ -207,7 +207,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
             if (member.empty() || video.from_command_line("members") || !document.table(top, table).has(list.key) ||
                 given == member)
                 return;
-            throw video.fault("members", "begins with side a and ends with side b; [{}] {} is {}, the member's {}",
+            throw video.fault("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
                               table, list.key, toml_value(given), toml_value(member));
         };
         check_side("a", preset.a.*of_side, first);

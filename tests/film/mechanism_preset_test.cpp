@@ -104,17 +104,17 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
     const std::pair<std::string, std::string> faults[] = {
         // sides have the same particles, in one order
         {two + "[[b.particle]]\nname = \"bob\"\nposition_m = [0, 2]\n[[b.particle]]\nname = \"baed\"",
-         R"(presets/x.toml:14:1: [[b.particle]] 2 name must be that of a particle on both sides; "baed" is on this one only; did you mean "bead"?)"},
+         R"(presets/x.toml:14:1: [[b.particle]] 2 name must name a particle of both sides; "baed" is only on this side; did you mean "bead"?)"},
         {"[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"",
-         R"(presets/x.toml:4:1: [[a.particle]] 2 name must be that of a particle on both sides; "two" is on this one only)"},
+         R"(presets/x.toml:4:1: [[a.particle]] 2 name must name a particle of both sides; "two" is only on this side)"},
         {"[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\nposition_m = [1, 0]\n"
          "[[b.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"\nposition_m = [1, 0]",
          "presets/x.toml:1:5: [a] particle must be in the order of the other side: two, one"},
         // two of one name
         {bead + "[[system.particle]]\nname = \"bead\"\nposition_m = [0, 1]",
-         R"(presets/x.toml:8:1: [[system.particle]] 2 name must differ from those before it; "bead" is there already)"},
+         R"(presets/x.toml:8:1: [[system.particle]] 2 name must be unique; "bead" is used already)"},
         {bead + spring + spring,
-         R"(presets/x.toml:13:1: [[system.force]] 2 name must differ from those before it; "pull" is there already)"},
+         R"(presets/x.toml:13:1: [[system.force]] 2 name must be unique; "pull" is used already)"},
         {"[[system.particle]]\nmass_kg = 1",
          "presets/x.toml: [[system.particle]] 1 name is missing; constraints and forces refer to a particle by it"},
         {bead + "[[system.constraint]]\nkind = \"rope\"",
@@ -125,7 +125,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {rod + "from = \"bead\"\nto = [0, 0]\nstiffness_N_per_m = 2",
          R"(presets/x.toml:11:1: [[system.constraint]] 1 has no "stiffness_N_per_m"; it has from, kind, length_m, name, to)"},
         {rod + "from = \"baed\"\nto = [0, 0]",
-         R"(x: side a: rod names the particle "baed", which is not there; did you mean "bead"?)"},
+         R"(x: side a: rod names the particle "baed", which does not exist; did you mean "bead"?)"},
         {rod + "from = [1, 0]\nto = [0, 0]",
          "x: side a: a rod joins two fixed places; at least one end must be a particle"},
         {"[system]\nlinks = 2\n[[system.particle]]\nname = \"a\"",

@@ -53,7 +53,7 @@ TEST(Shown, StripsNameTheirCurves) {
         EXPECT_NE(std::find(words.begin(), words.end(), word), words.end()) << word;
     EXPECT_NE(error_of([] {
                   scene_of("springs", {"video.panels=[\"rates\"]"});
-              }).second.find("[video] panels \"rates\" is of chains"),
+              }).second.find("[video] panels \"rates\" is for chains"),
               std::string::npos);
 }
 

@@ -55,7 +55,8 @@ TEST(FitTrack, RefusesWhatIsNoTable) {
 
 TEST(FitTrack, RefusesWhatTellsNoModel) {
     auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 1});
-    expect_refused({csv_of(track.pieces[0])}, 2, "the track is too short: 101 samples in 1 s; it needs at least 100 in 1.5 s");
+    expect_refused({csv_of(track.pieces[0])}, 2,
+                   "the track is too short: 101 samples in 1 s; it needs at least 100 in 1.5 s");
     track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 0.1});
     expect_refused({swing(), csv_of(track.pieces[0])}, 2,
                    "b.csv: the piece from 0 s on is too short: 11 samples in 0.1 s");

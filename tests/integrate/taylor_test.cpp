@@ -196,7 +196,7 @@ TEST(Taylor, SaysWhenTheMotionBlowsUp) {
               "no error");
     p.rate = {1e9, -3e9};
     EXPECT_EQ(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, 2>>(p, 1e9, 1e-12); }).substr(0, 17),
-              "taylor: a step of");
+              "taylor: the large");
 }
 
 TEST(Taylor, KeepsTheDigitsOfALightMass) {

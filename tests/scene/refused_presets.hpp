@@ -61,7 +61,7 @@ inline const std::vector<RefusedPreset> refused_system{
                   R"(presets/x.toml:2:1: [system] precision must be "double" or "quad"; it is "half")"},
     RefusedPreset{
         "[system]\nintegrator = \"taylor\"\nstep_s = 0.1",
-        R"(presets/x.toml:3:1: [system] step_s is for methods with a fixed step; "taylor" goes by tolerance)"},
+        R"(presets/x.toml:3:1: [system] step_s is for methods with a fixed step; "taylor" uses tolerance)"},
     RefusedPreset{"[system]\nintegrator = \"dop853\"\ntolerance = 0",
                   "presets/x.toml:3:1: [system] tolerance must be > 0; it is 0"},
     RefusedPreset{
@@ -93,7 +93,7 @@ inline const std::vector<RefusedPreset> refused_system{
         "[system]\nstabilise = \"tape\"",
         R"(presets/x.toml:2:1: [system] stabilise must be "none", "baumgarte" or "projection"; it is "tape")"},
     RefusedPreset{"[system]\ntolerance = 1e-9",
-                  R"(presets/x.toml:2:1: [system] tolerance is for adaptive methods; "euler" goes by step_s)"},
+                  R"(presets/x.toml:2:1: [system] tolerance is for adaptive methods; "euler" uses step_s)"},
     RefusedPreset{
         "[system]\nstep_s = \"fast\"",
         "presets/x.toml:2:1: [system] step_s must be a number or a fraction such as \"1/30000\"; it is \"fast\""},
@@ -181,7 +181,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
         "panels = [\"distnce\"]",
         R"([video] panels may contain "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "distnce" is none of them)"},
     RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
-                  R"([video] panels must hold "pendulums" for the layout "overlay")"},
+                  R"([video] panels must contain "pendulums" for the layout "overlay")"},
     RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must rise; it is [1, 1]"},
     RefusedPreset{"size = [1280, 720]\nlayout = \"portrait\"",
                   R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},

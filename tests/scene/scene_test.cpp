@@ -236,9 +236,9 @@ TEST(Rivals, TheCommandLineDropsWhatThePresetSaysForAnotherKind) {
         return error_of([&] { scene_of("butterfly", arguments); }).second;
     };
     EXPECT_EQ(message({"system.integrator=\"taylor\"", "system.step_s=0.001"}),
-              R"(--set system.step_s: [system] step_s is for methods with a fixed step; "taylor" goes by tolerance)");
+              R"(--set system.step_s: [system] step_s is for methods with a fixed step; "taylor" uses tolerance)");
     EXPECT_EQ(message({"system.tolerance=1e-9"}),
-              R"(--set system.tolerance: [system] tolerance is for adaptive methods; "euler" goes by step_s)");
+              R"(--set system.tolerance: [system] tolerance is for adaptive methods; "euler" uses step_s)");
 }
 
 TEST(Sides, MayDifferInModelMethodAndStep) {

@@ -59,7 +59,10 @@ TEST(Set, IsTheSameAsTheLongForm) {
          {"system.rod_mass_kg[0]=1", "system.mass_kg=[0, 1]"},
          {"system.rod_mass_kg=[1, 0]", "system.mass_kg=[0, 1]"}},
         {"", {"video.size[0]=1280"}, {"video.size=[1280, 1080]"}},
-        {"", {"video.show[0]=clock"}, {"video.show=[\"clock\", \"subtitle\", \"clock\", \"labels\", \"credit\"]"}},
+        {"",
+         {"video.show[0]=clock"},
+         {"video.show=[\"clock\", \"subtitle\", \"clock\", \"labels\", \"credit\", \"rods\", \"bobs\", \"circle\", "
+          "\"twin\"]"}},
         {"[system]\nprecision = \"quad\"\nangle_deg = [0.1234567890123456789012345678, 1]",
          {"system.angle_deg[1]=2"},
          {"system.angle_deg=[0.1234567890123456789012345678, 2]"}},
