@@ -59,9 +59,8 @@ inline const std::vector<RefusedPreset> refused_system{
                   "presets/x.toml:2:1: [system] integrator must be a string; it is a whole number (4)"},
     RefusedPreset{"[system]\nprecision = \"half\"",
                   R"(presets/x.toml:2:1: [system] precision must be "double" or "quad"; it is "half")"},
-    RefusedPreset{
-        "[system]\nintegrator = \"taylor\"\nstep_s = 0.1",
-        R"(presets/x.toml:3:1: [system] step_s is for methods with a fixed step; "taylor" uses tolerance)"},
+    RefusedPreset{"[system]\nintegrator = \"taylor\"\nstep_s = 0.1",
+                  R"(presets/x.toml:3:1: [system] step_s is for methods with a fixed step; "taylor" uses tolerance)"},
     RefusedPreset{"[system]\nintegrator = \"dop853\"\ntolerance = 0",
                   "presets/x.toml:3:1: [system] tolerance must be > 0; it is 0"},
     RefusedPreset{
