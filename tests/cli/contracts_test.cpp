@@ -206,7 +206,7 @@ TEST(Contracts, RunsSayFromWhenOnTheyAreOffAsCheckDoes) {
     const auto brief = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "scene.duration_s=10"});
     EXPECT_EQ(brief.err, "");
     const auto lost = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.accuracy=1e-3"});
-    EXPECT_NE(lost.err.find("side a is the accuracy holds up to 2"), std::string::npos) << lost.err;
+    EXPECT_NE(lost.err.find("side a: the accuracy holds up to 2"), std::string::npos) << lost.err;
 }
 
 }  // namespace contracts_test
