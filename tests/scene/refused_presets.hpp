@@ -115,8 +115,7 @@ inline const std::vector<RefusedPreset> refused_system{
 inline const std::vector<RefusedPreset> refused_rates{
     RefusedPreset{
         "[scene]\nsample_hz = 7",
-        "presets/x.toml:2:1: [scene] sample_hz must divide the step rate, 30000 Hz on side a; it is 7; use 6 or 8"
-        "is possible"},
+        "presets/x.toml:2:1: [scene] sample_hz must divide the step rate, 30000 Hz on side a; it is 7; use 6 or 8"},
     RefusedPreset{"[b]\nstep_s = \"1/100\"",
                   "presets/x.toml: [scene] sample_hz must divide the step rate, 100 Hz on side b; it is 120; use 100"},
     RefusedPreset{"[scene]\nduration_s = 0", "presets/x.toml:2:1: [scene] duration_s must be > 0; it is 0"},
