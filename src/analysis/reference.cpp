@@ -22,8 +22,8 @@ Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& 
     return motion->observe();
 }
 
-/// How many roundings of a number, half an ulp each, some_roundings_away() moves it by: a number has an error of one at most; more
-/// of them leave room for what the steps add.
+/// By how many roundings, half an ulp each, some_roundings_away() moves a number. A number is wrong by one at most; more of
+/// them leave room for the errors of the steps.
 constexpr double roundings_away = 24;
 
 /// Light masses make more of the roundings of steps than of those of the start: 5.5 times that was seen.
@@ -164,7 +164,7 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
     auto wide =
         followed(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, caution * enough, further, stop);
     wide.is_wider = true;
-    // a run in double begins at numbers that were rounded once; that it has an error of less may be chance
+    // a run in double begins at numbers that were rounded once; a smaller error may be chance
     wide.uncertainty.assign(wide.seen.size(), 0);
     for (std::size_t sample = 0; sample < wide.seen.size() && !own.uncertainty.empty(); ++sample)
         wide.uncertainty[sample] =

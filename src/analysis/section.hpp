@@ -22,9 +22,9 @@ struct SectionPoint {
     double time_s;
 };
 
-/// The crossings of the motion that a double pendulum `p` is released into, the release left out, to rounding. All of them: on each step
-/// of taylor, the roots of the polynomial that its series makes of θ1 (numeric/roots.hpp), none beyond the step.
-/// Only where θ1 passes and is back within 1e-15 of a step, a crossing may not be seen.
+/// The crossings of the motion that a double pendulum `p` is released into, the release left out, to rounding. All of
+/// them: on each step of taylor, the roots of the polynomial that its series makes of θ1 (numeric/roots.hpp), none
+/// beyond the step. Only where θ1 passes and is back within 1e-15 of a step, a crossing may not be seen.
 /// Errors  exit 3 where taylor fails, exit 130 soon after `stop` is set.
 std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const SectionSpec& spec,
                                            const std::atomic<bool>& stop);

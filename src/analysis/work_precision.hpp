@@ -19,8 +19,8 @@ struct ExternalMethod {
 /// A motion to compute, and what its errors are measured by.
 struct WorkProblem {
     std::string name, title;  // "P1", "P1 · 90°/90°, 10 s"
-    /// What moves, by the model of its reference: angles or mechanism; one sample interval is the whole duration. The method
-    /// does not matter. A chain of point masses has `parts` as well: every model serves it.
+    /// What moves, by the model of its reference: angles or mechanism; one sample interval is the whole duration. The
+    /// method does not matter. A chain of point masses has `parts` as well: every model serves it.
     MotionSpec motion;
     bool conserves_energy = true;
     double natural_time = 1;  // s
@@ -98,12 +98,12 @@ struct ErrorRange {
     double least, most;
 };
 
-/// Of step-size studies of one problem the settings that no cheaper one beats, cheapest first, until one is at the floor. A setting whose
-/// next finer one errs more than twice as much was lucky and does not count.
+/// Of step-size studies of one problem the settings that no cheaper one beats, cheapest first, until one is at the
+/// floor. A setting whose next finer one errs more than twice as much was lucky and does not count.
 std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, const ErrorRange& range);
 
-/// The step-size study that takes the least for an error of at most `error`: by the cheapest setting that does so, and whose next finer
-/// one does, too, for now and then a coarse one is lucky.
+/// The step-size study that takes the least for an error of at most `error`: by the cheapest setting that does so, and
+/// whose next finer one does, too, for now and then a coarse one is lucky.
 struct Cheapest {
     const StepStudy* ladder = nullptr;  // none does; of equals the first
     double cost = std::numeric_limits<double>::infinity();
@@ -116,7 +116,8 @@ Cheapest cheapest(std::span<const StepStudy> ladders, Cost cost, double error,
 std::vector<const StepStudy*> best_models(std::span<const StepStudy> ladders, Cost cost);
 
 /// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems, whose
-/// step-size studies these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the first.
+/// step-size studies these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the
+/// first.
 std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems, Cost cost,
                                 std::span<const double> errors, bool external);
 

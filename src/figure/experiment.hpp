@@ -104,8 +104,8 @@ struct MapCells {
     std::size_t panels, numbers;
 };
 
-/// What a figure computes and shows: independent trials, and the table, picture and findings of their numbers. They may be computed in any
-/// order, by any thread, in several runs on several machines; the numbers are the same to the bit.
+/// What a figure computes and shows: independent trials, and the table, picture and findings of their numbers. They may
+/// be computed in any order, by any thread, in several runs on several machines; the numbers are the same to the bit.
 class Experiment {
 public:
     virtual ~Experiment() = default;

@@ -99,12 +99,12 @@ struct QuantityOptions {
 /// Pair i of some, until the next is asked for.
 using PairAt = std::function<const Preset&(std::size_t i)>;
 
-/// Finds one quantity of pairs. Where all can be integrated side by side, in lanes: the mean, distances and energies of chains
-/// of two or three links in double by Euler or RK4; flips of two links by Taylor series whatever the integrator. The rest one
-/// by one.
+/// Finds one quantity of pairs. Where all can be integrated side by side, in lanes: the mean, distances and energies of
+/// chains of two or three links in double by Euler or RK4; flips of two links by Taylor series whatever the integrator.
+/// The rest one by one.
 ///
-/// The numbers of a pair: the quantity; of an exponent its uncertainty too; of a stroboscope angle and rate, row by row. NaN where the motion failed, or the two
-/// never part; infinite where there is no flip.
+/// The numbers of a pair: the quantity; of an exponent its uncertainty too; of a stroboscope angle and rate, row by
+/// row. NaN where the motion failed, or the two never diverge; infinite where there is no flip.
 class Measurement {
 public:
     /// Of pairs like `pair`; `alike` = they have one method and as many links. Throws Error (exit 2), of the table's

@@ -16,7 +16,8 @@ std::vector<std::string> columns_of(const Scene& scene);
 /// where there is no such column.
 std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::string>& chosen);
 
-/// The table of a pair, or of a single pendulum, a row a sample; the same columns for every model. Throws Error (exit 4), as Csv does.
+/// The table of a pair, or of a single pendulum, a row a sample; the same columns for every model. Throws Error (exit
+/// 4), as Csv does.
 class PairTable {
 public:
     /// `chosen` as in columns_of().

@@ -53,9 +53,10 @@ struct Progress {
 using Report = std::function<void(const Progress&)>;
 
 /// The motion of a scene up to a moment: its samples, and with pictures the frames between them and the members of an
-/// ensemble (these also where the table has them). Where a picture depends on the whole motion (depends_on_motion()), or is drawn after the others (the contact
-/// sheet), it is simulated at once and kept, some 0.7 kB a sample of a double pendulum, 29 kB of 256 links; where that
-/// would take more than `most_bytes`, and for all other runs, it is simulated as it is played.
+/// ensemble (these also where the table has them). Where a picture depends on the whole motion (depends_on_motion()),
+/// or is drawn after the others (the contact sheet), it is simulated at once and kept, some 0.7 kB a sample of a double
+/// pendulum, 29 kB of 256 links; where that would take more than `most_bytes`, and for all other runs, it is simulated
+/// as it is played.
 class Recording {
 public:
     static constexpr double usual_bytes = 256e6;

@@ -50,8 +50,9 @@ bool has_its_checksum(std::FILE* file, const unsigned char (&start)[8]) {
     return std::fread(block.data(), 1, 4, file) == 4 && big_endian(block.data()) == sum;
 }
 
-/// Why the sizes in the file are impossible, or which part of it is damaged; "" where they are not. stb_image allocates by the length of a chunk and by
-/// the size in the header before it reads on, so a file of a hundred bytes could take gigabytes.
+/// Why the sizes in the file are impossible, or which part of it is damaged; "" where they are not. stb_image allocates
+/// by the length of a chunk and by the size in the header before it reads on, so a file of a hundred bytes could take
+/// gigabytes.
 /// Source  Portable Network Graphics (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE makes at most 1032 bytes of one.
 std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk

@@ -9,12 +9,12 @@ namespace doppel {
 ///
 ///     at a joint       −b ω − c sign ω                  torque on its link, the opposite on the link above
 ///     on a link        −k1 ω − k2 |ω| ω                 torque, by the link's own rate
-///     of the relative velocity of the air   −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p and, m a / J times it along t, force
+///     by the air       −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p and, m a / J times it along t, force
 ///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
 ///
-/// The third of them acts where the normal velocity of the air acts: at the centre of oscillation of a link, J / (m a) from the joint,
-/// with the speed u J / (m a), t across the link and J its inertia about the joint. The second term is Coulomb friction: it
-/// holds a joint at rest as long as a torque of at most c does.
+/// The third one acts at the centre of oscillation of a link, J / (m a) from the joint, by its normal velocity u J / (m a).
+/// t is across the link, J its inertia about the joint. The second term at a joint is Coulomb friction: it holds a joint at
+/// rest as long as a torque of at most c does.
 template <class Scalar>
 struct Friction {
     std::vector<Scalar> viscous;         // b, N m s

@@ -45,8 +45,8 @@ struct TickLabels {
 /// Ticks of a chart, ascending, with distinct labels at least `gap` apart: multiples of `every` (or of twice, four
 /// times … as much) where it is given and two of them fit, else 1, 2 or 5 times a power of ten. On a logarithmic axis
 /// whole decades (and ticks without labels within), over less than two decades also their double and fivefold, or their
-/// threefold; where `every` is given, every so many decades have a label. Never more digits than the step has; "1.5 × 10⁻⁷" below 0.0001
-/// and from a million on; a true minus sign. None where a double cannot tell neighbours apart.
+/// threefold; where `every` is given, every so many decades have a label. Never more digits than the step has; "1.5 ×
+/// 10⁻⁷" below 0.0001 and from a million on; a true minus sign. None where a double cannot tell neighbours apart.
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every = {});
 
 /// The same with the spacing that figures and films have: labels of `em` px below a chart (`across`) or beside it.

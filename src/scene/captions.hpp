@@ -12,7 +12,7 @@ std::string chain_words(std::size_t links, std::string_view plural = "");
 /// What a chain has besides point masses: "links with mass, friction"; empty where it has nothing.
 std::string physical_words(const PhysicalSpec& physical);
 
-/// What a picture says about one side: `heading`, what differs from the other side from the other; `note`, the start it has besides;
+/// What a picture says about one side: `heading`, what differs from the other side; `note`, its start;
 /// or what the preset says in their place.
 struct SideCaptions {
     std::string heading, note;
@@ -23,7 +23,8 @@ enum class Wording { exact, plain };
 
 std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording = Wording::exact);
 
-/// The preset's subtitle, or what both sides have in common: "two double pendulums, released at rest · angles, explicit Euler, 1/30 000 s".
+/// The preset's subtitle, or what both sides have in common: "two double pendulums, released at rest · angles, explicit
+/// Euler, 1/30 000 s".
 std::string scene_caption(const Scene& scene, Wording wording = Wording::exact);
 
 /// How finely a side is stepped: "1/30 000 s", "tolerance 1e-12".

@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-constexpr double off = 0.5;  // rad: a run that has an error of as much tells nothing
+constexpr double off = 0.5;  // rad: a run with this error is useless
 
 /// How far some runs get: the sample at which each is off, and the greatest and least error of those that are not.
 struct Ends {
