@@ -13,8 +13,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdio>
-#include <exception>
+#include <vector>
 
 namespace {
 
@@ -30,7 +33,7 @@ MotionSpec release(const Quad& angle) {
     spec.chain = Pendulum<Quad>{.angle = {angle * degree, 90 * degree}};
     spec.method = "taylor";
     spec.tolerance = Quad(1) / Quad(1'000'000'000'000);
-    spec.sample_interval = Rational(1, 120);  // s
+    spec.sample_interval = Rational{1, 120};  // s
     return spec;
 }
 
