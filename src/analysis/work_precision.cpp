@@ -164,9 +164,9 @@ std::vector<StepResult> run_step_study(const WorkProblem& problem, const Referen
 }
 
 StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>>& repeats) {
-    StepStudy ladder{solver, repeats.front()};
-    for (std::size_t i = 0; i < ladder.outcomes.size(); ++i) {
-        auto& outcome = ladder.outcomes[i];
+    StepStudy study{solver, repeats.front()};
+    for (std::size_t i = 0; i < study.outcomes.size(); ++i) {
+        auto& outcome = study.outcomes[i];
         std::vector<double> times;
         for (const auto& outcomes : repeats)
             if (i < outcomes.size() && std::isfinite(outcomes[i].cpu_s)) times.push_back(outcomes[i].cpu_s);
@@ -175,12 +175,12 @@ StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>
         outcome.cpu_s = quantile(times, 0.5);
         outcome.spread = (quantile(times, 0.75) - quantile(times, 0.25)) / 2 / outcome.cpu_s;
     }
-    return ladder;
+    return study;
 }
 
-std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, const ErrorRange& range) {
+std::vector<StepResult> front_of(std::span<const StepStudy> studies, Cost cost, const ErrorRange& range) {
     std::vector<StepResult> points;
-    for (const auto& [solver, outcomes] : ladders)
+    for (const auto& [solver, outcomes] : studies)
         for (std::size_t i = 0; i < outcomes.size(); ++i) {
             const double error = outcomes[i].error;
             const bool is_lucky =
@@ -198,59 +198,59 @@ std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, 
     return front;
 }
 
-Cheapest cheapest(std::span<const StepStudy> ladders, Cost cost, double error,
+Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error,
                   const std::function<bool(const Solver&)>& counts) {
     Cheapest best;
-    for (const auto& ladder : ladders) {
-        const auto& outcomes = ladder.outcomes;
-        if (!counts(ladder.solver)) continue;
+    for (const auto& study : studies) {
+        const auto& outcomes = study.outcomes;
+        if (!counts(study.solver)) continue;
         for (std::size_t i = 0; i < outcomes.size(); ++i) {
             const bool holds =
                 outcomes[i].error <= error && (i + 1 == outcomes.size() || outcomes[i + 1].error <= error);
             const double value = outcomes[i].cost(cost);
-            if (holds && value > 0 && value < best.cost) best = {&ladder, value};
+            if (holds && value > 0 && value < best.cost) best = {&study, value};
         }
     }
     return best;
 }
 
-std::vector<const StepStudy*> best_models(std::span<const StepStudy> ladders, Cost cost) {
-    const auto wins = [&](const StepStudy& ladder) {
+std::vector<const StepStudy*> best_models(std::span<const StepStudy> studies, Cost cost) {
+    const auto wins = [&](const StepStudy& study) {
         constexpr int decades = 13;
-        const auto same_method = [&](const Solver& solver) { return solver.name() == ladder.solver.name(); };
+        const auto same_method = [&](const Solver& solver) { return solver.name() == study.solver.name(); };
         int count = 0;
         for (int decade = 1; decade <= decades; ++decade) {
             const double error = std::pow(10.0, -decade);
-            const auto own = cheapest({&ladder, 1}, cost, error, same_method);
-            count += own.ladder && own.cost == cheapest(ladders, cost, error, same_method).cost;
+            const auto own = cheapest({&study, 1}, cost, error, same_method);
+            count += own.study && own.cost == cheapest(studies, cost, error, same_method).cost;
         }
         return count;
     };
     std::vector<const StepStudy*> best;
-    for (const auto& ladder : ladders)
-        if (std::none_of(ladders.begin(), ladders.end(), [&](const StepStudy& other) {
-                return other.solver.name() == ladder.solver.name() &&
-                       std::pair(wins(other), &ladder) > std::pair(wins(ladder), &other);
+    for (const auto& study : studies)
+        if (std::none_of(studies.begin(), studies.end(), [&](const StepStudy& other) {
+                return other.solver.name() == study.solver.name() &&
+                       std::pair(wins(other), &study) > std::pair(wins(study), &other);
             }))
-            best.push_back(&ladder);
+            best.push_back(&study);
     return best;
 }
 
 std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems, Cost cost,
                                 std::span<const double> errors, bool external) {
     std::vector<std::string> names;
-    for (const auto& ladders : problems)
-        for (const auto& [solver, outcomes] : ladders)
+    for (const auto& studies : problems)
+        for (const auto& [solver, outcomes] : studies)
             if ((solver.external != nullptr) == external &&
                 std::find(names.begin(), names.end(), solver.name()) == names.end())
                 names.push_back(solver.name());
     std::map<std::string, long> ranks;
-    for (const auto& ladders : problems)
+    for (const auto& studies : problems)
         for (const double error : errors) {
             std::vector<double> costs;
             for (const auto& name : names)
                 costs.push_back(
-                    cheapest(ladders, cost, error, [&](const Solver& solver) { return solver.name() == name; }).cost);
+                    cheapest(studies, cost, error, [&](const Solver& solver) { return solver.name() == name; }).cost);
             for (std::size_t i = 0; i < names.size(); ++i)
                 ranks[names[i]] +=
                     std::count_if(costs.begin(), costs.end(), [&](double other) { return other < costs[i]; });
@@ -261,9 +261,9 @@ std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems
 
 std::pair<double, double> time_spread(std::span<const std::vector<StepStudy>> problems) {
     std::vector<double> spreads;
-    for (const auto& ladders : problems)
-        for (const auto& ladder : ladders)
-            for (const auto& point : front_of({&ladder, 1}, Cost::time, {0, 1})) spreads.push_back(point.spread);
+    for (const auto& studies : problems)
+        for (const auto& study : studies)
+            for (const auto& point : front_of({&study, 1}, Cost::time, {0, 1})) spreads.push_back(point.spread);
     if (spreads.empty()) return {NAN, NAN};
     std::sort(spreads.begin(), spreads.end());
     return {spreads[spreads.size() / 2], spreads.back()};

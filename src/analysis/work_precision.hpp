@@ -100,20 +100,20 @@ struct ErrorRange {
 
 /// Of step-size studies of one problem the settings that no cheaper one beats, cheapest first, until one is at the
 /// floor. A setting whose next finer one errs more than twice as much was lucky and does not count.
-std::vector<StepResult> front_of(std::span<const StepStudy> ladders, Cost cost, const ErrorRange& range);
+std::vector<StepResult> front_of(std::span<const StepStudy> studies, Cost cost, const ErrorRange& range);
 
 /// The step-size study that takes the least for an error of at most `error`: by the cheapest setting that does so, and
 /// whose next finer one does, too, for now and then a coarse one is lucky.
 struct Cheapest {
-    const StepStudy* ladder = nullptr;  // none does; of equals the first
+    const StepStudy* study = nullptr;  // none does; of equals the first
     double cost = std::numeric_limits<double>::infinity();
 };
 /// Of step-size studies of one problem, by the solvers that count.
-Cheapest cheapest(std::span<const StepStudy> ladders, Cost cost, double error,
+Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error,
                   const std::function<bool(const Solver&)>& counts);
 
 /// Of each method on a problem the model that is the cheapest at most powers of ten of the error; of equals the first.
-std::vector<const StepStudy*> best_models(std::span<const StepStudy> ladders, Cost cost);
+std::vector<const StepStudy*> best_models(std::span<const StepStudy> studies, Cost cost);
 
 /// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems, whose
 /// step-size studies these are, at all `errors`. One that does not come so far ranks behind all that do; of equals the

@@ -41,7 +41,7 @@ std::string counted(double number) {
     return number < most ? grouped(std::llround(number)) : scientific(number);
 }
 
-void print_side(const char* name, const Side& side) {
+void print_side(char name, const Side& side) {
     if (side.replay) return print_line("  {}      {}", name, side.why);
     const auto steps = side.method.adaptive ? std::string("its own steps")
                                             : fmt::format("{} steps a sample", grouped(side.motion.steps_per_sample));
@@ -137,13 +137,13 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
         check.why_not = fault.what();
     }
     constexpr double patience = 2;  // s, for runs that only inform
-    for (const auto which : {&Scene::a, &Scene::b}) {
-        const auto& side = scene.*which;
-        auto& [forecast, rivals] = check.sides[which == &Scene::a ? 0 : 1];
-        if (side.replay || (scene.is_single() && which == &Scene::b)) continue;
+    for (const char letter : scene.letters()) {
+        const auto& side = scene.side(letter);
+        auto& [forecast, rivals] = check.sides[letter == 'a' ? 0 : 1];
+        if (side.replay) continue;
         if (!check.simulation.at_least && check.simulation.seconds < patience)
             forecast = forecast_of(scene, side, stop);
-        if (side.choice) rivals = rivals_of(scene, which, stop);
+        if (side.choice) rivals = rivals_of(scene, letter == 'a' ? &Scene::a : &Scene::b, stop);
     }
     return check;
 }
@@ -153,12 +153,12 @@ void print(const SceneCheck& check) {
     const auto& estimate = check.simulation;
     const auto& video = scene.preset.video;
     print_line("{}: {}", scene.preset.name, scene.preset.title);
-    for (const auto& [name, side, of_side] :
-         {std::tuple("a", &scene.a, &check.sides[0]), {"b", &scene.b, &check.sides[1]}}) {
-        if (scene.is_single() && side == &scene.b) continue;
-        print_side(name, *side);
-        if (of_side->forecast) print_forecast(scene, *side, *of_side->forecast);
-        for (const auto& rival : of_side->rivals) print_line("         {}", rival);
+    for (const char letter : scene.letters()) {
+        const auto& side = scene.side(letter);
+        const auto& [forecast, rivals] = check.sides[letter == 'a' ? 0 : 1];
+        print_side(letter, side);
+        if (forecast) print_forecast(scene, side, *forecast);
+        for (const auto& rival : rivals) print_line("         {}", rival);
     }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),
@@ -227,8 +227,8 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     const auto& video = scene.preset.video;
     const bool is_exact = !scene.a.method.adaptive && !scene.b.method.adaptive;
     auto json = heading_json(preset, scene.preset.title);
-    for (std::size_t which = 0; which < (scene.is_single() ? 1 : 2); ++which)
-        json[which == 0 ? "a" : "b"] = side_json(check, which, warnings);
+    for (const char letter : scene.letters())
+        json[std::string(1, letter)] = side_json(check, letter == 'a' ? 0 : 1, warnings);
     json["duration_s"] = scene.preset.duration_s.value();
     json["sample_hz"] = scene.preset.sample_hz.value();
     json["samples"] = scene.samples + 1;

@@ -25,14 +25,14 @@ std::vector<Curve> shaken_edges(Overlay overlay, const PhysicalPendulum<double>&
         curves.push_back(std::move(curve));
     };
     if (overlay == Overlay::kapitza) {
-        add("Kapitza: held upright above", 1e-3, 2, [](double q) { return -q * q / 2; });
+        add("Kapitza: stable above", 1e-3, 2, [](double q) { return -q * q / 2; });
         return curves;
     }
-    add("a₀ of Mathieu: held upright above", 1e-3, 1.2, [](double q) {
+    add("a₀ of Mathieu: stable above", 1e-3, 1.2, [](double q) {
         const double s = q * q;
         return s * (-1.0 / 2 + s * (7.0 / 128 + s * (-29.0 / 2304 + s * 68687 / 18874368)));
     });
-    add("b₁ of Mathieu: shaken over above", 0.9, 1.2,
+    add("b₁ of Mathieu: unstable above", 0.9, 1.2,
         [](double q) { return 1 - q * (1 + q * (1.0 / 8 - q * (1.0 / 64 - q * (1.0 / 1536 + q * (11.0 / 36864))))); });
     return curves;
 }

@@ -109,7 +109,7 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        const auto problems = merged_ladders(numbers);
+        const auto problems = merged_studies(numbers);
         for (std::size_t p = 0; p < problems.size(); ++p)
             for (const auto& [solver, outcomes] : problems[p])
                 for (const auto& outcome : outcomes) {
@@ -128,12 +128,12 @@ public:
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         bool any = false;
-        for (const auto& ladders : merged_ladders(numbers))
-            for (const auto& ladder : ladders) {
-                if (!front_of({&ladder, 1}, cost_, {0, most_error_shown}).empty()) return std::nullopt;
-                for (const auto& outcome : ladder.outcomes) {
+        for (const auto& studies : merged_studies(numbers))
+            for (const auto& study : studies) {
+                if (!front_of({&study, 1}, cost_, {0, most_error_shown}).empty()) return std::nullopt;
+                for (const auto& outcome : study.outcomes) {
                     any |= std::isfinite(outcome.error);
-                    if (ladder.solver.is_study() && outcome.is_study() && !outcome.failed()) return std::nullopt;
+                    if (study.solver.is_study() && outcome.is_study() && !outcome.failed()) return std::nullopt;
                 }
             }
         if (!any) return "every run of every method failed; raise work_precision.most_evaluations for finer settings";
@@ -144,38 +144,38 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        const auto ladders = merged_ladders(numbers);
-        const auto named = names_in_colour(ladders);
+        const auto studies = merged_studies(numbers);
+        const auto named = names_in_colour(studies);
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             figure.panels.push_back(work_plot({problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
-                                               ladders[p], cost_, named, has_libraries(), names_}));
-        figure.captions.push_back(color_words(ladders));
+                                               studies[p], cost_, named, has_libraries(), names_}));
+        figure.captions.push_back(color_words(studies));
         figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
-        if (cost_ == Cost::time) figure.captions.push_back(spread_words(ladders));
+        if (cost_ == Cost::time) figure.captions.push_back(spread_words(studies));
     }
 
     std::string subtitle() const override { return problems_.subtitle; }
 
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
-        const auto ladders = merged_ladders(numbers);
+        const auto studies = merged_studies(numbers);
         for (std::size_t p = 0; p < problems_.all.size(); ++p) {
             const auto& name = problems_.all[p].name;
             const auto problem = row_of<ProblemRow>(numbers[p]);
             all.push_back({name + "_sensitivity", problem.sensitivity});
             all.push_back({name + "_reference_disagreement", problem.disagreement});
-            for (const double accuracy : accuracies) add_findings(ladders[p], name, accuracy, all);
+            for (const double accuracy : accuracies) add_findings(studies[p], name, accuracy, all);
         }
         if (cost_ == Cost::evaluations) return all;
-        const auto [typical, worst] = time_spread(ladders);
+        const auto [typical, worst] = time_spread(studies);
         all.push_back({"spread_typical", typical});
         all.push_back({"spread_worst", worst});
         return all;
     }
 
 private:
-    using Ladders = std::vector<std::vector<StepStudy>>;  // of each problem
+    using Studies = std::vector<std::vector<StepStudy>>;  // of each problem
 
     std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_libraries() const {
@@ -221,8 +221,8 @@ private:
     }
 
     /// Of each problem, those of other libraries last.
-    Ladders merged_ladders(std::span<const TrialNumbers> numbers) const {
-        Ladders all(problems_.all.size());
+    Studies merged_studies(std::span<const TrialNumbers> numbers) const {
+        Studies all(problems_.all.size());
         for (std::size_t i = 0; i < ladders_.size(); ++i) {
             std::vector<std::vector<StepResult>> repeats;
             for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += ladders_.size())
@@ -232,37 +232,37 @@ private:
         return all;
     }
 
-    void add_findings(const std::vector<StepStudy>& ladders, const std::string& problem, double accuracy,
+    void add_findings(const std::vector<StepStudy>& studies, const std::string& problem, double accuracy,
                       std::vector<Finding>& all) const {
         const auto key = fmt::format("{}_1e{}_", problem, std::lround(std::log10(accuracy)));
-        const auto best = cheapest(ladders, cost_, accuracy, [](const Solver& solver) { return !solver.external; });
-        const auto external = cheapest(ladders, cost_, accuracy, [](const Solver& solver) { return solver.external; });
-        if (best.ladder) {
-            const auto& solver = best.ladder->solver;
+        const auto best = cheapest(studies, cost_, accuracy, [](const Solver& solver) { return !solver.external; });
+        const auto external = cheapest(studies, cost_, accuracy, [](const Solver& solver) { return solver.external; });
+        if (best.study) {
+            const auto& solver = best.study->solver;
             all.push_back({key + "best", fmt::format("{}, {}", solver.method, name_of(solver.model))});
             all.push_back({key + "cost", best.cost});
         }
-        if (!external.ladder) return;
-        all.push_back({key + "best_peer", external.ladder->solver.external->name});
+        if (!external.study) return;
+        all.push_back({key + "best_peer", external.study->solver.external->name});
         all.push_back({key + "peer_cost", external.cost});
-        if (best.ladder) all.push_back({key + "peer_ratio", external.cost / best.cost});
+        if (best.study) all.push_back({key + "peer_ratio", external.cost / best.cost});
     }
 
     /// The five best; of other libraries with Doppel's best before them.
-    std::vector<std::string> names_in_colour(const Ladders& ladders) const {
-        auto names = ranked(ladders, cost_, accuracies, false);
+    std::vector<std::string> names_in_colour(const Studies& studies) const {
+        auto names = ranked(studies, cost_, accuracies, false);
         if (!has_libraries()) {
             names.resize(std::min(names.size(), best_shown));
             return names;
         }
         names.resize(1);
-        const auto others = ranked(ladders, cost_, accuracies, true);
+        const auto others = ranked(studies, cost_, accuracies, true);
         names.insert(names.end(), others.begin(), others.begin() + std::min(others.size(), best_shown));
         return names;
     }
 
-    std::string color_words(const Ladders& ladders) const {
-        const bool all = ranked(ladders, cost_, accuracies, has_libraries()).size() <= best_shown;
+    std::string color_words(const Studies& studies) const {
+        const bool all = ranked(studies, cost_, accuracies, has_libraries()).size() <= best_shown;
         const auto rank = fmt::format("by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}", has_angles() ? " rad" : "");
         if (has_libraries())
             return fmt::format(
@@ -281,8 +281,8 @@ private:
                            floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 
-    std::string spread_words(const Ladders& ladders) const {
-        const auto [typical, worst] = time_spread(ladders);
+    std::string spread_words(const Studies& studies) const {
+        const auto [typical, worst] = time_spread(studies);
         return fmt::format(
             "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
             "± {:.0f} %, shown as bars.",

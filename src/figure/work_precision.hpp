@@ -30,7 +30,7 @@ inline constexpr double most_error_shown = 1;  // rad, or of the size
 struct WorkDiagram {
     const WorkProblem& problem;
     double floor;                           // that the problem's sensitivity sets in double; NaN where it is not known
-    const std::vector<StepStudy>& ladders;  // those of other libraries last
+    const std::vector<StepStudy>& studies;  // those of other libraries last
     Cost cost;
     const std::vector<std::string>& named;  // what is in colour, the best first: Solver::name()
     bool of_libraries;                      // what is faint is theirs, else Doppel's

@@ -46,9 +46,9 @@ double shown(double error) {
 }
 
 /// In colour with its name, or faint.
-Curve curve_of(const StepStudy& ladder, const WorkDiagram& diagram) {
-    const auto& [model, method, external] = ladder.solver;
-    const auto rank = std::find(diagram.named.begin(), diagram.named.end(), ladder.solver.name());
+Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
+    const auto& [model, method, external] = study.solver;
+    const auto rank = std::find(diagram.named.begin(), diagram.named.end(), study.solver.name());
     const bool named = rank != diagram.named.end();
     Curve curve;
     if (!named) {
@@ -66,16 +66,16 @@ Curve curve_of(const StepStudy& ladder, const WorkDiagram& diagram) {
         curve.hue = look.hue;
         curve.dashed = look.dashed;
     }
-    for (const auto& point : front_of({&ladder, 1}, diagram.cost, range_of(diagram)))
+    for (const auto& point : front_of({&study, 1}, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
 }
 
 /// The spread of times of a curve of the hierarchy, as pale bars.
-Curve spread_bars(const StepStudy& ladder, const WorkDiagram& diagram, int hue) {
+Curve spread_bars(const StepStudy& study, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
     constexpr double shows = 0.05, most = 0.9;
-    for (const auto& point : front_of({&ladder, 1}, Cost::time, range_of(diagram))) {
+    for (const auto& point : front_of({&study, 1}, Cost::time, range_of(diagram))) {
         const double spread = std::min(point.spread, most);
         if (spread < shows) continue;
         add_point(bars, point.cpu_s * (1 - spread), shown(point.error));
@@ -87,18 +87,18 @@ Curve spread_bars(const StepStudy& ladder, const WorkDiagram& diagram, int hue) 
 
 Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.background = Background::band};
-    const auto own = std::find_if(diagram.ladders.begin(), diagram.ladders.end(),
-                                  [](const StepStudy& ladder) { return ladder.solver.external != nullptr; });
-    for (const auto& point : front_of({diagram.ladders.begin(), own}, diagram.cost, range_of(diagram)))
+    const auto own = std::find_if(diagram.studies.begin(), diagram.studies.end(),
+                                  [](const StepStudy& study) { return study.solver.external != nullptr; });
+    for (const auto& point : front_of({diagram.studies.begin(), own}, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
 }
 
 /// The point of the published study.
 void add_study(const WorkDiagram& diagram, Plot& plot) {
-    for (const auto& ladder : diagram.ladders) {
-        if (!ladder.solver.is_study()) continue;
-        for (const auto& outcome : ladder.outcomes)
+    for (const auto& study : diagram.studies) {
+        if (!study.solver.is_study()) continue;
+        for (const auto& outcome : study.outcomes)
             if (outcome.is_study())
                 plot.curves.push_back({.label = "the study: Euler, 30 kHz",
                                        .x = {outcome.cost(diagram.cost)},
@@ -145,13 +145,13 @@ Plot work_plot(const WorkDiagram& diagram) {
     plot.curves.push_back(front_curve(diagram));
     if (!diagram.of_libraries) add_study(diagram, plot);
     for (const bool named : {false, true})
-        for (const auto* ladder : best_models(diagram.ladders, diagram.cost)) {
-            const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), ladder->solver.name()) > 0;
-            const bool is_subject = (ladder->solver.external != nullptr) == diagram.of_libraries;
+        for (const auto* study : best_models(diagram.studies, diagram.cost)) {
+            const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), study->solver.name()) > 0;
+            const bool is_subject = (study->solver.external != nullptr) == diagram.of_libraries;
             if (is_named != named || !(named || is_subject)) continue;
-            plot.curves.push_back(curve_of(*ladder, diagram));
+            plot.curves.push_back(curve_of(*study, diagram));
             if (named && diagram.cost == Cost::time)
-                plot.curves.push_back(spread_bars(*ladder, diagram, plot.curves.back().hue));
+                plot.curves.push_back(spread_bars(*study, diagram, plot.curves.back().hue));
         }
     fit(diagram, plot);
     return plot;

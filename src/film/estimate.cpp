@@ -120,12 +120,14 @@ FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
 }  // namespace
 
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
-    const auto estimated = [&](Side Scene::*side, char name) {
-        const bool is_none = (scene.*side).replay || (scene.is_single() && name == 'b');
-        return is_none ? SimulationEstimate{} : estimated_side(scene, scene.*side, name, stop);
-    };
-    const auto a = estimated(&Scene::a, 'a'), b = estimated(&Scene::b, 'b');
-    return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};
+    SimulationEstimate all;
+    for (const char letter : scene.letters()) {
+        const auto& side = scene.side(letter);
+        if (side.replay) continue;
+        const auto one = estimated_side(scene, side, letter, stop);
+        all = {all.seconds + one.seconds, all.steps + one.steps, all.at_least || one.at_least};
+    }
+    return all;
 }
 
 double estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {

@@ -81,6 +81,17 @@ public:
     virtual void frame(DisplayList& list) const = 0;
 
 protected:
+    /// How the axes of its chart look.
+    AxisLook axis_look() const {
+        return {.edge = AxisLook::Edge::bottom,
+                .em = px(style_.font.axis),
+                .line = px(style_.width.grid),
+                .grid = theme_.grid,
+                .frame = theme_.frame,
+                .text = theme_.quiet_text,
+                .unit = {}};
+    }
+
     const FilmState& state_;
     const Layout& layout_ = state_.layout;
     const Style& style_ = layout_.style;

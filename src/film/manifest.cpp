@@ -84,21 +84,19 @@ Json fonts_json(const Preset& preset) {
 
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
     constexpr double most = 0.01, least_patience_s = 1, most_patience_s = 2;
-    for (const auto& [name, side, seen] :
-         {std::tuple('a', &scene.a, &record.motion.a), {'b', &scene.b, &record.motion.b}}) {
-        const double error = seen->energy_change / scene.energy_range();
-        if (side->has_energy_error && error > most && !(scene.is_single() && name == 'b'))
+    for (const char name : scene.letters()) {
+        const auto& side = scene.side(name);
+        const double error = (name == 'a' ? record.motion.a : record.motion.b).energy_change / scene.energy_range();
+        if (side.has_energy_error && error > most)
             record.warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse for {:g} s; use accuracy "
                 "= 1e-3",
-                name, 100 * error, side->method.title, step_control_text(*side), scene.time(record.last_sample)));
+                name, 100 * error, side.method.title, step_control_text(side), scene.time(record.last_sample)));
     }
     try {
         const TimeLimit limit(std::clamp(record.wall_s, least_patience_s, most_patience_s), stop);
-        for (const auto& [name, side] : {std::pair('a', &scene.a), {'b', &scene.b}})
-            if (scene.is_single() && name == 'b')
-                break;
-            else if (const auto words = early_error(scene, *side, record.last_sample, limit.reached()))
+        for (const char name : scene.letters())
+            if (const auto words = early_error(scene, scene.side(name), record.last_sample, limit.reached()))
                 record.warnings.push_back(fmt::format("side {}: {}", name, *words));
     } catch (const std::exception&) {
         throw_if_set(stop);  // else it is not known: it takes too long, or there is no thread to watch the time

@@ -14,12 +14,6 @@ namespace doppel {
 
 namespace {
 
-/// The sides that a scene has, with their letters.
-std::vector<std::pair<char, const Side*>> sides_of(const Scene& scene) {
-    if (scene.is_single()) return {{'a', &scene.a}};
-    return {{'a', &scene.a}, {'b', &scene.b}};
-}
-
 /// Of the masses of a side, or of a member of an ensemble. Angles and rates only where they hang in a chain.
 void add_columns(const std::string& prefix, const Side& side, std::vector<std::string>& names) {
     const auto add = [&](const std::string& name) { names.push_back(prefix + name); };
@@ -36,19 +30,20 @@ void add_columns(const std::string& prefix, const Side& side, std::vector<std::s
 
 std::vector<std::string> columns_of(const Scene& scene) {
     std::vector<std::string> names{"sample", "time_s"};
-    for (const auto& [letter, side] : sides_of(scene)) {
-        add_columns(fmt::format("{}_", letter), *side, names);
+    for (const char letter : scene.letters()) {
+        add_columns(fmt::format("{}_", letter), scene.side(letter), names);
         for (const char* name : {"energy_J", "energy_error", "length_error_m"})
             names.push_back(fmt::format("{}_{}", letter, name));
     }
     if (!scene.is_single()) names.insert(names.end(), {"distance", "log_ratio"});
-    for (const auto& [letter, side] : sides_of(scene)) {
+    for (const char letter : scene.letters()) {
         if (!scene.preset.energy_columns) break;
         for (const char* name : {"kinetic", "potential"}) names.push_back(fmt::format("{}_{}_J", letter, name));
     }
-    for (const auto& [letter, side] : sides_of(scene)) {
-        if (side->has_work) names.push_back(fmt::format("{}_work_J", letter));
-        if (side->pivot_reach > 0)
+    for (const char letter : scene.letters()) {
+        const auto& side = scene.side(letter);
+        if (side.has_work) names.push_back(fmt::format("{}_work_J", letter));
+        if (side.pivot_reach > 0)
             for (const char axis : {'x', 'y'}) names.push_back(fmt::format("{}_pivot_{}_m", letter, axis));
     }
     for (std::size_t k = 0; scene.preset.member_columns && k < scene.members.size(); ++k)
@@ -77,24 +72,24 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
 
 void PairTable::add(const Snapshot& snapshot, double start_distance) {
     const auto& state = snapshot.pair;
-    const auto sides = sides_of(scene_);
     const auto seen = [&](char letter) -> const Observation& { return letter == 'a' ? state.a : state.b; };
     csv_.add(state.sample);
     csv_.add(scene_.time(state.sample));
-    for (const auto& [letter, side] : sides)
-        add_side(*side, seen(letter), letter == 'a' ? state.energy_error_a : state.energy_error_b);
+    for (const char letter : scene_.letters())
+        add_side(scene_.side(letter), seen(letter), letter == 'a' ? state.energy_error_a : state.energy_error_b);
     if (!scene_.is_single()) {
         csv_.add(state.distance);
         csv_.add(log_ratio(state.distance, start_distance));
     }
-    for (const auto& [letter, side] : sides) {
+    for (const char letter : scene_.letters()) {
         if (!scene_.preset.energy_columns) break;
         csv_.add(seen(letter).kinetic_energy);
         csv_.add(seen(letter).energy - seen(letter).kinetic_energy);
     }
-    for (const auto& [letter, side] : sides) {
-        if (side->has_work) csv_.add(seen(letter).work);
-        if (side->pivot_reach > 0) csv_.add(seen(letter).pivot.x), csv_.add(seen(letter).pivot.y);
+    for (const char letter : scene_.letters()) {
+        const auto& side = scene_.side(letter);
+        if (side.has_work) csv_.add(seen(letter).work);
+        if (side.pivot_reach > 0) csv_.add(seen(letter).pivot.x), csv_.add(seen(letter).pivot.y);
     }
     for (const auto& member : snapshot.members)
         if (scene_.preset.member_columns) add_bobs(scene_.a, member);

@@ -60,17 +60,11 @@ private:
 };
 
 void PhaseLayer::backdrop(DisplayList& list) const {
-    const float em = px(style_.font.axis), line = px(style_.width.grid);
+    const float em = px(style_.font.axis);
     const Area &area = panel_.area, around = panel_.panel;
     if (!video_.transparent)
         list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
-    AxisLook look{.edge = AxisLook::Edge::bottom,
-                  .em = em,
-                  .line = line,
-                  .grid = theme_.grid,
-                  .frame = theme_.frame,
-                  .text = theme_.quiet_text,
-                  .unit = {}};
+    auto look = axis_look();
     const auto add = [&](const Axis& axis, const std::vector<Tick>& ticks) {
         const auto items = axis_items(axis, ticks, area, around, look);
         list.insert(list.end(), items.begin(), items.end());

@@ -110,7 +110,7 @@ DisplayList title_of(const Scene& scene, const Style& style, Size size, float un
     };
     add(scene.preset.title, 50 * unit, font.title, Weight::bold, theme.text, false);
     add(scene_caption(scene), 86 * unit, font.subtitle, Weight::regular, theme.quiet_text, false);
-    for (std::size_t side = 0; side < (scene.is_single() ? 1 : 2); ++side)
+    for (std::size_t side = 0; side < scene.letters().size(); ++side)
         add(said[side].heading, (side == 0 ? 48.0f : 86.0f) * unit, 0.9 * font.heading, Weight::bold,
             scene.members.empty() ? theme.sides[side] : theme.text, true);
     return list;

@@ -50,14 +50,9 @@ void StripLayer::backdrop(DisplayList& list) const {
     // what lies beyond the time up to which the pair can be predicted is dimmed
     if (const auto limit = state_.scene.horizon())
         list.push_back(Box{strip_.time.at(*limit), area.top, area.right, area.bottom, 0, theme_.panel});
-    AxisLook look{.edge = AxisLook::Edge::bottom,
-                  .em = em,
-                  .line = line,
-                  .grid = theme_.grid,
-                  .frame = theme_.frame,
-                  .text = theme_.quiet_text,
-                  .has_numbers = strip_.cell.bottom > area.bottom + em,
-                  .unit = " s"};
+    auto look = axis_look();
+    look.has_numbers = strip_.cell.bottom > area.bottom + em;
+    look.unit = " s";
     const auto add = [&](const Axis& axis, bool across) {
         const auto items = axis_items(axis, spaced_ticks(axis, across, em), area, strip_.cell, look);
         list.insert(list.end(), items.begin(), items.end());

@@ -98,10 +98,9 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
     if (kind == StripKind::exponent) return {{growth_rate(scene, state, start_distance), theme.trace, width}};
     std::vector<StripCurve> curves;
     constexpr double degree = pi / 180;
-    for (const char letter : {'a', 'b'}) {
+    for (const char letter : scene.letters()) {
         const bool is_a = letter == 'a';
-        if (!is_a && scene.is_single()) break;
-        const auto& side = is_a ? scene.a : scene.b;
+        const auto& side = scene.side(letter);
         const auto& seen = is_a ? state.a : state.b;
         const auto color = theme.sides[is_a ? 0 : 1];
         // the first is the wider, and drawn first: where both run as one, both show

@@ -83,8 +83,8 @@ ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(
     constexpr double roughly = 5e-4;  // enough to compare
     const auto models = models_of(bodies);
     const auto first = begin_fit(job);
-    ModelHierarchy ladder;
-    auto& candidates = ladder.candidates;
+    ModelHierarchy hierarchy;
+    auto& candidates = hierarchy.candidates;
     for (auto candidate : models) {
         throw_if_set(job.stop);
         // from the nearer of two places: where all began, and where the model before ended
@@ -106,10 +106,11 @@ ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(
     }
     if (candidates.empty()) throw no_motion(job.track);
     for (std::size_t k = 0; k < candidates.size(); ++k)
-        if (candidates[k].left_out_rms < candidates[ladder.best].left_out_rms) ladder.best = k;
-    while (ladder.chosen < ladder.best && !is_as_good(job.track, candidates[ladder.chosen], candidates[ladder.best]))
-        ++ladder.chosen;
-    return ladder;
+        if (candidates[k].left_out_rms < candidates[hierarchy.best].left_out_rms) hierarchy.best = k;
+    while (hierarchy.chosen < hierarchy.best &&
+           !is_as_good(job.track, candidates[hierarchy.chosen], candidates[hierarchy.best]))
+        ++hierarchy.chosen;
+    return hierarchy;
 }
 
 }  // namespace doppel

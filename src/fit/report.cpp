@@ -209,7 +209,7 @@ Json fit_json(const FitResult& result) {
                    {"notes", track.notes}}},
                  {"model", model_json(result.chosen(), uncertainty)},
                  {"starts", list_of(result.chosen().fit.shots, start_json)},
-                 {"models", list_of(result.ladder.candidates, candidate_json)},
+                 {"models", list_of(result.hierarchy.candidates, candidate_json)},
                  {"residuals",
                   {{"like_noise", uncertainty.is_white},
                    {"neighbour_correlation", uncertainty.neighbour},
@@ -305,9 +305,9 @@ Plot ladder_plot(const FitResult& result) {
     Plot plot{.title = "Error against number of parameters", .needs_no_legend = true};
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
     double least = parameter_count, most = 0;
-    for (std::size_t k = 0; k < result.ladder.candidates.size(); ++k) {
-        const auto& candidate = result.ladder.candidates[k];
-        const bool chosen = k == result.ladder.chosen;
+    for (std::size_t k = 0; k < result.hierarchy.candidates.size(); ++k) {
+        const auto& candidate = result.hierarchy.candidates[k];
+        const bool chosen = k == result.hierarchy.chosen;
         const auto count = static_cast<double>(candidate.fit.free_count());
         least = std::min(least, count), most = std::max(most, count);
         plot.curves.push_back({.label = fmt::format("{}{}", k + 1, chosen ? ", chosen" : ""),
@@ -347,7 +347,7 @@ Figure fit_page(const FitResult& result, const std::string& name) {
     const auto& candidate = result.chosen();
     const auto& track = result.track;
     std::vector<std::string> models, numbers;
-    for (const auto& other : result.ladder.candidates)
+    for (const auto& other : result.hierarchy.candidates)
         models.push_back(fmt::format("{} {}", models.size() + 1, other.name));
     for (const auto parameter : candidate.fit.model.list())
         numbers.push_back(parameter_text(candidate.fit, result.uncertainty, parameter));

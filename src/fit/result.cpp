@@ -30,13 +30,13 @@ double most_left(const Track& track) {
 }
 
 /// Throws where the swing gains energy. Only where friction that must not be negative is held at 0 need one look.
-void require_loss(const FitJob& job, const ModelHierarchy& ladder) {
+void require_loss(const FitJob& job, const ModelHierarchy& hierarchy) {
     constexpr double sure = 5;  // standard errors
     const auto viscous =
-        std::find_if(ladder.candidates.rbegin(), ladder.candidates.rend(), [](const FittedModel& candidate) {
+        std::find_if(hierarchy.candidates.rbegin(), hierarchy.candidates.rend(), [](const FittedModel& candidate) {
             return candidate.fit.model.fitted[viscous_1] && !candidate.fit.model.fitted[coulomb_1];
         });
-    if (viscous == ladder.candidates.rend()) return;
+    if (viscous == hierarchy.candidates.rend()) return;
     if (!viscous->fit.is_at_bound(viscous_1) && !viscous->fit.is_at_bound(viscous_2)) return;
     const auto loss = energy_loss(job, viscous->fit);
     const bool is_sure = loss && loss->share < -sure * loss->standard_error;  // not where the error is not a number
@@ -48,8 +48,8 @@ void require_loss(const FitJob& job, const ModelHierarchy& ladder) {
 }
 
 /// Throws where even the best model leaves too much for its numbers to mean anything.
-void require_description(const Track& track, const ModelHierarchy& ladder) {
-    const auto& best = ladder.candidates[ladder.best];
+void require_description(const Track& track, const ModelHierarchy& hierarchy) {
+    const auto& best = hierarchy.candidates[hierarchy.best];
     if (best.left_out_rms <= most_left(track)) return;
     throw method_failed(
         "{}: no model describes this track: the best ({}) has an error of {:.2g} rad on parts left out, where angles "
@@ -59,9 +59,9 @@ void require_description(const Track& track, const ModelHierarchy& ladder) {
 
 /// Exchanged, the links obey the same equations, but for friction. No body, however, hangs by its own weight the wrong
 /// way: D1 − C D2/B is the first link's own moment, m1 a1 g and more, where B/(m2 a2) ≥ a2.
-void require_order(const Track& track, const ModelHierarchy& ladder) {
+void require_order(const Track& track, const ModelHierarchy& hierarchy) {
     constexpr double least = 1.01;
-    const auto& fit = ladder.candidates[ladder.best].fit;
+    const auto& fit = hierarchy.candidates[hierarchy.best].fit;
     const double moment = fit.parameters[gravity_1] / (fit.parameters[coupling] * fit.parameters[gravity_2]);
     if (moment >= least) return;
     throw bad_input(
@@ -139,12 +139,12 @@ FitResult answer(Track track, const FitOptions& options, const std::atomic<bool>
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     FitResult result{.track = std::move(track)};
     const FitJob job{result.track, stop, options.jobs > 0 ? options.jobs : cores()};
-    auto& ladder = result.ladder = climb(job, options.bodies, report);
+    auto& hierarchy = result.hierarchy = climb(job, options.bodies, report);
     result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
-    require_order(result.track, ladder);
-    require_loss(job, ladder);
-    require_description(result.track, ladder);
-    auto& fit = ladder.candidates[ladder.chosen].fit;
+    require_order(result.track, hierarchy);
+    require_loss(job, hierarchy);
+    require_description(result.track, hierarchy);
+    auto& fit = hierarchy.candidates[hierarchy.chosen].fit;
     constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer
     for (const double share : {of_errors, FitEffort{}.step_share}) {
         const auto finer = fit_model(job, fit, {.step_share = share});

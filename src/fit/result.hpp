@@ -25,7 +25,7 @@ struct Period {
 /// All that "doppel fit" finds out of a track.
 struct FitResult {
     Track track;
-    ModelHierarchy ladder;
+    ModelHierarchy hierarchy;
     Uncertainty uncertainty;       // of the chosen model
     std::optional<Period> period;  // of the pieces, where it was found and not given
     std::optional<Horizon>
@@ -33,7 +33,7 @@ struct FitResult {
     FittedPendulum pendulum;  // of the preset's model
     double models_cpu_s = 0, cpu_s = 0;  // of the hierarchy; of all
 
-    const FittedModel& chosen() const { return ladder.candidates[ladder.chosen]; }
+    const FittedModel& chosen() const { return hierarchy.candidates[hierarchy.chosen]; }
 };
 
 /// Fits all models, chooses one, and measures it. `report` hears how many models are done. Throws Error: exit 3 where no

@@ -146,6 +146,9 @@ struct Scene {
     double time(long sample) const { return time(Moment{sample}); }
     /// Whether side b is none: nothing of it is simulated.
     bool is_single() const { return preset.video.layout == Arrangement::single; }
+    /// The sides that it has.
+    std::string_view letters() const { return is_single() ? "a" : "ab"; }
+    const Side& side(char letter) const { return letter == 'a' ? a : b; }
     /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
     std::optional<double> horizon() const;
     /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.

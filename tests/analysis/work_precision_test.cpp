@@ -7,9 +7,9 @@
 namespace doppel {
 namespace work_precision_test {
 
-/// A ladder of outcomes of these costs, each with a tenth of the error before, from 0.1 on.
-StepStudy ladder(const std::string& method, Model model, const std::vector<double>& costs,
-                 const ExternalMethod* external = nullptr) {
+/// A study of outcomes of these costs, each with a tenth of the error before, from 0.1 on.
+StepStudy study(const std::string& method, Model model, const std::vector<double>& costs,
+                const ExternalMethod* external = nullptr) {
     StepStudy made{{model, method, external}, {}};
     double error = 1;
     for (const double cost : costs) {
@@ -23,21 +23,21 @@ const ExternalMethod one{"one", true, 0, 1, {}}, two{"two", true, 0, 1, {}};
 
 /// Two problems. At 0.1 "slow" is the last, at 0.001 nobody else comes so far on the second.
 const std::vector<std::vector<StepStudy>> problems{
-    {ladder("slow", Model::angles, {7, 8, 9, 10}), ladder("fast", Model::angles, {9, 9, 9, 9}),
-     ladder("fast", Model::constraints, {1, 2, 4, 8}), ladder("even", Model::angles, {2, 3, 4.5, 9}),
-     ladder("", Model::angles, {1, 1, 1, 1}, &two), ladder("", Model::angles, {0.5, 0.5, 0.5, 0.5}, &one)},
-    {ladder("slow", Model::angles, {7, 8, 9, 10}), ladder("fast", Model::angles, {1, 2}),
-     ladder("even", Model::angles, {2, 3})}};
+    {study("slow", Model::angles, {7, 8, 9, 10}), study("fast", Model::angles, {9, 9, 9, 9}),
+     study("fast", Model::constraints, {1, 2, 4, 8}), study("even", Model::angles, {2, 3, 4.5, 9}),
+     study("", Model::angles, {1, 1, 1, 1}, &two), study("", Model::angles, {0.5, 0.5, 0.5, 0.5}, &one)},
+    {study("slow", Model::angles, {7, 8, 9, 10}), study("fast", Model::angles, {1, 2}),
+     study("even", Model::angles, {2, 3})}};
 
 /// The first repeat alone looks for break-downs on the way.
 TEST(Merged, LeavesOutTheTimesOfFailedRuns) {
     const StepResult good{.setting = 0.1, .error = 0.01, .cpu_s = 3}, bad{.setting = 0.2},
         unseen{.setting = 0.2, .error = 0, .cpu_s = 1};
-    const auto ladder = merged({Model::angles, "slow"}, {{bad, good}, {unseen, good}});
-    EXPECT_TRUE(ladder.outcomes[0].failed());
-    EXPECT_TRUE(std::isnan(ladder.outcomes[0].cpu_s));
-    EXPECT_FALSE(ladder.outcomes[1].failed());
-    EXPECT_EQ(ladder.outcomes[1].cpu_s, 3);
+    const auto study = merged({Model::angles, "slow"}, {{bad, good}, {unseen, good}});
+    EXPECT_TRUE(study.outcomes[0].failed());
+    EXPECT_TRUE(std::isnan(study.outcomes[0].cpu_s));
+    EXPECT_FALSE(study.outcomes[1].failed());
+    EXPECT_EQ(study.outcomes[1].cpu_s, 3);
 }
 
 TEST(BestModels, WinAtMostPowersOfTen) {

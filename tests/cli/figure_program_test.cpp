@@ -43,8 +43,9 @@ bool contains(const std::string& text, const std::string& words) {
 TEST(FigureProgram, DrawsByNameAndByPath) {
     const auto folder = fresh_folder();
     test::write_bytes(folder / "mine.toml", bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/figures/fig4-right.toml"));
-    const auto result =
-        doppel(folder, with({"figure", "fig2-right", "./mine.toml", "-o", "figures", "--scale", "2"}, small));
+    // one thread: of two, the second figure may be ready first
+    const auto result = doppel(
+        folder, with({"figure", "fig2-right", "./mine.toml", "-o", "figures", "--scale", "2", "--jobs", "1"}, small));
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err, "fig2-right: there is no space for the captions\nmine: there is no space for the captions\n");
     for (const char* file :

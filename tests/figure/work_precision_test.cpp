@@ -106,17 +106,17 @@ TEST(WorkPrecision, FallsByThePowerOfEachOrder) {
                                               {"midpoint", {2, 0.01}}, {"rk4", {4, 0.15}},
                                               {"gauss4", {4, 1e-3}},   {"gauss6", {6, 0.3}},
                                               {"rattle", {2, 1e-4}},   {"rattle6", {6, 0.15}}};
-    std::map<std::string, std::vector<const Row*>> ladders;
-    for (const auto& row : rows) ladders[row.cells.at("model") + " " + row.cells.at("method")].push_back(&row);
-    for (const auto& [name, ladder] : ladders) {
+    std::map<std::string, std::vector<const Row*>> studies;
+    for (const auto& row : rows) studies[row.cells.at("model") + " " + row.cells.at("method")].push_back(&row);
+    for (const auto& [name, study] : studies) {
         // over the last octave or two: finer, rounding begins to tell
-        const auto &fine = *ladder.at(ladder.size() - 2), &coarse = *ladder.at(ladder.size() - 6);
+        const auto &fine = *study.at(study.size() - 2), &coarse = *study.at(study.size() - 6);
         const double slope = std::log(coarse.number("angle_error_rad") / fine.number("angle_error_rad")) /
                              std::log(coarse.number("setting") / fine.number("setting"));
-        const auto& order = orders.at(ladder[0]->cells.at("method"));
+        const auto& order = orders.at(study[0]->cells.at("method"));
         EXPECT_NEAR(slope, order.is, order.within) << name;
     }
-    EXPECT_EQ(ladders.size(), 6u + 6);
+    EXPECT_EQ(studies.size(), 6u + 6);
 }
 
 /// Two even bars with no bobs.

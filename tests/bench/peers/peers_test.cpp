@@ -62,7 +62,7 @@ ExternalMethod peer_named(std::string_view name) {
     throw bad_input("there is no peer {}", name);
 }
 
-/// The least error on the way down the ladder, as soon as it is within `wanted`.
+/// The least error on the way down the study, as soon as it is within `wanted`.
 double converged(const ExternalMethod& peer, const Problem& problem, double wanted) {
     const auto exact = truth(problem);
     double least = pi;
