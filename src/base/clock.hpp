@@ -7,14 +7,14 @@
 
 namespace doppel {
 
-/// What a clock of the system shows, s: CLOCK_MONOTONIC, CLOCK_PROCESS_CPUTIME_ID, CLOCK_THREAD_CPUTIME_ID.
+/// The time of a system clock, s: CLOCK_MONOTONIC, CLOCK_PROCESS_CPUTIME_ID or CLOCK_THREAD_CPUTIME_ID.
 inline double seconds_of(clockid_t clock) {
     timespec now{};
     clock_gettime(clock, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Ends what takes a `stop`, after some seconds or soon after another `stop` is set.
+/// Sets its own stop flag after some seconds, or soon after another `stop` is set.
 class TimeLimit {
 public:
     TimeLimit(double seconds, const std::atomic<bool>& other)
@@ -28,7 +28,7 @@ public:
 
 private:
     std::atomic<bool> reached_ = false;
-    std::jthread watch_;  // last: joined before the rest goes
+    std::jthread watch_;  // declared last: joined before the other members are destroyed
 };
 
 }  // namespace doppel

@@ -13,7 +13,7 @@
 
 namespace doppel {
 
-/// What the process answers with; one number a kind of outcome.
+/// Exit codes of the process, one for each kind of outcome.
 enum class ExitCode {
     done = 0,
     differs = 1,
@@ -25,12 +25,11 @@ enum class ExitCode {
     terminated = 143
 };
 
-/// The one exception of Doppel: a sentence for the person who runs it, and the exit code that goes with it. It is
-/// thrown where the fault is known best, and caught once, in main.
+/// The only exception type of Doppel: a message for the user and an exit code. It is caught once, in main.
 class Error : public std::runtime_error {
 public:
-    /// `further` = sentences about what else is wrong, where it was found in the same go. A message may quote anything:
-    /// it becomes one line, and a NUL in it does not end it.
+    /// `further` = messages about other errors found at the same time. Messages are put on one line, and NUL characters
+    /// are replaced.
     Error(ExitCode code, const std::string& message, std::vector<std::string> further = {})
         : std::runtime_error(on_one_line(message)), code_(code), further_(std::move(further)) {}
     ExitCode code() const { return code_; }
@@ -41,7 +40,7 @@ private:
     std::vector<std::string> further_;
 };
 
-/// What was asked for makes no sense (exit 2).
+/// Wrong usage or input (exit 2).
 template <class... Args>
 Error bad_input(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::bad_input, fmt::format(format, std::forward<Args>(args)...)};
@@ -59,18 +58,18 @@ Error io_failed(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::io_failed, fmt::format(format, std::forward<Args>(args)...)};
 }
 
-/// The same, where it may succeed later: no space, another run is writing, a part is missing (exit 75).
+/// As above, but trying again may succeed: no space, another run is writing, a shard is missing (exit 75).
 template <class... Args>
 Error try_again(fmt::format_string<Args...> format, Args&&... args) {
     return {ExitCode::try_again, fmt::format(format, std::forward<Args>(args)...)};
 }
 
-/// Of reading or writing that failed with this errno.
+/// The exit code for a failed read or write with this errno.
 inline ExitCode code_of_errno(int reason) {
     return reason == ENOSPC || reason == EDQUOT ? ExitCode::try_again : ExitCode::io_failed;
 }
 
-/// Asked to stop before the end (exit 130, or 143 by SIGTERM).
+/// The user stopped the process (exit 130, or 143 for SIGTERM).
 inline Error interrupted() {
     return {ExitCode::interrupted, "interrupted"};
 }

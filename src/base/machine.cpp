@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers that a file begins with: none where it says "max".
+/// The numbers at the start of a file; none if it contains "max".
 std::vector<double> numbers_in(const fs::path& file) {
     std::ifstream stream(file);
     std::vector<double> numbers;
@@ -26,7 +26,7 @@ std::vector<double> numbers_in(const fs::path& file) {
 }
 
 int cores_by_mask() {
-    // the kernel tells how large its masks are only by refusing smaller ones
+    // the kernel refuses masks that are too small, so the size is found by trying
     for (std::size_t sets = 1; sets <= 1024; sets *= 2)
         if (std::vector<cpu_set_t> mask(sets); sched_getaffinity(0, sets * sizeof(cpu_set_t), mask.data()) == 0)
             return CPU_COUNT_S(sets * sizeof(cpu_set_t), mask.data());
@@ -49,10 +49,10 @@ Machine read_machine() {
 Machine within_control_groups(Machine machine, const fs::path& root) {
     const auto top = root / "sys/fs/cgroup";
     std::ifstream file(root / "proc/self/cgroup");
-    std::string line;  // "0::/a/b"
+    std::string line;  // for example "0::/a/b"
     while (std::getline(file, line) && !line.starts_with("0::/")) {
     }
-    // a group has its own limits and those of all around it; of one out of sight ("/..") only the top can be seen
+    // the limits of a group and of all its parents apply; of a group outside this view ("/..") only the root is visible
     const bool is_seen = line.starts_with("0::/") && line.find("/..") == std::string::npos;
     for (auto folder = is_seen ? top / line.substr(4) : top;; folder = folder.parent_path()) {
         const auto quota = numbers_in(folder / "cpu.max"), limit = numbers_in(folder / "memory.max");

@@ -6,25 +6,25 @@
 
 namespace doppel {
 
-/// What of the machine this process may use.
+/// The part of the machine that this process may use.
 struct Machine {
-    int cores = 1;              // at once
+    int cores = 1;              // that may run at the same time
     std::uintmax_t memory = 0;  // bytes
 };
 
-/// By the affinity mask and the size of the memory, and by the limits of control groups (version 2) and of the
-/// address space; read once.
+/// From the affinity mask, the memory size, the limits of control groups (version 2) and of the address space; read
+/// once.
 const Machine& this_machine();
 
-/// `machine` with what the control groups of this process leave of it. Below `root` are proc/self/cgroup and
-/// sys/fs/cgroup. A share of a core counts as a whole one.
+/// `machine`, reduced to the limits of this process's control groups. `root` contains proc/self/cgroup and
+/// sys/fs/cgroup. A fraction of a core counts as one core.
 Machine within_control_groups(Machine machine, const std::filesystem::path& root);
 
-/// How many things of so many bytes may exist at once: `most`, or as many of them as take no more than a quarter
-/// of the memory, and no more than 2 GiB; at least one.
+/// How many objects of `bytes` bytes may exist at the same time, from 1 to `most`. Together they take at most a quarter
+/// of the memory, and at most 2 GiB.
 std::size_t affordable(std::size_t bytes, std::size_t most, const Machine& machine = this_machine());
 
-/// As many threads as this process may use cores at once, at least one.
+/// The number of threads to use: the cores that this process may use, at least 1.
 inline int cores() {
     return this_machine().cores;
 }

@@ -15,7 +15,7 @@
 namespace doppel {
 namespace {
 
-/// Waits until there is something to read. Throws Error (exit 130) soon after `stop` is set.
+/// Waits until bytes can be read. Throws Error (exit 130) soon after `stop` is set.
 void wait_for_bytes(int pipe, const std::atomic<bool>& stop) {
     constexpr int patience_ms = 50;
     pollfd wanted{.fd = pipe, .events = POLLIN, .revents = 0};
@@ -29,7 +29,7 @@ void wait_for_bytes(int pipe, const std::atomic<bool>& stop) {
 std::string read_whole_file(const std::filesystem::path& path, const WantedFile& wanted,
                             const std::atomic<bool>* stop) {
     const auto reason = [] { return std::generic_category().message(errno); };
-    if (path.native().find('\0') != std::string::npos)  // the system would open what is named before it
+    if (path.native().find('\0') != std::string::npos)  // the system would open the path up to the NUL
         throw bad_input("{}: contains a NUL character; a file name cannot", path.string());
     const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> owner(file < 0 ? nullptr : fdopen(file, "r"), std::fclose);

@@ -13,7 +13,7 @@ SharedLibrary::SharedLibrary(const std::vector<std::string>& names) {
         handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
         name_ = name;
         if (handle_) return;
-        // a library that is there and cannot be used says more than one that is not there
+        // the message about a library that exists but cannot be used is the more helpful one
         const std::string fault = dlerror();
         if (!fault.starts_with(name + ": cannot open shared object file: No such file"))
             faults += (faults.empty() ? "" : "; ") + fault;

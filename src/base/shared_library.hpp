@@ -5,13 +5,13 @@
 
 namespace doppel {
 
-/// A shared library found at run time. It stays for the rest of the process: Mesa cannot be unloaded safely.
+/// A shared library loaded at run time. It is never unloaded: Mesa cannot be unloaded safely.
 class SharedLibrary {
 public:
-    /// The first of `names` that there is. Throws Error (exit 4), which says why none could be loaded.
+    /// Loads the first of `names` that works. Throws Error (exit 4) with the reasons if none can be loaded.
     explicit SharedLibrary(const std::vector<std::string>& names);
 
-    /// An address that converts to any type of function.
+    /// An address that converts to any function pointer type.
     struct Symbol {
         void* address;
         template <class Function>
@@ -19,7 +19,7 @@ public:
             return reinterpret_cast<Function*>(address);
         }
     };
-    /// Throws Error (exit 4) where there is no such function.
+    /// Throws Error (exit 4) if there is no such function.
     Symbol operator[](const char* name) const;
 
 private:

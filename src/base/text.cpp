@@ -13,7 +13,7 @@ namespace {
 constexpr char32_t replacement = 0xfffd;
 constexpr std::string_view replacement_utf8 = "\xef\xbf\xbd";
 
-/// The text where replace(character) gives nothing, else what it gives.
+/// The text with each character replaced by replace(character); characters for which it returns nothing stay.
 template <class Replace>
 std::string replaced(std::string_view text, const Replace& replace) {
     std::string result;
@@ -25,7 +25,7 @@ std::string replaced(std::string_view text, const Replace& replace) {
     return result;
 }
 
-/// Letters to add, drop or change (Levenshtein 1965) to get from a to the first 0, 1, 2 … letters of b.
+/// Edit distances (Levenshtein 1965) between a and the first 0, 1, 2 … letters of b.
 std::vector<std::size_t> edit_distances(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), 0);
@@ -52,7 +52,7 @@ char32_t next_character(std::string_view& text) {
         well_formed = (byte(i) & 0xc0u) == 0x80;
         character = character << 6 | (byte(i) & 0x3fu);
     }
-    // neither longer than need be, nor half a surrogate pair, nor past the end of Unicode
+    // refuses overlong encodings, surrogates, and values above U+10FFFF
     well_formed = well_formed && !(length == 3 && (character < 0x800 || (character >> 11) == 0x1b)) &&
                   !(length == 4 && (character < 0x10000 || character > 0x10ffff));
     text.remove_prefix(well_formed ? length : 1);
@@ -76,7 +76,7 @@ bool is_control(char32_t c) {
 std::string on_one_line(std::string_view text) {
     return replaced(text, [](char32_t character) -> std::optional<std::string_view> {
         if (is_control(character)) return " ";
-        if (character == replacement) return replacement_utf8;  // of a byte, too
+        if (character == replacement) return replacement_utf8;  // U+FFFD also replaces a malformed byte
         return std::nullopt;
     });
 }
@@ -94,7 +94,7 @@ std::string markup(std::string_view text) {
 }
 
 std::string in_script(std::string json) {
-    // only strings hold one
+    // in JSON, '<' occurs only inside strings
     for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
     return json;
 }
@@ -111,7 +111,8 @@ std::string in_address(std::string_view name) {
 
 std::string shortened(std::string_view text, std::size_t most) {
     if (text.size() <= most) return std::string(text);
-    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;  // not within a character
+    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80)
+        --most;  // do not cut within a character
     return std::string(text.substr(0, most)) + "…";
 }
 
@@ -123,14 +124,14 @@ std::string bytes_text(double bytes) {
 }
 
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {
-    constexpr std::size_t longest = 100;  // more is no typing error
+    constexpr std::size_t longest = 100;  // longer texts are no typing errors
     if (word.size() > longest) return {};
     const auto whole = [&](std::string_view one) { return edit_distances(word, one).back(); };
     const auto start = [&](std::string_view one) { return std::ranges::min(edit_distances(word, one)); };
     const auto best = std::ranges::min_element(candidates, {}, whole);
     if (best == candidates.end()) return {};
     if (whole(*best) <= std::max<std::size_t>(2, word.size() / 3)) return std::string(*best);
-    // "gravity" of "gravity_m_per_s2"
+    // for example "gravity" as the start of "gravity_m_per_s2"
     const auto longer = std::ranges::min_element(candidates, {}, start);
     const bool is_start = word.size() > 2 && start(*longer) <= word.size() / 6;
     return is_start ? std::optional<std::string>(*longer) : std::nullopt;

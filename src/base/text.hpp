@@ -7,39 +7,38 @@
 
 namespace doppel {
 
-// Words from outside: titles, names, paths. UTF-8.
+// Handling of text from outside: titles, names, paths. UTF-8.
 
-/// Takes the next character off the front of `text`, which is not empty: one byte, and U+FFFD, where it is not
-/// well-formed.
+/// Removes and returns the first character of `text`, which must not be empty. If it is malformed, removes one byte and
+/// returns U+FFFD.
 char32_t next_character(std::string_view& text);
 
-/// Whether all of it is well-formed.
+/// Whether the text is well-formed UTF-8.
 bool is_utf8(std::string_view text);
 
-/// A character that a terminal may obey rather than show: control characters of ASCII and of Latin-1, line and
-/// paragraph separators, and marks that turn the direction of writing.
+/// A character that a terminal may interpret: control characters of ASCII and Latin-1, line and paragraph separators,
+/// and marks that change the direction of writing.
 bool is_control(char32_t character);
 
-/// The text as one line that any terminal can show: a space for every control character, U+FFFD for every byte that is
-/// not well-formed.
+/// The text as one line that any terminal can show. Control characters become spaces, malformed bytes become U+FFFD.
 std::string on_one_line(std::string_view text);
 
-/// The text as XML 1.0 and HTML take it between tags and in quotes: on one line, without characters that XML forbids.
+/// The text escaped for XML 1.0 and HTML, between tags and in quotes: one line, without characters that XML forbids.
 std::string markup(std::string_view text);
 
-/// JSON as a script in a page takes it: nothing in it begins a tag or a comment.
+/// JSON escaped for a script in a page: it contains no '<' that could begin a tag or a comment.
 std::string in_script(std::string json);
 
-/// A name as a part of an address, RFC 3986: every byte but letters, digits and -._~ as %XX.
+/// A name escaped as a part of a URL (RFC 3986): every byte except letters, digits and -._~ becomes %XX.
 std::string in_address(std::string_view name);
 
-/// The whole characters of its first `most` bytes, with "…" where there is more.
+/// At most the first `most` bytes of the text, cut between characters; "…" is appended if it was cut.
 std::string shortened(std::string_view text, std::size_t most);
 
 /// A size for people: "512 bytes", "64 kB", "1.5 MB", "2.0 GB", "17.6 TB".
 std::string bytes_text(double bytes);
 
-/// The candidate that is a typing error away from `word`, if there is one.
+/// The candidate that differs from `word` by a typing error, if there is one.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace doppel

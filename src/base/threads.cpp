@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// Whether there is room for the stack of a further thread.
+/// Whether the address space has room for the stack of another thread.
 bool has_room_for_a_stack() {
     pthread_attr_t usual;
     std::size_t bytes = std::size_t{8} << 20;

@@ -14,7 +14,7 @@
 
 namespace doppel {
 
-/// Starts `count` threads that call work(), or as many of them as the system lets this process have: maybe none.
+/// Starts up to `count` threads that call work(). Returns fewer, possibly none, if the system allows no more.
 template <class Work>
 std::vector<std::jthread> start_threads(std::size_t count, const Work& work) {
     std::vector<std::jthread> threads;
@@ -26,10 +26,10 @@ std::vector<std::jthread> start_threads(std::size_t count, const Work& work) {
     return threads;
 }
 
-/// What to throw where work waits for a thread and there is none; says which limit keeps it from being had.
+/// The error for a thread that is needed and cannot be started; it names the limit that prevents it.
 Error no_thread();
 
-/// A thread that calls work(). Throws Error (exit 4) where the system lets this process have none.
+/// A thread that calls work(). Throws Error (exit 4) if the system allows no further thread.
 template <class Work>
 std::jthread start_thread(const Work& work) {
     auto threads = start_threads(1, work);
@@ -37,8 +37,8 @@ std::jthread start_thread(const Work& work) {
     return std::move(threads.front());
 }
 
-/// Throws Error (exit 4) where this process may not have `count` further threads at once: for libraries that hang or
-/// end the program where one of theirs cannot be started.
+/// Throws Error (exit 4) if this process may not start `count` further threads. Called before libraries that hang or
+/// abort when one of their threads cannot be started.
 inline void need_threads(std::size_t count) {
     std::latch all_there(1);
     const auto threads = start_threads(count, [&] { all_there.wait(); });
@@ -46,8 +46,8 @@ inline void need_threads(std::size_t count) {
     if (threads.size() < count) throw no_thread();
 }
 
-/// Calls work(i) once for each i = 0 … count − 1, on `jobs` threads (this one among them), or as many as there are to
-/// be had: whoever is free takes the next. The first error stops them all and is thrown here.
+/// Calls work(i) once for each i = 0 … count − 1, on up to `jobs` threads including the calling one. Each thread takes
+/// the next free i. The first error stops all threads and is rethrown here.
 template <class Work>
 void parallel_for(std::size_t count, int jobs, Work&& work) {
     std::atomic<std::size_t> next = 0;
@@ -64,7 +64,7 @@ void parallel_for(std::size_t count, int jobs, Work&& work) {
     };
     {
         const auto helpers = std::min(static_cast<std::size_t>(std::max(jobs, 1)), count) - (count > 0 ? 1 : 0);
-        const auto threads = start_threads(helpers, run);  // they end where this block does
+        const auto threads = start_threads(helpers, run);  // joined at the end of this block
         run();
     }
     if (error) std::rethrow_exception(error);
