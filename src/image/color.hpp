@@ -9,7 +9,7 @@
 
 namespace doppel {
 
-/// A colour as screens take it: sRGB, each channel 0…1, `a` = opacity (not premultiplied).
+/// An sRGB colour, each channel 0…1; `a` = opacity (not premultiplied).
 struct Color {
     float r = 0, g = 0, b = 0, a = 1;
 
@@ -17,7 +17,7 @@ struct Color {
     friend constexpr bool operator==(const Color&, const Color&) = default;
 };
 
-/// A channel as a byte, rounded.
+/// A channel rounded to a byte.
 inline std::uint8_t byte_of(double channel) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.0, 1.0)));
 }
@@ -33,36 +33,35 @@ constexpr Color rgb(unsigned hex) {
             static_cast<float>(hex & 0xff) / 255.0f, 1.0f};
 }
 
-/// `share` of b in a.
+/// Linear interpolation from a (share = 0) to b (share = 1), channel by channel.
 constexpr Color mixed(Color a, Color b, float share) {
     const auto mix = [share](float x, float y) { return x + share * (y - x); };
     return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b), mix(a.a, b.a)};
 }
 
-/// From "#rrggbb"; nothing where the text is no such colour.
+/// Parses "#rrggbb"; returns nothing for other texts.
 std::optional<Color> parse_color(std::string_view text);
 
-/// The colour of `share` (0…1, beyond: the nearest end) of a scale: dark violet through blue and green to pale yellow.
-///
-/// Equal shares look equally far apart: the scale runs through OKLab (Ottosson 2020) at constant speed, and lightness
-/// only grows, so that it holds in grey and for the colour-blind. NaN: the lower end.
+/// The colour scale of heat maps at `share`, 0…1 (clamped; NaN gives the lower end): dark violet, blue, green, pale
+/// yellow. It is perceptually uniform in OKLab (Ottosson 2020), and its lightness increases, so that it can be read in
+/// grey and by colour-blind people.
 Color map_color(double share);
 
-/// The colours of a picture. The hues of the two sides, orange and blue, stay apart for the colour-blind (after Okabe &
-/// Ito 2008).
+/// The colours of a picture. Orange and blue of the two sides can be told apart by colour-blind people (Okabe & Ito
+/// 2008).
 struct Theme {
     std::string_view name;
-    Color background, panel;     // behind everything; behind the pendulums
-    Color text, quiet_text;      // what is read first; what is read when wanted
-    Color grid, frame, cursor;   // lines of a chart: decades and seconds, its border, now
-    Color rod, bob, pivot;       // what all pendulums share
-    std::array<Color, 2> sides;  // a, b
-    Color trace;                 // what belongs to both
-    Color bad, open;             // what failed; what is not known
-    Color none;                  // where a map has no value
-    float glow;                  // how far the light of trails reaches, px of a 1920×1080 picture; 0 = none
+    Color background, panel;     // of the picture; of the area behind the pendulums
+    Color text, quiet_text;      // for important text; for secondary text
+    Color grid, frame, cursor;   // lines of a chart: grid, border, current time
+    Color rod, bob, pivot;       // common to all pendulums
+    std::array<Color, 2> sides;  // of sides A and B
+    Color trace;                 // of quantities of the pair
+    Color bad, open;             // failed; unknown
+    Color none;                  // cells of a map without a value
+    float glow;                  // glow radius of trails, px of a 1920×1080 picture; 0 = no glow
     std::array<Color, 8>
-        palette;  // of curves, the sides' hues first; apart for the colour-blind, 3:1 on the background
+        palette;  // colours of curves, beginning with the two sides'; contrast at least 3:1 on the background
 };
 
 inline constexpr std::array<Theme, 3> themes{{

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-// The policy: identical pixels pass; otherwise all of these must hold.
+// The golden policy: identical pictures pass; otherwise all of these limits must hold.
 constexpr int strong_difference = 3;       // /255
 constexpr long most_strong = 4;            // pixels
 constexpr int largest_allowed = 80;        // /255
@@ -17,10 +17,10 @@ constexpr double most_differing = 0.08;    // of all pixels
 constexpr int tile = 32;                   // px
 constexpr double most_tile_mean = 0.25;    // /255
 constexpr double most_signed_mean = 0.03;  // /255
-constexpr int colours = 3, channels = 4;   // the last is opacity
+constexpr int colours = 3, channels = 4;   // the fourth channel is opacity
 
-/// Mean absolute difference over the tile whose corner is (left, top): of the colours, or of the opacity, which differs
-/// by itself.
+/// Mean absolute difference over the tile with corner (left, top): the larger of that of the colours and that of the
+/// opacity.
 double tile_mean(const Picture& expected, const Picture& actual, int left, int top) {
     const int right = std::min(left + tile, expected.size.width), bottom = std::min(top + tile, expected.size.height);
     std::array<long, channels> sums{};

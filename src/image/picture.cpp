@@ -33,7 +33,7 @@ void matte(const Picture& black, const Picture& white, const Rect& within, Pictu
         for (int x = within.left; x < within.right; ++x) {
             const auto *on_black = black.at(x, y), *on_white = white.at(x, y);
             auto* pixel = into.at(x, y);
-            // on black: a·c, on white: a·c + (1 − a)·255
+            // on black the result is a·c, on white a·c + (1 − a)·255
             int lost = 255;
             for (int k = 0; k < 3; ++k) lost = std::min(lost, std::max(on_white[k] - on_black[k], 0));
             const int opacity = 255 - lost;
@@ -48,7 +48,7 @@ void matte(const Picture& black, const Picture& white, const Rect& within, Pictu
 
 namespace {
 
-// IEC 61966-2-1, both ways, on 0…1.
+// IEC 61966-2-1, both directions, on 0…1.
 double to_linear(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
@@ -65,10 +65,10 @@ const std::array<double, 256>& linear_of_bytes() {
     return table;
 }
 
-/// Calls visit(i, share) for each of the old pixels that new pixel k covers along a side; the shares add up to 1.
+/// Calls visit(i, share) for each old pixel that the new pixel k covers along one axis. The shares add up to 1.
 template <class Visit>
 void for_each_covered(int k, int new_length, int old_length, Visit&& visit) {
-    // in units of 1 / new_length of an old pixel all edges are whole numbers
+    // in units of 1 / new_length of an old pixel all edges are integers
     const long begin = long{k} * old_length, end = begin + old_length;
     for (long i = begin / new_length; i * new_length < end; ++i) {
         const long covered = std::min(end, (i + 1) * new_length) - std::max(begin, i * new_length);
@@ -76,7 +76,7 @@ void for_each_covered(int k, int new_length, int old_length, Visit&& visit) {
     }
 }
 
-/// Adds `share` of a row of pixels: linear light, premultiplied, and opacity.
+/// Adds a row of pixels, weighted by `share`: premultiplied linear colours, and opacity.
 void add_row(const Picture& picture, int row, double share, std::vector<double>& sums) {
     const auto& linear = linear_of_bytes();
     const std::uint8_t* pixel = picture.at(0, row);

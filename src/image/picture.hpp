@@ -16,7 +16,7 @@ struct Size {
     friend constexpr bool operator==(const Size&, const Size&) = default;
 };
 
-/// Whole pixels, half open: left ≤ x < right, top ≤ y < bottom; y points down.
+/// A rectangle of whole pixels, half open: left ≤ x < right, top ≤ y < bottom; y points down.
 struct Rect {
     int left = 0, top = 0, right = 0, bottom = 0;
 
@@ -27,9 +27,9 @@ struct Rect {
 constexpr Rect all_of(Size size) {
     return {0, 0, size.width, size.height};
 }
-/// The smallest rectangle that holds both.
+/// The smallest rectangle that contains both.
 Rect united(const Rect& a, const Rect& b);
-/// What both cover; empty() where they do not meet.
+/// The common part of both; empty() if they do not overlap.
 Rect intersection(const Rect& a, const Rect& b);
 
 /// An 8-bit RGBA image: rows from the top down, no padding, sRGB.
@@ -43,26 +43,25 @@ struct Picture {
     const std::uint8_t* at(int x, int y) const { return &rgba[(std::size_t(y) * size.width + x) * 4]; }
     std::uint8_t* at(int x, int y) { return &rgba[(std::size_t(y) * size.width + x) * 4]; }
 
-    /// Whether nothing shines through.
+    /// Whether all pixels are opaque.
     bool is_opaque() const;
 };
 
-/// A file's metadata: keys and texts, UTF-8. Every format stores "title", "comment", "description", "artist",
-/// "copyright" and "date"; all but mp4 (where libav names itself) also "encoder", the program that made the file.
+/// Metadata of a file: pairs of key and text, UTF-8. All formats store "title", "comment", "description", "artist",
+/// "copyright" and "date". All but mp4 (where libav writes its own name) also store "encoder".
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/// Undoes a background: from the same picture on black and on white, within the rectangle, the colours with their
-/// opacity (not premultiplied) that give both back where a viewer lays them over it in sRGB. Exact on black, and on
-/// white where all channels agree on the opacity; edges that were blended in linear light come out a little darker
-/// there. All of one size.
+/// Recovers colours and opacity (not premultiplied) within the rectangle, from the same picture drawn on black and on
+/// white. Laid over black in sRGB, the result is exact; over white, it is exact where the channels agree on the
+/// opacity. Edges that were blended in linear light become slightly darker there. All pictures have one size.
 void matte(const Picture& black, const Picture& white, const Rect& within, Picture& into);
 
-/// The picture made smaller: each new pixel is the mean, in linear light, of what it covers of the old ones, parts of
-/// pixels included, each weighted by its opacity. Throws Error (exit 2) where a side would grow, or be none.
+/// The picture made smaller. Each new pixel is the mean of the old pixels it covers, in linear light, weighted by area
+/// and opacity. Throws Error (exit 2) if a side would grow or be empty.
 Picture downscaled(const Picture& picture, Size size);
 
-/// Pictures of one size in rows of `columns`, `gap_px` of background between them and around all; in the last row
-/// some may be missing. Throws Error (exit 2) where there is none, their sizes differ, or columns < 1 or gap_px < 0.
+/// Pictures of one size in rows of `columns`, with `gap_px` of background between and around them. The last row may be
+/// incomplete. Throws Error (exit 2) without pictures, for different sizes, columns < 1 or gap_px < 0.
 Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px, Color background);
 
 }  // namespace doppel
