@@ -30,7 +30,7 @@ std::string data_url(std::string_view type, std::string_view bytes) {
     url.resize(start + AV_BASE64_SIZE(bytes.size()));
     av_base64_encode(&url[start], static_cast<int>(url.size() - start),
                      reinterpret_cast<const std::uint8_t*>(bytes.data()), static_cast<int>(bytes.size()));
-    url.pop_back();  // the zero at its end
+    url.pop_back();  // the terminating zero
     return url;
 }
 

@@ -28,7 +28,7 @@ Stream create_file(const fs::path& path) {
 }
 
 Stream open_file(const fs::path& path) {
-    auto stream = open_stream(path, O_RDONLY | O_NONBLOCK, "rb");  // a pipe without a writer would block
+    auto stream = open_stream(path, O_RDONLY | O_NONBLOCK, "rb");  // opening a pipe without a writer would block
     struct stat status {};
     if (!stream || fstat(fileno(stream.get()), &status) != 0) throw cannot(path, "read");
     if (!S_ISREG(status.st_mode)) throw io_failed("{} is not a regular file", path.string());

@@ -12,7 +12,7 @@ namespace doppel {
 
 class Error;
 
-/// A pointer from a library in C and the function that frees it.
+/// Owns a pointer from a C library, freed by `destroy`.
 template <auto destroy>
 struct Destroy {
     void operator()(auto* thing) const { destroy(thing); }
@@ -21,23 +21,23 @@ template <class T, auto destroy>
 using Owned = std::unique_ptr<T, Destroy<destroy>>;
 
 using Stream = Owned<std::FILE, std::fclose>;
-/// By flags of open(2) and a mode of fdopen(3); null where that fails, and errno says why.
+/// Opens with flags of open(2) and a mode of fdopen(3); null on failure, with the reason in errno.
 Stream open_stream(const std::filesystem::path& path, int flags, const char* mode);
-/// A new empty file, to write and read, in place of an older one; no link is followed. Throws Error (exit 4).
+/// Creates an empty file for writing and reading, replacing an older one; follows no link. Throws Error (exit 4).
 Stream create_file(const std::filesystem::path& path);
-/// A regular file to read. Throws Error (exit 4).
+/// Opens a regular file for reading. Throws Error (exit 4).
 Stream open_file(const std::filesystem::path& path);
 
-/// The first bytes of a regular file, at most `most`; none where it cannot be read.
+/// The first bytes of a regular file, at most `most`; empty if it cannot be read.
 std::string start_of_file(const std::filesystem::path& path, std::size_t most);
-/// What has this name; a symbolic link is one.
+/// The type of what has this name; links are not followed.
 std::filesystem::file_type type_of(const std::filesystem::path& path);
 /// The names in a folder, sorted. Throws Error (exit 4).
 std::vector<std::string> names_in(const std::filesystem::path& folder);
 /// rename(2): an older file `to` is replaced. Throws Error (exit 4).
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// A file being written. Every failure, a full disk included, is an Error (exit 4) with the path and the system's
+/// A file being written. Every failure, such as a full disk, throws Error (exit 4) with the path and the system's
 /// reason.
 class OutputFile {
 public:
@@ -46,7 +46,7 @@ public:
 
     void write(std::string_view bytes);
     void flush();
-    /// Reports errors that show only now; what is destroyed unclosed may be incomplete.
+    /// Closes the file and reports delayed write errors. A file destroyed without close() may be incomplete.
     void close();
 
     const std::filesystem::path& path() const { return path_; }
@@ -56,10 +56,10 @@ private:
     Stream file_;
 };
 
-/// The same of a text.
+/// Writes the text as a whole file.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-/// A new folder for files that nobody keeps, removed with this. Throws Error (exit 4).
+/// A new folder, removed with its files by the destructor. Throws Error (exit 4).
 class TemporaryFolder {
 public:
     TemporaryFolder();
@@ -73,7 +73,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// "PATH: cannot be WHAT: the system's reason", exit 4.
+/// The error "PATH: cannot be WHAT: reason of the system", exit 4.
 Error cannot(const std::filesystem::path& path, std::string_view what, int reason = errno);
 
 }  // namespace doppel

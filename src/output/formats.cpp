@@ -22,13 +22,13 @@ std::string words_of(Size size) {
     return fmt::format("[{}, {}]", size.width, size.height);
 }
 
-/// libav's limit: a picture's bytes, with padding, in 31 bits.
+/// The limit of libav: the padded bytes of a picture fit in 31 bits.
 bool libav_takes(Size size) {
     capture_libav_log();
     return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
 }
 
-/// The largest of about the same shape that libav takes, of even sides.
+/// The largest size that libav accepts, of about the same aspect ratio, with even sides.
 Size largest_alike(Size size) {
     const double height = static_cast<double>(size.height) / size.width;
     for (int width = size.width - size.width % 2; width > 2; width -= 2)

@@ -12,34 +12,34 @@
 
 namespace doppel {
 
-/// What a film is written as; png: a picture a frame.
+/// The output format of a film; png: one picture for each frame.
 enum class FilmFormat { mp4, webm, gif, apng, png };
-/// In presets and on the command line; libav's name of a container, and the ending of the file.
+/// The names in presets and on the command line. They are also libav's container names and the file extensions.
 inline constexpr std::array<std::string_view, 5> format_names{"mp4", "webm", "gif", "apng", "png"};
 
-/// Of H.264, VP9 and AV1: chroma subsampling and bits a sample.
+/// Chroma subsampling and bits per sample for H.264, VP9 and AV1.
 enum class PixelFormat { yuv420, yuv444, yuv420_10 };
 inline constexpr std::array<std::string_view, 3> pixel_format_names{"yuv420p", "yuv444p", "yuv420p10"};
 
-/// Efforts of the encoders of H.264, VP9 and AV1: ours, and x264's.
+/// Encoder presets for H.264, VP9 and AV1: Doppel's own, and those of x264.
 inline constexpr std::array<std::string_view, 10> encoder_presets{
     "doppel", "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"};
 
-/// What a format can have, with one of its codecs. All that libav refuses when a file is opened is known here.
+/// The limits of a format with one of its codecs. They include all that libav would refuse when a file is opened.
 struct FormatRow {
     FilmFormat format;
-    std::string_view codec;  // of VideoOptions; empty where the format has one alone
+    std::string_view codec;  // of VideoOptions; empty if the format has only one codec
     std::string_view title;
     int largest_side;                  // px
-    int largest_crf = 0;               // 0: it has no quality, effort and pixel format
-    bool has_alpha = false;            // with a quality: in yuv420p
-    std::string_view rate_words = {};  // why frames/s have the limits that follow; 0: none
-    int most_fps = 0, most_terms = 0;  // most_terms: of a fraction
+    int largest_crf = 0;               // 0: no quality, encoder preset or pixel format
+    bool has_alpha = false;            // for formats with a quality: only with yuv420p
+    std::string_view rate_words = {};  // why the frame rate is limited as follows; limits of 0 mean none
+    int most_fps = 0, most_terms = 0;  // most_terms: the largest numerator and denominator
     double longest_frame_s = 0;
 
     bool is_encoded() const { return largest_crf > 0; }
 };
-// most viewers show a frame of a GIF of 1/100 s for 1/10 s
+// most viewers show a GIF frame of 1/100 s for 1/10 s
 inline constexpr std::array film_formats{
     FormatRow{FilmFormat::mp4, "h264", "H.264", 16384, 51},
     FormatRow{FilmFormat::webm, "vp9", "VP9", 16384, 63, true, "WebM counts milliseconds", 1000},
@@ -52,32 +52,33 @@ inline constexpr std::array film_formats{
     FormatRow{FilmFormat::png, "", "PNG sequence", 65535, 0, true},
 };
 
-/// The names of the codecs that a format has a choice of.
+/// The codecs to choose from; empty if the format has only one.
 std::vector<std::string_view> codecs_of(FilmFormat format);
 
-/// The row of the codec, or the first of the format: of its usual codec.
+/// The row of this codec, or the first row of the format, which has its default codec.
 const FormatRow& format_row(FilmFormat format, std::string_view codec);
 
 struct VideoOptions {
     FilmFormat format = FilmFormat::mp4;
-    std::string codec = {};    // "h264" (mp4), "vp9" or "av1" (webm); empty = h264, vp9
-    Size size;                 // px; even where chroma is for 2×2 pixels
+    std::string codec = {};    // "h264" (mp4), "vp9" or "av1" (webm); empty = the default, h264 or vp9
+    Size size;                 // px; even if chroma is subsampled
     long fps_numerator = 120;  // frames/s
     long fps_denominator = 1;
     PixelFormat pixel_format = PixelFormat::yuv420;  // gif and apng: not used
     std::string preset = "doppel";                   // of encoder_presets; gif and apng: not used
-    int crf = 18;              // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
-    bool transparent = false;  // the pictures' alpha counts: apng, webm of vp9; else it is taken for 255
+    int crf = 18;  // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
+    bool transparent =
+        false;  // store the alpha channel (apng, and webm with vp9); otherwise pictures are taken as opaque
     Metadata metadata = {};
 };
 
-/// What a format cannot have: the option, as presets call it, and what it must be: "must be even, as …".
+/// An option that the format does not allow: its name in presets, and what it must be ("must be even, as …").
 struct FormatFault {
     std::string_view key;
     std::string words;
 };
 
-/// Of all options but frames/s, and of those alone. Nothing where the format can have them.
+/// Checks all options except the frame rate, and the frame rate alone. Nothing if the format allows them.
 std::optional<FormatFault> format_fault(const VideoOptions& options);
 std::optional<FormatFault> rate_fault(const VideoOptions& options);
 

@@ -23,14 +23,14 @@ extern "C" {
 namespace doppel {
 namespace {
 
-/// What libdeflate and libavfilter allocate is null only where memory is out.
+/// libdeflate and libavfilter return null only when memory is exhausted.
 template <class T>
 T* checked(T* thing) {
     if (!thing) throw std::bad_alloc();
     return thing;
 }
 
-/// libavfilter, loaded where a GIF is written: the thirty libraries that it needs would take every command 18 ms more.
+/// libavfilter is loaded only when a GIF is written: its thirty dependencies would add 18 ms to every command.
 struct FilterLibrary {
     SharedLibrary library{{fmt::format("libavfilter.so.{}", LIBAVFILTER_VERSION_MAJOR)}};
     decltype(&avfilter_graph_alloc) graph_alloc = library["avfilter_graph_alloc"];
@@ -42,34 +42,35 @@ struct FilterLibrary {
     decltype(&av_buffersink_get_frame) get_frame = library["av_buffersink_get_frame"];
 };
 
-/// Throws Error (exit 4) where it cannot be loaded.
+/// Throws Error (exit 4) if it cannot be loaded.
 const FilterLibrary& filter_library() {
     static const FilterLibrary library;
     return library;
 }
 
-/// "buffer@NAME=…": where frames of libavfilter's palette filters enter a graph.
+/// The description "buffer@NAME=…" of an input of a filter graph.
 std::string source(std::string_view name, Size size) {
     return fmt::format("buffer@{}=video_size={}x{}:pix_fmt=bgra:time_base=1/1:pixel_aspect=1/1", name, size.width,
                        size.height);
 }
 
-/// Filters of libavfilter between named buffers and one sink. `owner` = what errors are about. All throw Error (exit 4).
+/// A graph of libavfilter filters between named inputs and one output. `owner` is named in errors. All functions throw
+/// Error (exit 4).
 class Filters {
 public:
     Filters(const std::string& owner, const std::string& text)
         : owner_(owner), graph_(checked(library_.graph_alloc())) {
         graph_->nb_threads = 1;
-        AVFilterInOut *inputs = nullptr, *outputs = nullptr;  // none are left open
+        AVFilterInOut *inputs = nullptr, *outputs = nullptr;  // no open inputs or outputs remain
         check(library_.graph_parse(graph_.get(), (text + ",buffersink@out").c_str(), &inputs, &outputs));
         check(library_.graph_config(graph_.get(), nullptr));
     }
 
-    /// Null: the last was given.
+    /// A null frame marks the end of the input.
     void give(const char* buffer, AVFrame* frame) {
         check(library_.add_frame(filter(buffer), frame, AV_BUFFERSRC_FLAG_KEEP_REF | AV_BUFFERSRC_FLAG_PUSH));
     }
-    /// In place of what the frame had.
+    /// Replaces the contents of the frame.
     void take(AVFrame& frame) {
         av_frame_unref(&frame);
         check(library_.get_frame(filter("buffersink@out"), &frame));
@@ -88,11 +89,11 @@ private:
     const std::unique_ptr<AVFilterGraph, Free> graph_;
 };
 
-/// A film's frames on the disk between two passes over them: what changed in each, RGBA, compressed. The file has no
-/// name and goes with the spool. All throw Error (exit 4) with the path and the reason.
+/// Stores the frames of a film on disk between two passes: the changed areas of each as compressed RGBA. The file has
+/// no name and is deleted with this object. All functions throw Error (exit 4) with the path and the reason.
 class Spool {
 public:
-    /// On the file system where the file `film` is.
+    /// The file is on the same file system as `film`.
     explicit Spool(const std::filesystem::path& film)
         : path_(film.string()),
           file_(create_file(path_ + ".spool")),
@@ -113,13 +114,13 @@ public:
         ++frames_;
     }
 
-    /// No write follows; the next read gives the first frame.
+    /// Ends the writing; read() begins with the first frame.
     void rewind() {
         if (std::fflush(file_.get()) != 0) fail("cannot be written");
         if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail("cannot be read");
     }
 
-    /// The next frame, in the order of writing.
+    /// Reads the next frame, in the order of writing.
     void read(SampledAreas& frame) {
         Header header{};
         get(&header, sizeof header);
@@ -136,7 +137,7 @@ public:
     long frames() const { return frames_; }
 
 private:
-    /// A frame begins with this; its areas and their compressed bytes follow.
+    /// Precedes each frame; its areas and their compressed bytes follow.
     struct Header {
         std::size_t areas, packed;
     };
@@ -160,7 +161,7 @@ private:
     long frames_ = 0;
 };
 
-/// RGBA → opaque BGRA.
+/// Converts RGBA to opaque BGRA in place.
 void make_opaque_bgra(std::uint8_t* pixels, std::size_t bytes) {
     for (std::size_t i = 0; i < bytes; i += 4) {
         std::swap(pixels[i], pixels[i + 2]);
@@ -168,7 +169,7 @@ void make_opaque_bgra(std::uint8_t* pixels, std::size_t bytes) {
     }
 }
 
-/// A comment extension (GIF89a, 24) with a line for each text, in blocks of at most 255 bytes; then the trailer.
+/// A comment extension (GIF89a, 24) with one line for each text, in blocks of at most 255 bytes, and the trailer.
 std::string comment_and_end(const Metadata& metadata) {
     std::vector<std::string> lines;
     for (const auto& [key, text] : metadata) lines.push_back(key + ": " + text);
@@ -182,8 +183,8 @@ std::string comment_and_end(const Metadata& metadata) {
     return bytes + '\x3b';
 }
 
-/// The first pass makes one palette of all colours, the second gives each pixel the nearest of them, without dithering,
-/// which would flicker from frame to frame.
+/// The first pass makes one palette for the whole film, the second maps each pixel to the nearest colour. There is no
+/// dithering, which would flicker from frame to frame.
 class GifSink final : public Sink {
 public:
     GifSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)
@@ -216,7 +217,7 @@ private:
         spare_.give_back(std::move(changes));
     }
 
-    /// The frame before, with its changes, enters the filters.
+    /// Applies the changes to the previous frame and passes it to the filters.
     void show(const SampledAreas& changes, long k, Filters& filters) {
         if (av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
         put(changes, *frame_);
@@ -241,13 +242,13 @@ private:
             show(changes, k, indices);
             indices.take(encoder_.frame());
             const std::int64_t start = time_of(k), duration = time_of(k + 1) - start;
-            // the muxer cannot know how long the last frame lasts
+            // the muxer cannot know how long the last frame is shown
             encoder_.set_option("final_delay", fmt::to_string(duration));
             encoder_.send_frame(start, duration);
         }
     }
 
-    /// When frame k starts, 1/100 s.
+    /// Start of frame k, 1/100 s.
     std::int64_t time_of(long k) const { return av_rescale(k, 100 * options_.fps_denominator, options_.fps_numerator); }
 
     const VideoOptions options_;

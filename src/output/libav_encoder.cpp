@@ -27,10 +27,10 @@ extern "C" {
 namespace doppel {
 namespace {
 
-// the log callback cannot tell one encoder from another, but each has its thread
+// the log callback does not say which encoder calls it, but each encoder has its own thread
 thread_local std::string messages;
 
-/// A line may come in pieces.
+/// One line may arrive in several calls.
 void keep(void* /*source*/, int level, const char* format, va_list arguments) {
     constexpr std::size_t enough = 4096;
     std::array<char, 512> piece{};
@@ -38,19 +38,19 @@ void keep(void* /*source*/, int level, const char* format, va_list arguments) {
     try {
         messages += piece.data();
         if (messages.size() > enough) messages.erase(0, messages.size() - enough);
-    } catch (...) {  // out of memory; no exception may pass through C
+    } catch (...) {  // out of memory; an exception must not pass through C code
     }
 }
 
-/// What libav allocates is null only where memory is out.
+/// libav's allocations return null only when memory is exhausted.
 template <class T>
 Libav<T> owned(T* thing) {
     if (!thing) throw std::bad_alloc();
     return Libav<T>(thing);
 }
 
-/// A muxer that writes the file, which is open. libav opens files by their names, and follows links: this one is no
-/// name of any folder. (It opens an MP4 again, to put the index at the front.)
+/// A muxer that writes the open file. libav would open files by name and follow links, so the path of the descriptor is
+/// used. (It opens an MP4 again, to put the index at the front.)
 Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, const char* container) {
     capture_libav_log();
     const auto address = fmt::format("file:/proc/self/fd/{}", fileno(file));
@@ -83,11 +83,11 @@ std::string version(const char* name, unsigned number) {
 
 void capture_libav_log() {
     av_log_set_callback(keep);
-    // SVT-AV1 has its own log, set by the environment alone
+    // SVT-AV1 has its own log, which only the environment controls
     setenv("SVT_LOG", "0", 0);
 }
 
-// without control characters and final full stops
+// removes control characters and final full stops
 std::string take_libav_error() {
     auto text = std::exchange(messages, {});
     for (char& c : text)
@@ -110,7 +110,7 @@ const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID cod
 
 void check_libav(int result, const std::string& name, std::string_view what) {
     if (result >= 0) {
-        take_libav_error();  // a warning
+        take_libav_error();  // only a warning
         return;
     }
     std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
@@ -144,7 +144,7 @@ void put(const SampledAreas& changes, AVFrame& frame) {
 
 Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& name) {
     const std::string_view encoder = encoding.encoder->name;
-    // without threads to be had SVT-AV1, which starts some 110, hangs, and libaom ends the program
+    // if threads cannot be started, SVT-AV1 (some 110 threads) hangs and libaom aborts
     if (has_chroma(encoding.pixels)) need_threads(encoder == "libsvtav1" ? 200 : 3 * encoding.threads);
     auto codec = owned(avcodec_alloc_context3(encoding.encoder));
     codec->width = encoding.size.width;
@@ -179,14 +179,14 @@ void Encoder::write_header() {
     stream_ = avformat_new_stream(format_.get(), nullptr);
     if (!stream_) throw std::bad_alloc();
     check(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), "the stream cannot be described");
-    // MP4 multiplies 1/time_base by a power of two: every frame starts at a whole tick
+    // MP4 multiplies 1/time_base by a power of two, so that every frame starts at a whole tick
     stream_->time_base = codec_->time_base;
     stream_->avg_frame_rate = stream_->r_frame_rate = codec_->framerate;
-    // Matroska then numbers its tracks instead of giving them random ids
+    // with this flag Matroska numbers its tracks instead of giving them random ids
     format_->flags |= AVFMT_FLAG_BITEXACT;
     check(avformat_init_output(format_.get(), nullptr), "the header cannot be made");
     format_->flags &= ~AVFMT_FLAG_BITEXACT;
-    // only now: avformat_init_output() sets or clears the encoder's name
+    // set only here, because avformat_init_output() sets or clears the encoder's name
     for (const auto& [key, text] : encoding_.metadata)
         check(av_dict_set(&format_->metadata, key.c_str(), text.c_str(), 0), "no memory for metadata");
     check(avformat_write_header(format_.get(), nullptr), "the header cannot be written");
@@ -198,7 +198,7 @@ void Encoder::set_option(const char* name, const std::string& value) {
 }
 
 AVFrame& Encoder::frame() {
-    // copies only where the encoder still holds the frame, which x264, libvpx and the AV1 encoders do not
+    // copies only if the encoder still uses the frame; x264, libvpx and the AV1 encoders do not
     check(av_frame_make_writable(frame_.get()), "no memory for a frame");
     return *frame_;
 }
@@ -212,7 +212,7 @@ void Encoder::send_frame(std::int64_t time, std::int64_t duration) {
     write_packets();
 }
 
-/// Muxes what the encoder has ready.
+/// Muxes all packets that the encoder has finished.
 void Encoder::write_packets() {
     for (;;) {
         throw_if_set(stop_);
@@ -227,7 +227,7 @@ void Encoder::write_packets() {
     }
 }
 
-/// The header of an APNG travels with the first packet.
+/// The header of an APNG is part of the first packet.
 void Encoder::insert_png_chunks() {
     std::size_t size = 0;
     const auto* header = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, &size);

@@ -23,11 +23,11 @@
 namespace doppel {
 namespace {
 
-/// A thread's memory for stb_image_write, which allocates the same few blocks of megabytes for each picture: malloc
-/// would return them to the system each time, and page faults would cost a third of the work.
+/// The memory that one thread reuses for stb_image_write, which allocates the same few large blocks for each picture.
+/// malloc would return them to the system each time; the page faults would cost a third of the time.
 class Arena {
 public:
-    /// The first free block, enlarged where it is too small. Null where memory is out.
+    /// The first free block, enlarged if it is too small. Null when memory is exhausted.
     void* take(std::size_t size) {
         const auto block = std::ranges::find(blocks_, false, &Block::taken);
         if (block == blocks_.end()) return nullptr;
@@ -55,9 +55,10 @@ private:
 
 thread_local Arena arena;
 
-/// zlib's format through libdeflate, as stb_image_write asks for it: a block of the arena's, or null.
+/// zlib's format by libdeflate, with the signature that stb_image_write requires. Returns a block of the arena, or
+/// null.
 unsigned char* compress(unsigned char* data, int length, int* compressed_length, int /*quality*/) {
-    // the others take 1.8 times as long for a file 2 to 5 % smaller: see tests/output/png_test.cpp
+    // higher levels take 1.8 times as long for files 2 to 5 % smaller: see tests/output/png_test.cpp
     constexpr int level = 1;
     thread_local const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(
         libdeflate_alloc_compressor(level));
@@ -82,7 +83,7 @@ unsigned char* compress(unsigned char* data, int length, int* compressed_length,
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBIW_ZLIB_COMPRESS doppel::compress
 #define STBIW_MALLOC(size) doppel::arena.take(size)
-#define STBIW_REALLOC(block, size) (std::abort(), nullptr)  // asked for only by its own compressor
+#define STBIW_REALLOC(block, size) (std::abort(), nullptr)  // only stb's own compressor would call it
 #define STBIW_FREE(block) doppel::arena.give_back(block)
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
@@ -111,7 +112,7 @@ std::string keyword(const std::string& key) {
     return word;
 }
 
-/// UTF-8 as Latin-1; nothing where a character is not in it.
+/// The UTF-8 text as Latin-1; nothing if a character is not in Latin-1.
 std::optional<std::string> latin1(std::string_view text) {
     std::string result;
     while (!text.empty()) {
@@ -122,17 +123,17 @@ std::optional<std::string> latin1(std::string_view text) {
     return result;
 }
 
-// flat colours compress best unfiltered; any filter takes 1.7 times as long for a larger file
+// flat colours compress best without a filter; any filter takes 1.7 times as long, and the file is larger
 [[maybe_unused]] const int no_filter = stbi_write_force_png_filter = 0;
 
 AVPixelFormat pixels_of(const PngOptions& options) {
     return options.with_alpha ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
 }
 
-/// A file's text chunks follow its signature and header.
+/// The text chunks are inserted after signature and header.
 constexpr std::size_t header_bytes = 8 + 25;
 
-/// The bytes of the file; `samples` are the picture's in the format pixels_of(). `path` is for messages.
+/// The bytes of the file. `samples` are those of the picture in the format pixels_of(); `path` is used in messages.
 std::string encoded(const std::filesystem::path& path, Size size, const std::uint8_t* samples,
                     const PngOptions& options, const std::string& text_chunks) {
     const int channels = options.with_alpha ? 4 : 3;
@@ -190,8 +191,8 @@ private:
 
 }  // namespace
 
-// 11.3.4: a keyword ends with a zero; iTXt adds that it is not compressed, and an empty language and translation of the
-// keyword.
+// 11.3.4: a keyword ends with a zero. In iTXt, flags for no compression, an empty language and an empty translated
+// keyword follow.
 std::string png_text_chunks(const Metadata& metadata) {
     std::string chunks;
     for (const auto& [key, text] : metadata) {
@@ -202,7 +203,7 @@ std::string png_text_chunks(const Metadata& metadata) {
     return chunks;
 }
 
-/// Text chunks and, 11.3.5.3, the size of a pixel.
+/// The text chunks and, 11.3.5.3, the size of a pixel.
 static std::string chunks_of(const PngOptions& options) {
     auto chunks = png_text_chunks(options.metadata);
     if (options.dpi > 0) {
@@ -212,7 +213,7 @@ static std::string chunks_of(const PngOptions& options) {
     return chunks;
 }
 
-/// Not yet compressed.
+/// The samples before compression.
 static Buffer samples_of(const Picture& picture, const PngOptions& options) {
     const Rect all = all_of(picture.size);
     Buffer samples;
@@ -238,7 +239,7 @@ std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> p
 }
 
 int png_threads(int jobs, Size size) {
-    // a thread's queued picture, its current one, filtered rows, compressed rows, and the file
+    // for each thread: a queued picture, its current one, filtered rows, compressed rows, and the file
     const std::size_t bytes = 5 * byte_count(AV_PIX_FMT_RGBA, all_of(size));
     return static_cast<int>(affordable(bytes, static_cast<std::size_t>(jobs > 0 ? jobs : cores())));
 }

@@ -37,7 +37,7 @@ Stream open_png(const std::filesystem::path& place) {
     return open_file(place);
 }
 
-/// Whether the chunk that starts so, and whose contents are read next, has the checksum at its end.
+/// Whether the chunk that begins with `start` ends with the right checksum. Its contents are the next bytes of `file`.
 bool has_its_checksum(std::FILE* file, const unsigned char (&start)[8]) {
     std::array<unsigned char, std::size_t{1} << 16> block;
     std::uint32_t sum = libdeflate_crc32(0, start + 4, 4);
@@ -50,10 +50,9 @@ bool has_its_checksum(std::FILE* file, const unsigned char (&start)[8]) {
     return std::fread(block.data(), 1, 4, file) == 4 && big_endian(block.data()) == sum;
 }
 
-/// Why the sizes in the file are impossible, or which part of it is damaged; "" where they are not. stb_image allocates
-/// by the length of a chunk and by the size in the header before it reads on, so a file of a hundred bytes could take
-/// gigabytes.
-/// Source  Portable Network Graphics (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE makes at most 1032 bytes of one.
+/// Why the sizes stated in the file are impossible, or which part is damaged; empty if neither. stb_image allocates by
+/// the stated sizes before it reads on, so a file of 100 bytes could take gigabytes. Source: Portable Network Graphics
+/// (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE expands at most by 1032.
 std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk
     constexpr std::uint64_t most_inflated = 1032, most_bytes = std::uint64_t{1} << 30;
@@ -70,7 +69,7 @@ std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
         if (std::fseek(file, static_cast<long>(at), SEEK_SET) != 0 || std::fread(start, 1, 8, file) != 8) break;
         const std::string_view type(reinterpret_cast<const char*>(start + 4), 4);
         if (!std::ranges::all_of(type, [](unsigned char c) { return std::isalpha(c); }))
-            return fmt::format("there is no chunk at byte {}", at);  // zeros of a sparse file
+            return fmt::format("there is no chunk at byte {}", at);  // a sparse file reads as zeros
         if (big_endian(start) + around > bytes - at)
             return fmt::format("the chunk at byte {} is longer than the file", at);
         if (!has_its_checksum(file, start))
@@ -81,10 +80,9 @@ std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     return {};
 }
 
-/// What a picture says of its colours other than sRGB; "" where nothing. Its numbers are compared as they are, so that
-/// they have to mean the same.
-/// Source  Portable Network Graphics, third edition (W3C, 2025), 4.3: of cICP, iCCP, sRGB and gAMA with cHRM the first
-/// that is there counts; 11.3.2.
+/// What the file states about its colours if they are not sRGB; empty otherwise. Golden comparison compares numbers, so
+/// they must have the same meaning. Source: Portable Network Graphics, third edition (W3C, 2025), 4.3: the first
+/// present of cICP, iCCP, sRGB, and gAMA with cHRM counts; 11.3.2.
 std::string other_colors(std::FILE* file) {
     constexpr std::uint64_t srgb_gamma = 45455;
     constexpr std::array<std::uint64_t, 8> srgb_primaries{31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
@@ -94,7 +92,7 @@ std::string other_colors(std::FILE* file) {
         return std::max(a, b) - std::min(a, b) <= most;
     };
     for (long at = 8; std::fseek(file, at, SEEK_SET) == 0;) {
-        unsigned char chunk[8 + 32]{};  // length, type and what these have
+        unsigned char chunk[8 + 32]{};  // length, type and the contents of these chunks
         if (std::fread(chunk, 1, sizeof chunk, file) < 8) break;
         const std::string_view type(reinterpret_cast<const char*>(chunk + 4), 4);
         const unsigned char* const content = chunk + 8;
@@ -110,7 +108,7 @@ std::string other_colors(std::FILE* file) {
                                 big_endian(content), srgb_gamma);
         if (type == "cHRM")
             for (std::size_t i = 0; i < srgb_primaries.size(); ++i)
-                if (!near(big_endian(content + 4 * i), srgb_primaries[i], 100))  // as libpng
+                if (!near(big_endian(content + 4 * i), srgb_primaries[i], 100))  // the tolerance of libpng
                     primaries = "primaries of its own (cHRM)";
         at += static_cast<long>(12 + big_endian(chunk));
     }

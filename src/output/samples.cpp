@@ -10,7 +10,7 @@ extern "C" {
 #include <bit>
 #include <cstring>
 
-// The loops are compiled twice, chosen at program start by the processor (too early for sanitizers).
+// The loops are compiled for two instruction sets; the processor decides at program start (too early for sanitizers).
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(DOPPEL_SANITIZE)
 #define DOPPEL_WIDEST_SIMD __attribute__((target_clones("avx2", "default")))
 #else
@@ -25,7 +25,7 @@ bool has_halved_chroma(AVPixelFormat format) {
     return av_pix_fmt_desc_get(format)->log2_chroma_w > 0;
 }
 
-/// Planes to be filled row by row.
+/// Planes that are filled row by row.
 struct Target {
     std::array<std::uint8_t*, 4> plane{};
     std::array<int, 4> stride{};  // bytes
@@ -55,11 +55,11 @@ constexpr int fixed(double x) {
 struct Weights {
     int r, g, b;
 };
-// green completes the sum, so that greys have exact luma and no chroma
+// green completes the sum, so that greys have exact luma and zero chroma
 constexpr Weights with_green(int r, int b, int sum) {
     return {r, sum - r - b, b};
 }
-/// The scale s of samples of this type.
+/// The scale factor s of this sample type.
 template <class Sample>
 constexpr int scale = sizeof(Sample) == 1 ? 1 : 4;
 template <int s>
@@ -84,7 +84,7 @@ DOPPEL_INLINE Word load(const std::uint8_t* bytes) {
     return word;
 }
 
-// Rows of RGBA pixels to rows of samples.
+// Conversions of rows of RGBA pixels to rows of samples.
 
 template <class Sample>
 DOPPEL_INLINE void luma(const std::uint8_t* __restrict rgba, int width, Sample* __restrict y) {
@@ -126,12 +126,12 @@ DOPPEL_INLINE void alpha(const std::uint8_t* __restrict rgba, int width, std::ui
 }
 
 DOPPEL_INLINE void colors(const std::uint8_t* __restrict rgba, int width, std::uint8_t* __restrict rgb) {
-    // four bytes a pixel, the last overwritten by the next pixel: faster than three
+    // writing four bytes a pixel, the last overwritten by the next pixel, is faster than writing three
     for (int i = 0; i < width - 1; ++i) std::memcpy(rgb + 3 * i, rgba + 4 * i, 4);
     std::memcpy(rgb + 3 * (width - 1), rgba + 4 * (width - 1), 3);
 }
 
-/// Sample = std::uint8_t, or std::uint16_t for 10 bits.
+/// Sample = std::uint8_t for 8 bits, std::uint16_t for 10 bits.
 template <class Sample>
 DOPPEL_INLINE void convert_420(const Picture& picture, const Rect& area, const Target& to) {
     const int width = area.right - area.left;

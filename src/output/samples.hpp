@@ -13,34 +13,34 @@ extern "C" {
 
 namespace doppel {
 
-// Pictures as encoders take them, in libav's pixel formats RGB24, RGBA, YUV420P, YUV444P, YUV420P10LE and YUVA420P. Y,
-// Cb and Cr are BT.709, limited range: of 8 bits Y is 16…235, Cb and Cr 16…240; of 10 bits four times that. In 4:2:0 a
-// chroma sample is the mean of 2×2 pixels, sited in their centre. Alpha is kept as it is.
+// Conversion of pictures to libav's pixel formats RGB24, RGBA, YUV420P, YUV444P, YUV420P10LE and YUVA420P. Y, Cb and Cr
+// are BT.709, limited range: with 8 bits Y is 16…235, Cb and Cr 16…240; with 10 bits four times that. In 4:2:0 a chroma
+// sample is the mean of 2×2 pixels, located in their centre. Alpha is unchanged.
 
-/// Where a rectangle of a picture lies in one of its planes.
+/// The place of a rectangle of a picture in one plane.
 struct PlaneArea {
     int offset, row_bytes;  // of a row, bytes
     int top, rows;
 };
 PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area);
 
-/// Of a rectangle, or of several, in all planes.
+/// Bytes of one rectangle, or of several, in all planes.
 std::size_t byte_count(AVPixelFormat format, const Rect& area);
 std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas);
 
-/// The smallest rectangle around `area` that shares no sample with pixels outside: even edges in 4:2:0. What lies
-/// outside the picture (whose sides are even then) is cut off.
+/// The smallest rectangle around `area` that shares no sample with pixels outside: even edges in 4:2:0. It is cut off
+/// at the edges of the picture, whose sides are even in 4:2:0.
 Rect aligned(AVPixelFormat format, const Rect& area, Size picture);
 
 /// Converts an aligned rectangle: plane after plane, rows from the top down, no padding. A sample depends on its own
-/// pixels alone: the whole picture at once or area by area gives the same bytes, with every width of SIMD. (swscale
-/// filters chroma over more pixels, and converts no areas.)
+/// pixels only. So a whole picture and its areas one by one give the same bytes, at every SIMD width. (swscale filters
+/// chroma over more pixels, and cannot convert areas.)
 void convert(const Picture& picture, const Rect& area, AVPixelFormat format, std::uint8_t* to);
 
-/// Uninitialised bytes; the memory is kept from one use to the next.
+/// Uninitialised bytes; their memory is reused.
 class Buffer {
 public:
-    /// Room for `count` bytes; their contents are undefined.
+    /// Room for `count` bytes with undefined contents.
     std::uint8_t* make_room(std::size_t count) {
         if (count > capacity_) {
             bytes_ = std::make_unique_for_overwrite<std::uint8_t[]>(count);
@@ -56,7 +56,7 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// The changed areas of a picture, converted: the bytes of each area in turn.
+/// The changed areas of a picture, converted, one after the other.
 struct SampledAreas {
     std::vector<Rect> areas;  // aligned
     Buffer bytes;

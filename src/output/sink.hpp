@@ -12,24 +12,24 @@
 
 namespace doppel {
 
-/// For sinks that are never asked to stop.
+/// For sinks that are never stopped.
 inline const std::atomic<bool> never_stopped = false;
 
 /// Writes pictures in order, to a video or a folder of images. take() and finish() may block, and throw Error (exit 4)
-/// with the path and the reason. Destroyed unfinished it stops at once; the file's owner removes it.
+/// with the path and the reason. Destroying an unfinished sink stops it at once; the owner of the file removes it.
 class Sink {
 public:
     virtual ~Sink() = default;
 
-    /// The next frame. `changed`: where it differs from the one before (everywhere, for the first).
+    /// Adds the next frame. `changed`: where it differs from the previous one; for the first frame, everything.
     virtual void take(const Picture& picture, const std::vector<Rect>& changed) = 0;
 
-    /// Writes all that was taken, and completes the file.
+    /// Writes all frames and completes the file.
     virtual void finish() = 0;
 };
 
-/// Threads of an encoder, the same on every machine, as the output of x264 and libvpx depends on them. (On two cores,
-/// eight take x264 as much CPU time as two.)
+/// Threads of an encoder. The number is the same on every machine, because the output of x264 and libvpx depends on it.
+/// (On two cores, x264 takes the same CPU time with eight as with two.)
 inline constexpr std::size_t encoder_threads = 8;
 
 /// A video file:
@@ -46,10 +46,10 @@ inline constexpr std::size_t encoder_threads = 8;
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop = never_stopped);
 
-/// Throws as make_video_sink(), but opens no file. A sequence of PNGs has nothing that is missing.
+/// Checks as make_video_sink() does, without opening a file. For a sequence of PNGs nothing can be missing.
 void check_video(const VideoOptions& options);
 
-/// Versions of the libraries that write the video, for the manifest: "libavcodec 59.37.100, libavformat …".
+/// Versions of the video libraries for the manifest: "libavcodec 59.37.100, libavformat …".
 std::string libav_description();
 
 }  // namespace doppel

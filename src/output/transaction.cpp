@@ -21,14 +21,16 @@ namespace fs = std::filesystem;
 
 using Type = fs::file_type;
 
-constexpr const char* lock_name = ".lock";  // holds the process, then, after commit(), "publish INODE …" of new folders
-constexpr const char* backup_name = ".old";  // of a folder, where the file system cannot exchange two names
+constexpr const char* lock_name =
+    ".lock";  // contains the process, and after commit() a line "publish INODE …" with the new folders
+constexpr const char* backup_name =
+    ".old";  // suffix of a replaced folder, if the file system cannot exchange two names
 
 Error not_ours(const fs::path& path) {
     return io_failed("{} was not written by Doppel; move it, or give another folder with --out", path.string());
 }
 
-/// Throws where something of another type has the name; no link is followed.
+/// Throws if the name is used by something of another type; follows no link.
 void require_type(const fs::path& path, bool is_folder) {
     const auto type = type_of(path);
     if (type == Type::not_found || type == (is_folder ? Type::directory : Type::regular)) return;
@@ -50,7 +52,7 @@ void append(const Stream& file, const std::string& text, const fs::path& path) {
     if (written != static_cast<ssize_t>(text.size())) throw cannot(path, "written", written < 0 ? errno : ENOSPC);
 }
 
-/// Flushes it to the disk. Errors of file systems that cannot do not count.
+/// Flushes it to the disk. Ignores errors of file systems that do not support this.
 void sync(int file, const fs::path& path) {
     if (fsync(file) != 0 && errno != EINVAL && errno != ENOSYS && errno != EROFS) throw cannot(path, "written");
 }
@@ -66,7 +68,7 @@ void sync_folder(const fs::path& path, bool with_files = false) {
 Transaction::Transaction(fs::path folder, const std::string& run, std::string kind, Replacing replacing)
     : Transaction(std::move(folder), std::move(kind), std::move(replacing)) {
     hidden_ = folder_ / (".doppel-" + run);
-    // what is thrown from here on, the destructor undoes
+    // from here on the destructor undoes the steps if one throws
     make_folders();
     while (!lock()) continue;
     written_ = written_files(folder_);
@@ -85,11 +87,11 @@ Transaction::~Transaction() {
         try {
             clear();
         } catch (const Error&) {
-            // what cannot be removed stays
+            // files that cannot be removed stay
         }
-        unlink(hidden(lock_name).c_str());  // before the lock is released, so that no other run has it yet
+        unlink(hidden(lock_name).c_str());  // while this process still has the lock, so that no other run uses the file
     }
-    rmdir(hidden_.c_str());  // where it is empty, as the folders
+    rmdir(hidden_.c_str());  // removed if it is empty, as are the folders
     for (auto made = made_.rbegin(); made != made_.rend(); ++made) rmdir(made->c_str());
 }
 
@@ -99,7 +101,7 @@ void Transaction::make_folders() {
     for (const fs::path& step : folder_) {
         way /= step;
         std::error_code error, ignored;
-        while (!fs::is_directory(way, ignored)) {  // again where another run removes it
+        while (!fs::is_directory(way, ignored)) {  // again if another run removes it
             if (fs::create_directory(way, error)) made_.push_back(way);
             if (!error) continue;
             require_type(way, true);
@@ -109,7 +111,7 @@ void Transaction::make_folders() {
     }
 }
 
-/// Makes and locks the hidden folder; false where its owner has meanwhile removed it.
+/// Makes and locks the hidden folder. Returns false if another process has removed it meanwhile.
 bool Transaction::lock() {
     const bool is_new = mkdir(hidden_.c_str(), 0777) == 0;
     if (!is_new && errno != EEXIST) throw cannot(folder_, "written to");
@@ -139,7 +141,7 @@ bool Transaction::lock() {
         folder_.string(), process, std::generic_category().message(fault), hidden_.string());
 }
 
-/// Moves in what an earlier run had committed itself to, and did not come to.
+/// Publishes the files that an interrupted run had committed.
 void Transaction::recover() {
     std::string text(4096, '\0'), process, word;
     const auto got = pread(fileno(lock_.get()), text.data(), text.size(), 0);
@@ -147,7 +149,7 @@ void Transaction::recover() {
     text.resize(static_cast<std::size_t>(got));
     std::istringstream notes(text);
     if (!std::getline(notes, process) || !(notes >> word) || !text.ends_with('\n')) return;
-    keeps_hidden_ = true;  // where this fails
+    keeps_hidden_ = true;  // in case this fails
     std::set<ino_t> fresh;
     for (ino_t inode = 0; notes >> inode;) fresh.insert(inode);
     auto names = names_in(hidden_);
@@ -170,7 +172,7 @@ void Transaction::clear() const {
             throw cannot(hidden(name), "removed", error.value());
 }
 
-/// Empties it for this process.
+/// Empties the hidden folder and marks it as this process's.
 void Transaction::begin() {
     clear();
     if (ftruncate(fileno(lock_.get()), 0) != 0) throw cannot(hidden(lock_name), "written");
@@ -178,7 +180,7 @@ void Transaction::begin() {
     append(lock_, fmt::format("{}\n", getpid()), hidden(lock_name));
 }
 
-/// Throws where the name is there, and what has it may not be replaced by a file or a folder.
+/// Throws if the name exists and may not be replaced by a file or a folder.
 void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
     const auto path = folder_ / name;
     require_type(path, is_folder);
@@ -196,7 +198,8 @@ void Transaction::refuse_foreign_file(const std::string& name) const {
     const auto path = folder_ / name;
     std::error_code error;
     for (const auto& input : replacing_.inputs)
-        if (fs::equivalent(input, path, error) && !error)  // by the file: links and hard links are the same
+        if (fs::equivalent(input, path, error) &&
+            !error)  // compares the file itself: links and hard links are equivalent
             throw io_failed("{} is read by this run and would be replaced; give another folder with --out",
                             path.string());
     const auto origin = origin_of(folder_, name, written_);
@@ -209,7 +212,7 @@ void Transaction::refuse_foreign_file(const std::string& name) const {
             "{} was changed since Doppel wrote it; move it, give another folder with --out, or replace it "
             "with --force",
             path.string());
-    // an immutable file (chattr +i) cannot be renamed, a read-only one can: say so before work starts
+    // report now an immutable file (chattr +i), which cannot be renamed; a read-only file can be
     if (access(path.c_str(), W_OK) != 0 && errno == EPERM) throw cannot(path, "replaced");
 }
 
@@ -302,13 +305,13 @@ std::vector<fs::path> Transaction::publish() {
     try {
         begin();
     } catch (const Error&) {
-        // all is in its place: the next run cleans up
+        // everything is in place; the next run cleans up
     }
-    made_.clear();  // by "new/../there" the files are found only while there is "new"
+    made_.clear();  // the paths "new/../there" are valid only while "new" exists
     return files;
 }
 
-/// Has all files on the disk, and notes there that they are to be moved in, by the next run if not by this one.
+/// Flushes all files to the disk and records that they are to be published, by this run or the next.
 void Transaction::commit() {
     std::string line = "publish";
     for (const Part& part : parts_) {
@@ -326,7 +329,7 @@ void Transaction::commit() {
     sync(fileno(lock_.get()), hidden(lock_name));
 }
 
-/// Gives it its place; an older folder takes its place here.
+/// Moves the file to its place; an older folder moves into the hidden folder in exchange.
 void Transaction::move_in(const std::string& name) const {
     const auto from = hidden(name), to = folder_ / name;
     if (type_of(to) == Type::directory) {

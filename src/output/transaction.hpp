@@ -10,58 +10,57 @@
 
 namespace doppel {
 
-/// What a run may replace besides files of its own kind that are as Doppel wrote them.
+/// What a run may replace, besides unchanged files that Doppel made for the same kind of run.
 struct Replacing {
-    std::vector<std::filesystem::path> inputs = {};  // which it reads: never
-    bool force = false;                              // files of Doppel's that somebody changed, or of another kind
+    std::vector<std::filesystem::path> inputs = {};  // files that the run reads: never replaced
+    bool force = false;  // also replace Doppel's files that were changed since, or belong to another kind of run
 };
 
-/// The files of one run in one folder, which appear complete and together or not at all. They are written into a hidden
-/// folder there, .doppel-RUN, locked by .lock in it, and publish() moves them to their places. If the process is killed
-/// before it begins to, the next run of that name removes them; after that, it moves in what is left. Destroyed
-/// unpublished, it removes what was written, and the folders it made if they are empty.
-///
-/// Replaces and removes only what Doppel made (see origin_of()) and nobody changed since, and follows no symbolic link
-/// in the folder, nor to it.
+/// The files of one run in one folder, which appear complete and together, or not at all. They are written to a hidden
+/// folder in it, .doppel-RUN, locked by the file .lock. publish() moves them to their places. If the process is killed
+/// before that, the next run of that name removes them; if it is killed during that, the next run moves in the
+/// remaining ones. The destructor removes the files that are not published, and the folders it made if they are empty.
+/// Only unchanged files that Doppel made (see origin_of()) are replaced or removed. No symbolic link to or in the
+/// folder is followed.
 class Transaction {
 public:
-    /// Makes `folder` and its parents, and locks it for runs named `run`; runs of other names may write other files
-    /// there at the same time. `kind` = "film", "figure" or "fit": files of another kind stay. Throws Error (exit 4)
-    /// where that fails or another process has the lock.
+    /// Makes `folder` and its parents, and locks it for runs named `run`. Runs of other names may write other files
+    /// there at the same time. `kind` = "film", "figure" or "fit": files of another kind are not replaced. Throws Error
+    /// (exit 4) on failure or if another process has the lock.
     explicit Transaction(std::filesystem::path folder, const std::string& run = "run", std::string kind = {},
                          Replacing replacing = {});
     ~Transaction();
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
 
-    /// Where to write the file NAME until publish(). Throws Error (exit 4) where NAME is not Doppel's, or cannot be
+    /// The path to write the file NAME to, until publish(). Throws Error (exit 4) if NAME exists and may not be
     /// replaced.
     std::filesystem::path file(const std::string& name);
-    /// The same for a folder of files, made empty. Publishing replaces an older folder NAME as a whole.
+    /// The same for a new empty folder. Publishing replaces an older folder NAME as a whole.
     std::filesystem::path directory(const std::string& name);
-    /// Throws as file() does, for a file that is begun later.
+    /// Throws as file() does, for a file that is written later.
     void require(const std::string& name) const { refuse_foreign_files(name, false); }
-    /// Publishing removes the file NAME, where it is Doppel's.
+    /// Publishing removes the file NAME if Doppel made it.
     void remove(const std::string& name);
 
-    /// The file or folder is complete.
+    /// Marks the file or folder as complete.
     void finished(const std::string& name);
-    /// Returns last(), the final steps of a run including publish(). Where it throws, finished files stay in the hidden
-    /// folder until the next run, and the error (exit 4 where it is not an Error) says so; an interrupted run leaves
-    /// nothing.
+    /// Returns last(), the final steps of a run including publish(). If it throws, complete files stay in the hidden
+    /// folder until the next run, and the error says so (exit 4 for other exceptions). After an interruption nothing
+    /// stays.
     std::vector<std::filesystem::path> keeping_finished(
         const std::function<std::vector<std::filesystem::path>()>& last);
 
-    /// Removes all files of the run but `name`, which is complete and will be published as `new_name`.
+    /// Removes all files of the run except the complete file `name`, which will be published as `new_name`.
     void keep_only(const std::string& name, const std::string& new_name);
 
-    /// The files that are finished, those in folders too: "frames/000000.png".
+    /// The complete files, including those in folders: "frames/000000.png".
     std::vector<std::pair<std::string, WrittenFile>> finished_files() const;
-    /// Files of earlier runs that manifests name and that stay where they are when this run is published.
+    /// Files of earlier runs, listed in manifests, that stay in place when this run is published.
     std::map<std::string, WrittenFile> earlier_files() const;
 
-    /// Gives all files their places, in the order in which they were begun: the manifest comes last. Returns their paths.
-    /// Throws Error (exit 4): then either all older files are unchanged, or the next run moves in what is left.
+    /// Moves all files to their places, in the order in which they were begun, the manifest last. Returns their paths.
+    /// Throws Error (exit 4): then either all older files are unchanged, or the next run moves in the remaining files.
     std::vector<std::filesystem::path> publish();
 
     const std::filesystem::path& folder() const { return folder_; }
@@ -86,7 +85,7 @@ private:
     std::filesystem::path folder_, hidden_;
     std::string kind_;
     Replacing replacing_;
-    std::vector<std::filesystem::path> made_;  // folders, outermost first
+    std::vector<std::filesystem::path> made_;  // folders that this run made, outermost first
     Stream lock_;
     bool keeps_hidden_ = false;
     WrittenFiles written_;

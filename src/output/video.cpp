@@ -7,8 +7,8 @@
 namespace doppel {
 namespace {
 
-/// The queue holds what changed from frame to frame; the encoder's thread copies that into the one frame it keeps.
-/// (Queueing all of a 1080p frame would add a copy of 0.2 ms.)
+/// The queue contains the changes from frame to frame; the encoder's thread applies them to its one frame. (Queueing
+/// whole 1080p frames would add a copy of 0.2 ms.)
 class VideoSink final : public Sink {
 public:
     VideoSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)

@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// The speeds of the other encoders that compare with x264's: of each of encoder_presets (the higher, the faster).
+/// Speed settings of the other encoders, for each of encoder_presets; higher is faster.
 struct Speeds {
     int vpx, svt, aom;
 };
@@ -24,16 +24,17 @@ const Speeds& speeds_of(const VideoOptions& options) {
                                            encoder_presets.begin())];
 }
 
-/// Threads of x264 in "doppel", a slice of the picture each: with a frame each, as else, it takes a fifth more CPU time.
+/// In "doppel", x264's threads share each picture in slices; one thread for each frame would take a fifth more CPU
+/// time.
 constexpr std::size_t slice_threads = 4;
 
-/// In "doppel", found by tests/bench/encoders, all that serves pictures which change everywhere is off: of ours 97 % of the
-/// macroblocks stay as they are. A fine first frame keeps sharp what rests; quantizers are constant, and a frame is whole
-/// every 5 s. A narrow dead zone keeps the last faint steps of trails that fade, which coarser B-frames pay for. It looks
-/// as veryfast does at the same crf.
+/// Settings of "doppel", found with tests/bench/encoders. In these films 97 % of the macroblocks do not change from
+/// frame to frame. Features for fully changing pictures are off; the first frame is fine; quantizers are constant;
+/// there is a key frame every 5 s. A narrow dead zone keeps the faint ends of fading trails, at the expense of coarser
+/// B-frames. At the same crf the quality equals that of veryfast.
 Metadata x264_options(const VideoOptions& options) {
     if (options.preset != "doppel") return {{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
-    const int finer = options.pixel_format == PixelFormat::yuv420_10 ? 12 : 0;  // 6 quantizers a bit
+    const int finer = options.pixel_format == PixelFormat::yuv420_10 ? 12 : 0;  // 6 quantizer steps for each bit
     const int quantizer = options.crf == 0 ? 0 : std::min(options.crf + 7, 51) + finer;
     const auto key_interval = 5 * options.fps_numerator / options.fps_denominator;
     return {
@@ -44,8 +45,8 @@ Metadata x264_options(const VideoOptions& options) {
                                     quantizer, std::max(key_interval, 1L))}};
 }
 
-/// In "doppel", found by tests/bench/encoders, as for a live screen: an eighth of the CPU time for 1.2 times the bytes. (Ten
-/// bits lose 7 dB by that.)
+/// Settings of "doppel", found with tests/bench/encoders, as for screen sharing: an eighth of the CPU time for 1.2
+/// times the bytes. (With ten bits this would cost 7 dB.)
 Metadata vpx_options(const VideoOptions& options) {
     const bool is_live = options.preset == "doppel" && options.pixel_format != PixelFormat::yuv420_10;
     Metadata result{{"deadline", is_live ? "realtime" : "good"},
@@ -55,7 +56,7 @@ Metadata vpx_options(const VideoOptions& options) {
                     {"b", "0"},
                     {"crf", fmt::to_string(options.crf)}};
     if (is_live) result.emplace_back("tune-content", "screen");
-    // hidden frames of the colour stream would have no counterpart in that of alpha
+    // hidden frames of the colour stream would have no counterpart in the alpha stream
     if (options.transparent) result.emplace_back("auto-alt-ref", "0");
     return result;
 }
@@ -69,7 +70,7 @@ Metadata av1_options(const VideoOptions& options, std::string_view encoder) {
         {"preset", fmt::to_string(preset.svt)}, {"crf", crf}, {"svtav1-params", fmt::format("lp={}", encoder_threads)}};
 }
 
-/// SVT-AV1 is several times as fast as libaom, but has neither 4:4:4 nor every size and rate.
+/// SVT-AV1 is several times as fast as libaom, but lacks 4:4:4 and some sizes and rates.
 std::vector<const char*> av1_encoders(const VideoOptions& options) {
     const auto [width, height] = options.size;
     const bool has_rate = options.fps_numerator <= 240 * options.fps_denominator;
@@ -78,7 +79,7 @@ std::vector<const char*> av1_encoders(const VideoOptions& options) {
     return svt ? std::vector{"libsvtav1", "libaom-av1"} : std::vector{"libaom-av1"};
 }
 
-/// Ticks a second in which an mp4 says how long it lasts: as libav's of the video track, so that no frame is cut short.
+/// Ticks per second of the duration in an mp4. It equals libav's for the video track, so that no frame is cut short.
 long mp4_timescale(const VideoOptions& options) {
     long ticks = options.fps_numerator;
     while (ticks < 10000) ticks *= 2;

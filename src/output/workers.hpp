@@ -21,7 +21,7 @@ class Queue {
 public:
     explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Waits for room. False where the queue is closed; nothing is pushed then.
+    /// Waits for room. Returns false, and pushes nothing, if the queue is closed.
     bool push(T thing) {
         std::unique_lock lock(mutex_);
         room_.wait(lock, [&] { return closed_ || things_.size() < capacity_; });
@@ -31,7 +31,7 @@ public:
         return true;
     }
 
-    /// Waits for an element. Nothing where the queue is closed and empty.
+    /// Waits for an element. Returns nothing if the queue is closed and empty.
     std::optional<T> pop() {
         std::unique_lock lock(mutex_);
         filled_.wait(lock, [&] { return closed_ || !things_.empty(); });
@@ -42,7 +42,7 @@ public:
         return thing;
     }
 
-    /// No push follows; what is queued can still be popped.
+    /// Nothing can be pushed any more; queued elements can still be popped.
     void close() {
         std::lock_guard lock(mutex_);
         closed_ = true;
@@ -50,7 +50,7 @@ public:
         filled_.notify_all();
     }
 
-    /// Closes, and discards what is queued.
+    /// Closes the queue and discards its elements.
     void abandon() {
         close();
         std::lock_guard lock(mutex_);
@@ -65,11 +65,11 @@ private:
     bool closed_ = false;
 };
 
-/// Objects that are used again, with the memory they hold; thread-safe.
+/// Objects that are reused together with their memory; thread-safe.
 template <class T>
 class Pool {
 public:
-    /// An object that was given back, or a new one.
+    /// A returned object, or a new one.
     T take() {
         const std::lock_guard hold(mutex_);
         if (free_.empty()) return {};
@@ -93,7 +93,7 @@ private:
 template <class T>
 class Workers {
 public:
-    /// `threads`, or as many as the system allows; throws Error (exit 4) where it allows none. give() blocks while
+    /// `threads`, or as many as the system allows; throws Error (exit 4) if it allows none. give() blocks while
     /// `waiting` objects are queued.
     Workers(std::size_t threads, std::size_t waiting, std::function<void(T&)> work)
         : queue_(waiting), work_(std::move(work)), threads_(start_threads(threads, [this] { run(); })) {
@@ -130,7 +130,7 @@ private:
     std::function<void(T&)> work_;
     std::once_flag failed_;
     std::exception_ptr error_;
-    std::vector<std::jthread> threads_;  // last: joined before the rest goes
+    std::vector<std::jthread> threads_;  // declared last: joined before the other members are destroyed
 };
 
 }  // namespace doppel

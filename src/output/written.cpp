@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// SHA-256, by libavutil, of the blocks that next() gives until one is empty.
+/// SHA-256, by libavutil, of the blocks that next() returns, up to the first empty one.
 template <class Next>
 std::string sha256_of(const Next& next) {
     const Owned<AVSHA, av_free> sha(av_sha_alloc());
@@ -34,9 +34,9 @@ std::string sha256_of(const Next& next) {
     return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
-/// A manifest of Doppel's; null where the file is none.
+/// The contents of a manifest of Doppel; null if the file is none.
 Json manifest_of(const fs::path& path) {
-    constexpr std::size_t most_bytes = 64 << 20;  // some 400 000 frames
+    constexpr std::size_t most_bytes = 64 << 20;  // enough for some 400 000 frames
     if (path.extension() != ".json" || type_of(path) != fs::file_type::regular) return nullptr;
     const auto bytes = fs::file_size(path);
     if (bytes > most_bytes) return nullptr;
@@ -45,7 +45,7 @@ Json manifest_of(const fs::path& path) {
     return has("doppel") && has("files") ? json : nullptr;
 }
 
-/// Of the run that wrote the manifest.
+/// The kind of run that wrote the manifest.
 std::string kind_of_manifest(const Json& manifest) {
     return manifest.contains("models") ? "fit" : manifest.contains("figure") ? "figure" : "film";
 }
@@ -68,10 +68,10 @@ WrittenFiles written_files(const fs::path& folder) {
             add_files(written, manifest["files"], kind_of_manifest(manifest));
             add_files(before, manifest.value("earlier_files", Json::object()), {});
         } catch (const Json::exception&) {
-            // not as Doppel wrote it: the rest is ignored
+            // not as Doppel wrote it: ignored from here on
         }
     }
-    written.insert(before.begin(), before.end());  // behind those of the same name
+    written.insert(before.begin(), before.end());  // after those of the same name
     return written;
 }
 

@@ -13,30 +13,30 @@ namespace doppel {
 struct WrittenFile {
     std::uintmax_t bytes = 0;
     std::string sha256;
-    std::string kind = {};  // of the run whose manifest lists it as its own: "film", "figure", "fit"
+    std::string kind = {};  // of the run whose manifest lists the file: "film", "figure", "fit"
 };
 
-/// The files that the manifests in a folder list, by name ("frames/000000.png"); manifests do not list themselves. Where
-/// several list one, what a run's own manifest says comes first.
+/// The files that the manifests in a folder list, by name ("frames/000000.png"), without the manifests. If several
+/// manifests list a file, the entry of the run that made it comes first.
 using WrittenFiles = std::multimap<std::string, WrittenFile>;
 WrittenFiles written_files(const std::filesystem::path& folder);
 
 /// Who made a regular file.
 struct Origin {
-    bool is_ours = false;     // a manifest lists it, its contents show it (see made_by()), or it is a manifest
-    bool is_changed = false;  // manifests list it with a SHA-256, and it has none of these
-    std::string kind = {};    // of the run that it is of; empty where that is not known
+    bool is_ours = false;     // a manifest lists it, made_by() recognises it, or it is a manifest
+    bool is_changed = false;  // manifests list it with SHA-256 sums, and none matches
+    std::string kind = {};    // the kind of run that made it; empty if unknown
 };
-/// Of "x.csv" or "frames/000000.png" in the folder whose manifests list `written`.
+/// The origin of "x.csv" or "frames/000000.png" in the folder whose manifests list `written`.
 Origin origin_of(const std::filesystem::path& folder, const std::string& name, const WrittenFiles& written);
 
-/// Whether the contents are by this program: a PNG whose "Software" begins so, an SVG, an HTML or XML page with a first
-/// comment "<!-- Doppel …", a PDF with a last one, or the trials of a figure.
+/// Whether this program made the file: a PNG whose "Software" begins with `program`, an SVG, HTML or XML page whose
+/// first comment is "<!-- Doppel …", a PDF whose last comment is, or results of a figure.
 bool made_by(const std::filesystem::path& path, std::string_view program = "Doppel");
 
-/// SHA-256 of a file's bytes, 64 lower-case hexadecimal digits. Throws Error (exit 4) where it cannot be read.
+/// SHA-256 of a file, 64 lower-case hexadecimal digits. Throws Error (exit 4) if it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
-/// The same of a text.
+/// SHA-256 of a text.
 std::string sha256_of_text(std::string_view text);
 
 }  // namespace doppel
