@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-constexpr long rect_overhead = 3000;  // pixels that are restored and read in the time that one more rectangle costs
+constexpr long rect_overhead = 3000;  // one more rectangle costs as much time as restoring and reading this many pixels
 
 long area(const Rect& r) {
     return long{r.right - r.left} * (r.bottom - r.top);
@@ -19,7 +19,7 @@ bool cheaper_as_one(const Rect& a, const Rect& b) {
     return area(united(a, b)) <= area(a) + area(b) + rect_overhead;
 }
 
-/// Adds what of `rect` lies outside all of disjoint[from…].
+/// Adds the parts of `rect` that lie outside all of disjoint[from…].
 void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint) {
     if (rect.empty()) return;
     for (std::size_t i = from; i < disjoint.size(); ++i) {
@@ -34,7 +34,7 @@ void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint
     disjoint.push_back(rect);
 }
 
-/// Rectangles along a path: joins neighbours that are cheaper as one.
+/// Rectangles along a path; joins neighbours if that is cheaper.
 class RectChain {
 public:
     void add(const Rect& rect) {
@@ -58,7 +58,7 @@ std::size_t hash_of(const Primitive& q) {
     return hash ^ hash >> 29;
 }
 
-/// The primitives of a part, to be looked up.
+/// Looks up the primitives of a part.
 class PrimitiveSet {
 public:
     PrimitiveSet(const RenderList& items, const RenderList::Part& part) : items_(items) {
@@ -78,7 +78,7 @@ private:
     std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
 
-/// Calls visit(rect) for disjoint rectangles that cover the primitive: its bounds, or bands if it is long and slanted.
+/// Calls visit(rect) for disjoint rectangles that cover the primitive: its bounds, or strips if it is long and slanted.
 template <class Visit>
 void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& visit) {
     const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
@@ -86,7 +86,7 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
     const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
     if (shorter < 3 * thick || !(primitive.half.x > 2 * primitive.half.y) || std::min(across, down) < 0.05f)
         return visit(bounds);
-    // cut along the axis that it follows most closely; 0.05 px for rounding
+    // cut along the axis closest to its direction; 0.05 px for rounding
     const bool steep = down > across;
     const float slope = steep ? primitive.axis.x / primitive.axis.y : primitive.axis.y / primitive.axis.x;
     const float margin = primitive.half.y / std::max(across, down) + 0.05f;
@@ -104,11 +104,11 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
     }
 }
 
-/// Strokes: order and repetition of their primitives do not change the picture.
+/// For strokes: the order and repetition of their primitives does not change the picture.
 template <class Add>
 void compare_masks(const RenderList& before, RenderList::Part old, const RenderList& after, RenderList::Part now,
                    const Add& add) {
-    // most of a path stays as it was, in its place
+    // most of a path is usually unchanged
     const auto same = [&](std::size_t i, std::size_t j) {
         return before.bounds[i] == after.bounds[j] && before.primitives[i] == after.primitives[j];
     };

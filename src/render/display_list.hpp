@@ -12,29 +12,29 @@
 
 namespace doppel {
 
-/// A place in the picture, px from its top left corner; y points down. Pixel centres lie at halves.
+/// A position in the picture, px from its top left corner; y points down. Pixel centres are at half-integers.
 struct Point {
     float x = 0, y = 0;
 };
 
-/// px
+/// In px.
 inline float distance(Point a, Point b) {
     return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-/// A filled rectangle with round corners. Its edges are at exactly left, top, right, bottom.
+/// A filled rectangle with rounded corners. Its edges are exactly at left, top, right, bottom.
 struct Box {
     float left = 0, top = 0, right = 0, bottom = 0;  // px
     float corner = 0;                                // radius, px
     Color color;
 };
 
-/// A whole picture in one colour.
+/// A whole picture of one colour.
 inline Box filled(Size size, Color color) {
     return {0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, color};
 }
 
-/// A line whose edges fall on pixels: not two half-covered rows, and never thinner than a pixel.
+/// A line whose edges are at pixel edges, so that it is sharp; at least one pixel wide.
 inline Box vertical_line(float x, float top, float bottom, float width, Color color) {
     const float left = std::round(x - width / 2);
     return {left, top, left + std::max(1.0f, std::round(width)), bottom, 0, color};
@@ -44,12 +44,12 @@ inline Box horizontal_line(float y, float left, float right, float width, Color 
     return {left, top, right, top + std::max(1.0f, std::round(width)), 0, color};
 }
 
-/// All points within `radius` of the segment from…to: a rod, a line, or a disc where both ends are one.
+/// All points within `radius` of the segment from…to: a rod, a line, or, if both ends are equal, a disc.
 struct Capsule {
     Point from, to;
     float radius = 1;  // px
     Color color;
-    float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
+    float glow = 0;  // width of the soft glow beyond the edge, px; 0 = none
 };
 
 /// The outline of a circle, `width` px wide, half of it on either side of `radius`.
@@ -59,25 +59,26 @@ struct Ring {
     Color color;
 };
 
-// GCC 12 takes the moved-from rest of a variant for uninitialised (PR 105562 and kin)
+// GCC 12 reports the moved-from rest of a variant as uninitialised (PR 105562)
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
-/// A path whose opacity and width vary along it. Where it crosses itself the more opaque part shows.
+/// A path whose opacity and width vary along it. At a crossing the more opaque part shows.
 struct Stroke {
     struct Vertex {
         Point at;
-        float alpha = 1;  // times color.a
-        float width = 1;  // times Stroke::width
-        float glow = 1;   // times Stroke::glow
-        float bend = 0;   // px right of the chord to the next vertex, of a parabola's middle; up to 1/16 of its length
-        bool joint = false;  // drawn as a vertex, even where the path could go on as well without it
+        float alpha = 1;  // factor of color.a
+        float width = 1;  // factor of Stroke::width
+        float glow = 1;   // factor of Stroke::glow
+        float bend =
+            0;  // of the parabola to the next vertex: px right of the chord at its middle, at most 1/16 of its length
+        bool joint = false;  // always drawn as a vertex, even if it could be left out
     };
     std::vector<Vertex> vertices;
     float width = 1;  // px
     Color color;
-    float glow = 0;  // px that a soft glow reaches beyond the edge; 0 = none
+    float glow = 0;  // width of the soft glow beyond the edge, px; 0 = none
 };
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
@@ -90,7 +91,7 @@ enum class Weight { regular, bold };
 struct Label {
     std::string text;
     Point anchor;
-    float size = 16;  // px an em
+    float size = 16;  // px per em
     Align align = Align::left;
     Weight weight = Weight::regular;
     Color color;
@@ -101,7 +102,7 @@ inline Label label(std::string text, Point anchor, float size, Color color, Alig
     return {std::move(text), anchor, size, align, weight, color};
 }
 
-/// What to draw, back to front.
+/// One thing to draw; lists are in order from back to front.
 using Item = std::variant<Box, Capsule, Ring, Stroke, Label>;
 using DisplayList = std::vector<Item>;
 

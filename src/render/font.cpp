@@ -19,7 +19,7 @@
 #include FT_TRUETYPE_TABLES_H
 #include FT_TRUETYPE_TAGS_H
 
-// FreeType reads fonts, as it trusts nothing in them; stb_truetype draws their outlines: the same pixels everywhere
+// FreeType reads font files, because it checks them; stb_truetype draws the outlines, with the same pixels everywhere
 #define STBTT_assert(condition) static_cast<void>(condition)
 #define STB_TRUETYPE_IMPLEMENTATION
 #define STBTT_STATIC
@@ -28,10 +28,10 @@
 namespace doppel {
 namespace {
 
-/// Of a font that is made bolder, em: how much wider and higher its letters become, and how much further apart they stand.
+/// Synthetic bold, em: extra width and height of the letters, and extra distance between them.
 constexpr float bolder_across = 0.043f, bolder_up = 0.026f, bolder_apart = 0.030f;
 
-/// The rectangle that holds an outline, px right of the pen's pixel and below the baseline.
+/// The rectangle that contains an outline, in px right of the pen's pixel and below the baseline.
 Area extent_of(std::span<const stbtt_vertex> outline, float scale, float shift) {
     Area extent{1e9f, 1e9f, -1e9f, -1e9f};
     const auto include = [&](float x, float y) {
@@ -46,13 +46,13 @@ Area extent_of(std::span<const stbtt_vertex> outline, float scale, float shift) 
     return extent;
 }
 
-/// How much of the pixel i…i + 1 lies between `from` and `to`, 0…1.
+/// The part of pixel i…i + 1 that lies between `from` and `to`, 0…1.
 float overlap(int i, float from, float to) {
     const auto pixel = static_cast<float>(i);
     return std::max(0.0f, std::min(pixel + 1, to) - std::max(pixel, from));
 }
 
-/// The hollow box for a missing glyph; the font's own is empty.
+/// The hollow box drawn for a missing glyph; the font's own box is empty.
 Coverage missing_box(float size, Weight weight, float shift) {
     const float pen = size * (weight == Weight::bold ? 0.09f : 0.06f);
     const float left = shift + 0.1f * size, right = shift + 0.5f * size, height = 0.7f * size;
@@ -70,18 +70,18 @@ Coverage missing_box(float size, Weight weight, float shift) {
     return coverage;
 }
 
-constexpr float most_ems = 16;  // from the pen, in any direction: a glyph beyond is damaged
+constexpr float most_ems = 16;  // largest distance from the pen; a glyph that extends further is damaged
 
-/// An outline in the font's units, as stb_truetype draws it.
+/// Converts an outline to stb_truetype's vertices, in font units.
 class OutlineBuilder {
 public:
     explicit OutlineBuilder(FT_Outline& outline) {
-        // at twice the size points between two others are exact
+        // at twice the size, the points half way between two others are integers
         static constexpr FT_Outline_Funcs steps{
             &OutlineBuilder::move, &OutlineBuilder::line, &OutlineBuilder::curve, &OutlineBuilder::cubic, 1, 0};
         is_whole_ = FT_Outline_Decompose(&outline, &steps, this) == 0;
     }
-    /// Empty where it is damaged.
+    /// Empty if the outline is damaged.
     std::vector<stbtt_vertex> vertices() && { return is_whole_ ? std::move(vertices_) : std::vector<stbtt_vertex>(); }
 
 private:
@@ -109,25 +109,25 @@ private:
 
 }  // namespace
 
-/// FreeType's, which one thread may use at a time.
+/// FreeType's face. Only one thread at a time may use it.
 struct Font::Tables {
     std::mutex mutex;
     FT_Library library = nullptr;
     FT_Face face = nullptr;
-    bool is_complete = false;  // has an outline for all that it has a number for
+    bool is_complete = false;  // every character of the font has an outline
 
     ~Tables() {
         FT_Done_Face(face);
         FT_Done_FreeType(library);
     }
-    /// Null where it cannot be read.
+    /// Null if the outline cannot be read.
     FT_Outline* outline_of(int glyph) const {
         constexpr int in_units = FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP;
         const bool is_read = FT_Load_Glyph(face, static_cast<FT_UInt>(glyph), in_units) == 0;
         return is_read && face->glyph->format == FT_GLYPH_FORMAT_OUTLINE ? &face->glyph->outline : nullptr;
     }
     bool has_table(FT_ULong tag) const {
-        FT_ULong bytes = 0;  // asks for the length
+        FT_ULong bytes = 0;  // returns the length
         return FT_Load_Sfnt_Table(face, tag, 0, nullptr, &bytes) == 0;
     }
     float scale(float size) const { return size / static_cast<float>(face->units_per_EM); }
@@ -190,7 +190,7 @@ float Font::advance(int glyph, float size, Weight weight) const {
     const std::lock_guard hold(tables_->mutex);
     FT_Fixed units = 0;
     if (FT_Get_Advance(tables_->face, static_cast<FT_UInt>(glyph), FT_LOAD_NO_SCALE, &units) != 0) units = 0;
-    // letters move apart by less than they grow: heavier text is set tighter
+    // letters move apart by less than they grow, because heavier text is set tighter
     const float extra = lacks(weight) && units > 0 ? bolder_apart * size : 0;
     return static_cast<float>(units) * tables_->scale(size) + extra;
 }

@@ -12,48 +12,48 @@
 
 namespace doppel {
 
-/// How much of each pixel a glyph covers, 0…255. Rows from the top down.
+/// The coverage of each pixel by a glyph, 0…255. Rows from the top down.
 struct Coverage {
-    int left = 0, top = 0;  // of the first pixel, px from the pen's whole pixel on the baseline
+    int left = 0, top = 0;  // of the first pixel, px from the whole pixel of the pen on the baseline
     Size size;
     std::vector<std::uint8_t> values;
 };
 
-/// One font, of a TrueType or OpenType file with outlines. It never changes: threads may share it. FreeType reads it: a
-/// damaged font has wrong letters, boxes for letters, or none, and nothing worse.
+/// A TrueType or OpenType font with outlines. It is immutable, so threads may share it. FreeType reads it: a damaged
+/// font only gives wrong or missing letters, or boxes.
 class Font {
 public:
-    /// The built-in one of that weight.
+    /// The built-in font of that weight.
     static const Font& built_in(Weight weight = Weight::regular);
-    /// Font `index` of a file. Throws Error: exit 2 where it is no such font, exit 4 where it cannot be read.
+    /// Font `index` of a file. Throws Error: exit 2 if it is no such font, exit 4 if it cannot be read.
     static std::shared_ptr<const Font> from_file(const std::filesystem::path& path, int index = 0);
     ~Font();
     Font(const Font&) = delete;
     Font& operator=(const Font&) = delete;
 
-    /// The file's path; empty of the built-in one.
+    /// The path of the file; empty for a built-in font.
     const std::filesystem::path& file() const { return file_; }
-    /// The file's contents, and which of its fonts this is.
+    /// The contents of the file, and the index of this font in it.
     std::string_view bytes() const { return bytes_; }
     int index() const { return index_; }
-    /// Whether it has to be made bolder to be as bold as that.
+    /// Whether this weight has to be synthesised.
     bool lacks(Weight weight) const { return weight == Weight::bold && weight_ != Weight::bold; }
-    /// The number of a character's glyph; 0 where there is none, or one without an outline, as of coloured letters.
+    /// The glyph number of a character; 0 if it has none or no outline, as in fonts of coloured letters.
     int number_of(char32_t character) const;
-    /// How far the pen moves past a glyph, px.
+    /// The advance of the pen after a glyph, px.
     float advance(int glyph, float size, Weight weight) const;
-    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; a hollow box for number 0. Where the
-    /// font lacks the weight, its outline is moved outward.
+    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; number 0 gives a hollow box. If the
+    /// font lacks the weight, its outline is emboldened.
     Coverage rasterised(int glyph, float size, Weight weight, float shift) const;
 
 private:
-    struct Tables;  // as FreeType has them
+    struct Tables;  // of FreeType
     Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index,
          Weight weight = Weight::regular);
 
     std::filesystem::path file_;
-    std::string owned_;       // a file's bytes
-    std::string_view bytes_;  // those, or the built-in ones
+    std::string owned_;       // contents of a file
+    std::string_view bytes_;  // these, or the built-in font
     int index_;
     Weight weight_;
     std::unique_ptr<Tables> tables_;

@@ -1,11 +1,11 @@
 #pragma once
 
-#define GL_GLEXT_PROTOTYPES  // their types; no library is linked
+#define GL_GLEXT_PROTOTYPES  // only for the types of functions; no library is linked
 #include <GL/glcorearb.h>
 
 #include <functional>
 
-/// The functions of OpenGL that Doppel calls, without their prefix "gl": X(name) each.
+/// The OpenGL functions that Doppel calls, without the prefix "gl": X(name) for each.
 // clang-format off
 #define DOPPEL_GL_FUNCTIONS(X) \
     X(ActiveTexture) X(AttachShader) X(BindAttribLocation) X(BindBuffer) X(BindFramebuffer) X(BindTexture) \
@@ -23,17 +23,17 @@ namespace doppel::gl {
 
 using Function = void (*)();
 
-/// The functions above as one library has them.
+/// The functions above, loaded from one library.
 struct Functions {
 #define X(name) decltype(&::gl##name) name = nullptr;
     DOPPEL_GL_FUNCTIONS(X)
 #undef X
 };
 
-/// Those of the context that is current in this thread; null where none is.
+/// The functions of this thread's current context; null if there is none.
 extern constinit thread_local const Functions* current;
 
-/// A function of the current context.
+/// Calls one function of the current context.
 template <class Type, Type Functions::*function>
 struct Call;
 template <class Result, class... Arguments, Result (*Functions::*function)(Arguments...)>
@@ -44,7 +44,7 @@ struct Call<Result (*)(Arguments...), function> {
 DOPPEL_GL_FUNCTIONS(X)
 #undef X
 
-/// Asks `find` for each function. Throws Error where one is missing.
+/// Looks up each function with `find`. Throws Error if one is missing.
 Functions load(const std::function<Function(const char* name)>& find);
 
 }  // namespace doppel::gl

@@ -38,16 +38,16 @@ namespace {
 constexpr std::array<std::pair<const char*, Gl>, 3> by_name{
     {{"auto", Gl::automatic}, {"osmesa", Gl::osmesa}, {"egl", Gl::egl}}};
 
-constinit thread_local Context* current = nullptr;  // in this thread, as OpenGL has it
+constinit thread_local Context* current = nullptr;  // the context that is current in this thread
 
-/// Settings that Mesa reads from the environment, where the user has set none.
+/// Sets environment variables that Mesa reads, unless the user has set them.
 bool set_mesa_defaults() {
-    setenv("LP_NUM_THREADS", "0", 0);     // llvmpipe draws in the calling thread: other work fills the cores
-    setenv("EGL_LOG_LEVEL", "fatal", 0);  // no messages about drivers tried in vain
+    setenv("LP_NUM_THREADS", "0", 0);     // llvmpipe draws in the calling thread; the other cores have other work
+    setenv("EGL_LOG_LEVEL", "fatal", 0);  // no messages about drivers that were tried and failed
     return true;
 }
 
-/// What Doppel uses of GL/osmesa.h, which Mesa has dropped with version 25.1.
+/// The part of GL/osmesa.h that Doppel uses. Mesa dropped that header in version 25.1.
 namespace osmesa {
 using Handle = struct osmesa_context*;
 using Create = Handle (*)(const int* attributes, Handle shared_with);
@@ -87,13 +87,13 @@ private:
     osmesa::Destroy destroy_ = library_["OSMesaDestroyContext"];
     osmesa::Address address_ = library_["OSMesaGetProcAddress"];
     osmesa::Handle context_ = nullptr;
-    std::array<unsigned char, 4> window_{};  // one pixel, which OSMesa demands; drawing goes to framebuffer objects
+    std::array<unsigned char, 4> window_{};  // one pixel, which OSMesa requires; drawing goes to framebuffer objects
 };
 
 class EglContext final : public Context {
 public:
     explicit EglContext(const std::vector<std::string>& libraries) : library_(libraries) {
-        // one display serves all contexts of the process, so none of them may terminate it
+        // all contexts of the process share one display, so none of them may terminate it
         display_ = platform_display_(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
         check(display_ != EGL_NO_DISPLAY, "has no Mesa, which draws without a display");
         check(initialize_(display_, nullptr, nullptr), "finds no driver that draws without a display");
@@ -140,7 +140,8 @@ private:
     EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-/// A context of the library, current; null where it cannot be, and why is added to `faults`. `packages` are Debian's.
+/// Makes a context of this library current. On failure returns null and adds the reason to `faults`. `packages` are
+/// Debian's.
 template <class LibraryContext>
 std::unique_ptr<Context> try_library(const char* library, const char* packages, const std::vector<std::string>& names,
                                      std::string& faults) {
@@ -173,7 +174,7 @@ Gl gl_named(const std::string& name) {
 
 void Context::make_current() {
     if (current == this) return;
-    // the libraries do not know of each other: the one must let go before the other takes hold
+    // the libraries are independent: the old context must be released before the new one becomes current
     if (current) current->retire();
     bind();
     current = this;
@@ -190,7 +191,7 @@ void Context::retire() {
 }
 
 std::unique_ptr<Context> make_context(Gl gl, const GlLibraries& libraries) {
-    [[maybe_unused]] static const bool done = set_mesa_defaults();  // once: setenv() is not safe beside other threads
+    [[maybe_unused]] static const bool done = set_mesa_defaults();  // only once: setenv() is not thread-safe
     std::string faults;
     std::unique_ptr<Context> context;
     if (gl != Gl::egl) context = try_library<OsmesaContext>("OSMesa", "libosmesa6", libraries.osmesa, faults);

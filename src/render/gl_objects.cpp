@@ -13,7 +13,7 @@ std::string_view shader_source(const std::string& name) {
     throw io_failed("the shader {} was not built in", name);
 }
 
-/// What the driver says of a shader or program.
+/// The driver's log of a shader or program.
 template <class GetLog>
 std::string log(GetLog get, GLuint number) {
     std::string text(1024, '\0');
@@ -23,7 +23,7 @@ std::string log(GetLog get, GLuint number) {
     return text;
 }
 
-/// Compiles a shader into the program, which keeps it.
+/// Compiles a shader and attaches it to the program.
 void attach(GLuint program, GLenum type, const std::string& name) {
     const std::string_view source = shader_source(name);
     const char* text = source.data();
@@ -59,7 +59,7 @@ void check_errors(const std::string& what) {
     const GLenum first = GetError();
     if (first == GL_NO_ERROR) return;
     bool no_memory = false;
-    // a driver may keep several, but a lost context reports one for ever
+    // a driver may store several errors; a lost context returns one for ever
     GLenum error = first;
     for (int k = 0; k < 16 && error != GL_NO_ERROR; ++k, error = GetError()) no_memory |= error == GL_OUT_OF_MEMORY;
     if (no_memory) throw io_failed("OpenGL has no memory for {}", what);

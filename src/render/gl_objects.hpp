@@ -7,7 +7,7 @@
 
 namespace doppel::gl {
 
-/// Throws Error (exit 4) where OpenGL has reported an error since the last call. `what`: the task, "a canvas of 64 × 64
+/// Throws Error (exit 4) if OpenGL has reported an error since the last call. `what`: the task, "a canvas of 64 × 64
 /// px".
 void check_errors(const std::string& what);
 
@@ -29,13 +29,15 @@ using Buffer = Object<GenBuffers, DeleteBuffers>;
 using Texture = Object<GenTextures, DeleteTextures>;
 using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
 
-/// RGBA pixels to draw to, all zero at first. Row 0 is the top of the picture. Throws Error where there is no memory.
+/// A framebuffer of RGBA pixels, all zero at first. Row 0 is the top of the picture. Throws Error if memory is
+/// exhausted.
 class Canvas {
 public:
     explicit Canvas(Size size);
     operator GLuint() const { return framebuffer_; }
 
-    /// Copies the picture's pixels within `r`; binds the canvas's texture. The unpack row length must be the picture's.
+    /// Copies the picture's pixels within `r`, and binds the canvas's texture. The unpack row length must be the
+    /// picture's width.
     void put(const Picture& picture, const Rect& r);
 
 private:
@@ -43,10 +45,10 @@ private:
     Object<GenFramebuffers, DeleteFramebuffers> framebuffer_;
 };
 
-/// The shaders NAME.vert and NAME.frag of the folder shaders/, linked.
+/// The shaders NAME.vert and NAME.frag in shaders/, compiled and linked.
 class Program {
 public:
-    /// `inputs` of the vertex shader, in the order of their locations.
+    /// `inputs` = names of the vertex shader's inputs, in the order of their locations.
     Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6]);
     ~Program() { DeleteProgram(number_); }
     Program(const Program&) = delete;

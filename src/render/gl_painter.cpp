@@ -8,13 +8,13 @@
 namespace doppel::gl {
 namespace {
 
-constexpr std::size_t most_quads = 16384;  // of one call: what 16-bit indices reach
+constexpr std::size_t most_quads = 16384;  // in one call: the range of 16-bit indices
 constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
                                    "vertex_params",   "vertex_parabola", "vertex_tint"};
 
-/// The corners of a primitive that turns, one after another.
+/// The corners of a rotated primitive, in order.
 std::array<Point, 4> outline(const Primitive& primitive) {
-    const float room = 0.05f;  // px, so that rounding loses none
+    const float room = 0.05f;  // px, so that rounding excludes no pixel
     const Point x{primitive.axis.x * (primitive.half.x + room), primitive.axis.y * (primitive.half.x + room)};
     const Point y{-primitive.axis.y * (primitive.half.y + room), primitive.axis.x * (primitive.half.y + room)};
     const auto corner = [&](float along, float across) {
@@ -29,7 +29,7 @@ Painter::Painter(Size size)
     : programs_{Program("quad.vert", "shape.frag", inputs), Program("quad.vert", "glyph.frag", inputs),
                 Program("quad.vert", "mask.frag", inputs)},
       cover_("quad.vert", "cover.frag", inputs) {
-    // the same for good: pixels from the top left, and the corners of each quad make two triangles
+    // constant state: pixel coordinates from the top left, and two triangles for each quad
     for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &cover_}) {
         UseProgram(*program);
         Uniform2f(GetUniformLocation(*program, "picture"), static_cast<float>(size.width),
@@ -85,7 +85,7 @@ void Painter::paint(const RenderList& items, const std::vector<Rect>& regions, c
     for (std::size_t r = 0; r < used_batches_; ++r) draw(batches_[r]);
 }
 
-/// Shares out the parts among few batches. A part may be drawn earlier than its turn if it meets nothing on the way.
+/// Groups the parts into few batches. A part may be drawn earlier than its turn if it overlaps nothing in between.
 void Painter::make_batches(const RenderList& items, const std::vector<Rect>& regions) {
     used_batches_ = 0;
     const auto meet = [](const Rect& a, const Rect& b) { return !intersection(a, b).empty(); };
@@ -110,7 +110,7 @@ void Painter::make_batches(const RenderList& items, const std::vector<Rect>& reg
     }
 }
 
-/// What of the primitive lies within the regions. A pixel that it touches is drawn once, whichever way.
+/// Adds the part of the primitive inside the regions. Each pixel is drawn once.
 void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& regions) {
     for (const Rect& region : regions) {
         const Rect seen = intersection(bounds, region);
@@ -119,12 +119,12 @@ void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vec
         const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
         outline_ = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
         if (primitive.half.x > 0) {
-            // along its own axes fewer pixels lie around what it shows
+            // the rotated outline covers fewer pixels than the bounds
             const auto corners = outline(primitive);
             outline_.assign(corners.begin(), corners.end());
             if (seen != bounds) clip(left, right, top, bottom);
         }
-        // a fan, two triangles at a time
+        // a fan of quads
         for (std::size_t i = 2; i < outline_.size(); i += 2)
             for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
                 vertices_.push_back({outline_[corner], primitive.origin, primitive.axis, primitive.shape,
@@ -132,13 +132,13 @@ void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vec
     }
 }
 
-/// Keeps what of the convex outline lies within (Sutherland & Hodgman 1974). The cuts lie at edges of pixels exactly.
+/// Keeps the part of the convex outline inside (Sutherland & Hodgman 1974). Cuts are exactly at pixel edges.
 void Painter::clip(float left, float right, float top, float bottom) {
     const auto cut = [&](float Point::*across, float Point::*along, float edge, float side) {
         clipped_.clear();
         for (std::size_t i = 0; i < outline_.size(); ++i) {
             const Point &from = outline_[i], &to = outline_[(i + 1) % outline_.size()];
-            const float before = side * (from.*across - edge), after = side * (to.*across - edge);  // ≥ 0 within
+            const float before = side * (from.*across - edge), after = side * (to.*across - edge);  // ≥ 0 inside
             if (before >= 0) clipped_.push_back(from);
             if ((before >= 0) == (after >= 0)) continue;
             Point at;

@@ -7,16 +7,14 @@
 
 namespace doppel::gl {
 
-/// Draws render lists onto the bound canvas.
-///
-/// A stroke takes two passes. The first writes 1 - opacity of each segment into the canvas's alpha, which is 1
-/// otherwise, and keeps the minimum, so that segments do not add up where they meet. The second blends the colour by it
-/// and restores alpha 1, so that covering a pixel twice changes nothing.
+/// Draws render lists onto the bound canvas. A stroke takes two passes. The first writes 1 - opacity of each segment
+/// into the canvas's alpha, which is 1 otherwise, and keeps the minimum, so that overlapping segments do not add up.
+/// The second blends the colour by alpha and restores alpha 1, so that drawing a pixel twice changes nothing.
 class Painter {
 public:
     explicit Painter(Size size);
 
-    /// Draws the render list within the `regions`, which must not overlap.
+    /// Draws the render list inside `regions`, which must not overlap.
     void paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas);
 
 private:
@@ -30,7 +28,7 @@ private:
     /// Parts drawn together.
     struct Batch {
         Kind kind;
-        Rect bounds;             // of all its parts
+        Rect bounds;             // union of its parts' bounds
         std::size_t begin, end;  // in quads
         std::vector<std::size_t> parts;
     };
@@ -42,16 +40,16 @@ private:
     void upload(const GlyphAtlas& atlas);
     void draw(const Batch& batch);
 
-    std::array<Program, 3> programs_;  // by kind
+    std::array<Program, 3> programs_;  // for each Kind
     Program cover_;
     VertexArray vertex_array_;
     Buffer vertex_buffer_, index_buffer_;
-    std::size_t vertex_room_ = 0;  // in the buffer, bytes
+    std::size_t vertex_room_ = 0;  // size of the buffer, bytes
     Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
     std::vector<Vertex> vertices_;
-    std::vector<Point> outline_, clipped_;  // of what is added
-    std::vector<Batch> batches_;            // kept for their memory; those in use come first
+    std::vector<Point> outline_, clipped_;  // of the primitive being added
+    std::vector<Batch> batches_;            // reused; those in use come first
     std::size_t used_batches_ = 0;
 };
 

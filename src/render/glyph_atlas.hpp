@@ -10,7 +10,7 @@
 
 namespace doppel {
 
-/// Coverage of the glyphs drawn so far, in one image. It fills shelf by shelf and grows downward: slots never move.
+/// One image with the coverage of all glyphs drawn so far. It fills in shelves and grows downward; slots never move.
 class GlyphAtlas {
 public:
     /// Subpixel positions of the pen.
@@ -18,17 +18,17 @@ public:
     static constexpr int width = 1024;  // px
 
     struct Slot {
-        int left = 0, top = 0;  // of the first pixel, px from the pen's whole pixel on the baseline
+        int left = 0, top = 0;  // of the first pixel, px from the whole pixel of the pen on the baseline
         Size size;              // empty for a space
         int x = 0, y = 0;       // in the atlas
     };
 
-    /// `max_height`, px: OpenGL's limit for textures. `typeface` = what text is drawn in.
+    /// `max_height`, px: OpenGL's limit for textures. `typeface`: the fonts of all text.
     GlyphAtlas(int max_height, Typeface typeface) : typeface_(std::move(typeface)), max_height_(max_height) {}
 
     const Typeface& typeface() const { return typeface_; }
 
-    /// Rasterises the glyph of one of the typeface's fonts if it is new. Throws Error where the atlas is full.
+    /// The slot of a glyph, which is rasterised if it is new. Throws Error if the atlas is full.
     const Slot& slot(const TextLine::Glyph& glyph, float size, Weight weight, int subpixel);
 
     const std::vector<std::uint8_t>& values() const { return values_; }

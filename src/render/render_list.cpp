@@ -9,13 +9,13 @@
 namespace doppel {
 namespace {
 
-constexpr float edge = 1;  // px, the width of a soft edge: half of it lies beyond the shape
+constexpr float edge = 1;  // width of a soft edge, px; half of it lies outside the shape
 
 std::array<std::uint8_t, 4> tint(const Color& color, float opacity = 1) {
     return bytes_of(color.with_alpha(color.a * opacity));
 }
 
-/// Turns items into primitives. What is thinner than a pixel is drawn a pixel thin and fainter.
+/// Converts items to primitives. Lines thinner than a pixel are drawn one pixel wide and fainter.
 class RenderListMaker {
 public:
     RenderListMaker(Size size, GlyphAtlas& atlas, RenderList& made) : size_(size), atlas_(atlas), made_(made) {}
@@ -46,7 +46,7 @@ public:
     void operator()(const Stroke& stroke) {
         begin(Kind::mask);
         if (!(stroke.color.a > 0 && stroke.width > 0)) return;
-        // as it is drawn: opacity with the colour's, width in px
+        // as drawn: opacity includes the colour's, width in px
         path_ = stroke.vertices;
         for (Stroke::Vertex& v : path_) {
             const float width = stroke.width * v.width;
@@ -59,7 +59,7 @@ public:
         for (std::size_t i = 0; i + 1 < path_.size();) {
             const StrokePiece piece = next_piece(path_, i, Bends::no);
             const Segment segment{path_[i], path_[piece.last], piece.bend};
-            // from joint to joint it changes its looks on the spot
+            // a piece of zero length between two joints only changes width and opacity
             if (!(segment.from.joint && segment.to.joint && segment.chord.length == 0)) segments_.push_back(segment);
             i = piece.last;
         }
@@ -90,7 +90,7 @@ public:
         begin(Kind::glyph);
         const TextLine line = atlas_.typeface().lay_out(label.text, label.size, label.weight);
         const auto [start, baseline] = start_of(label, line);
-        // the whole pixels aside, so that moving by whole pixels changes nothing
+        // separates the whole pixels, so that shifts by whole pixels change nothing
         const float whole = std::floor(start);
         for (const TextLine::Glyph& glyph : line.glyphs) {
             const int subpixel = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::subpixels));
@@ -116,18 +116,18 @@ private:
 
         float steepness() const {
             return chord.length > 0 ? 4 * bend / chord.length : 0;
-        }  // at its start; at its end -
+        }  // at the start; at the end it is the negative
         Point direction(float slope) const {
             const float scale = 1 / std::sqrt(1 + slope * slope);
             return {scale * (chord.axis.x - slope * chord.axis.y), scale * (chord.axis.y + slope * chord.axis.x)};
         }
     };
 
-    /// How far both must reach beyond the joint where the one goes on as the other, in units of the stroke's reach:
-    /// what is round there is shared by the two, each up to the bisector; an end of its own a piece rounds off alone.
+    /// How far two consecutive segments must extend beyond their joint, in units of the stroke's reach. They share the
+    /// round end there, each up to the bisector; at a free end the value is 1.
     static float share_at_joint(const Segment& a, const Segment& b) {
         const Point out = a.direction(-a.steepness()), in = b.direction(b.steepness());
-        const float along = out.x * in.x + out.y * in.y;  // cosine of the turn
+        const float along = out.x * in.x + out.y * in.y;  // cosine of the turning angle
         if (!(along > 0 && a.chord.length > 0 && b.chord.length > 0)) return 1;
         const float slope = std::max(std::abs(a.steepness()), std::abs(b.steepness()));
         return std::min(std::sqrt((1 - std::min(along, 1.f)) / 2) + slope, 1.f);
@@ -135,9 +135,9 @@ private:
 
     void begin(Kind kind) { made_.parts.push_back({kind, made_.primitives.size(), made_.primitives.size()}); }
 
-    /// Adds the primitive, which touches no pixels but those that [from, to] reaches into.
+    /// Adds the primitive, which touches only pixels between `from` and `to`.
     void add(const Primitive& primitive, Point from, Point to) {
-        // fmin and fmax, which ignore NaN
+        // fmin and fmax ignore NaN
         const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
         const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
                           static_cast<int>(std::ceil(within(to.x, size_.width))),
@@ -149,7 +149,7 @@ private:
         made_.parts.back().bounds = united(made_.parts.back().bounds, bounds);
     }
 
-    /// Adds the primitive, which reaches `half` from its origin along either of its axes.
+    /// Adds the primitive, which extends by `half` from its origin along its two axes.
     void add(Primitive primitive, Point half) {
         const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
         const Point reach{across * half.x + down * half.y, down * half.x + across * half.y};
@@ -175,7 +175,7 @@ private:
     Size size_;
     GlyphAtlas& atlas_;
     RenderList& made_;
-    // of the stroke in hand; kept for their memory
+    // of the current stroke; reused
     std::vector<Stroke::Vertex> path_;
     std::vector<Segment> segments_;
 };

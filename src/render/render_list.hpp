@@ -10,9 +10,9 @@ namespace doppel {
 
 /// The input of a fragment shader for one shape.
 struct Primitive {
-    Point origin;                        // of its own axes, px
-    Point axis{1, 0};                    // unit vector along the first of them
-    Point half;                          // how far it reaches along them to either side, px; 0 where it does not turn
+    Point origin;                        // centre of its own axes, px
+    Point axis{1, 0};                    // unit vector along the first axis
+    Point half;                          // extent to either side along both axes, px; 0 for glyphs
     std::array<float, 4> shape{};        // see the shader
     std::array<float, 4> params{};       // likewise
     std::array<float, 2> parabola{};     // likewise
@@ -20,28 +20,29 @@ struct Primitive {
     friend bool operator==(const Primitive&, const Primitive&);
 };
 
-/// The fragment shaders. `mask` takes a second pass: the shader `cover` blends the stroke's colour through the mask.
+/// The fragment shaders. A `mask` takes a second pass, in which the shader `cover` blends the stroke's colour by the
+/// mask.
 enum class Kind { shape, glyph, mask };
 
-/// A display list as primitives with bounds in whole pixels, part by part from back to front.
+/// A display list converted to primitives with bounds in whole pixels; its parts are in order from back to front.
 struct RenderList {
     struct Part {
         Kind kind;
-        std::size_t begin = 0, end = 0;  // in primitives and in bounds
-        Rect bounds{};                   // of them all
+        std::size_t begin = 0, end = 0;  // range of primitives and bounds
+        Rect bounds{};                   // union of their bounds
     };
     std::vector<Part> parts;
     std::vector<Primitive> primitives;
-    std::vector<Rect> bounds;  // the pixels that each primitive touches, within the picture
+    std::vector<Rect> bounds;  // the pixels that each primitive touches, inside the picture
 };
 
-/// `made` ← the render list of `list`, in the memory it has. An invisible item adds an empty part, or none.
+/// Converts `list` into `made`, whose memory is reused. An invisible item adds an empty part, or none.
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made);
 
-/// Few disjoint rectangles that cover all of `rects`; those are joined that are cheaper to draw as one.
+/// A few disjoint rectangles that cover all of `rects`. Rectangles are joined if that is cheaper to draw.
 std::vector<Rect> merged(std::vector<Rect> rects);
 
-/// Where the pictures of two render lists may differ, as few disjoint rectangles. Elsewhere both have the same
+/// Where the pictures of two render lists may differ, as a few disjoint rectangles. Outside, both have the same
 /// primitives in the same order.
 std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after);
 

@@ -42,10 +42,10 @@ public:
         context_->make_current();
         make_render_list(list, size_, *atlas_, now_);
         changed_ = first_ ? std::vector{all_of(size_)} : dirty_regions(last_, now_);
-        first_ = true;  // until this one is whole
+        first_ = true;  // until this picture is complete
 
-        // each switch between upload, drawing and reading makes OpenGL finish: one of each a band. Restoring the
-        // backdrop from memory is a copy; a blit would draw, and finish, for every rectangle.
+        // Each switch between upload, drawing and reading makes OpenGL finish, so there is one of each per band. The
+        // backdrop is restored from memory: a blit would be drawing, and would finish for every rectangle.
         for (const auto& regions : bands(changed_)) {
             throw_if_set(stop);
             gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    /// What to draw at once: all, or a large picture band by band, so that a stop takes effect soon.
+    /// The regions in groups to draw at once. Large pictures are drawn in bands, so that a stop takes effect soon.
     static std::vector<std::vector<Rect>> bands(const std::vector<Rect>& regions) {
         constexpr long most = 16'000'000;  // px
         long pixels = 0;
@@ -81,7 +81,7 @@ private:
         return result;
     }
 
-    /// Draws the render list in hand within `regions`, and reads them.
+    /// Draws the current render list inside `regions`, and reads the pixels back.
     void paint(const std::vector<Rect>& regions, Picture& into) {
         painter_->paint(now_, regions, *atlas_);
         for (const Rect& r : regions)
@@ -110,7 +110,7 @@ private:
     std::optional<gl::Canvas> canvas_;
     std::optional<gl::Painter> painter_;
     Picture backdrop_, picture_;
-    RenderList last_, now_;  // of the last picture; of the one in hand, kept for its memory
+    RenderList last_, now_;  // of the last picture; of the current one
     bool first_ = true;
     std::vector<Rect> changed_;
 };

@@ -11,41 +11,40 @@
 
 namespace doppel {
 
-/// Whose OpenGL draws; neither wants a display or a GPU. The pixels are the same by the golden policy.
+/// Which OpenGL draws; no display or GPU is required. Their pixels agree within the golden policy.
 enum class Gl {
-    automatic,  // OSMesa, or EGL where OSMesa does not work
-    osmesa,     // Mesa drawing in software, into memory
-    egl,        // EGL without a surface: a GPU where there is one, otherwise Mesa in software
+    automatic,  // OSMesa, or EGL if OSMesa does not work
+    osmesa,     // Mesa's software renderer, into memory
+    egl,        // EGL without a surface: on a GPU if there is one, otherwise by Mesa in software
 };
 
-/// What people call them: "auto", "osmesa", "egl".
+/// The names for users: "auto", "osmesa", "egl".
 std::vector<std::string> gl_names();
 
-/// Throws Error (exit 2) where nothing is called so.
+/// Throws Error (exit 2) for other names.
 Gl gl_named(const std::string& name);
 
-/// Draws display lists into pictures of one size, without a display (OSMesa or EGL).
-///
-/// A picture is a fixed backdrop with a new list on top. Only the rectangles where the list differs from the last one
-/// are drawn and read back; the pixels are the same as if everything had been drawn.
+/// Draws display lists into pictures of one size, without a display (OSMesa or EGL). A picture is a fixed backdrop with
+/// a list on top. Only the rectangles in which the list differs from the last one are drawn and read back. The pixels
+/// are the same as if everything had been drawn.
 class Renderer {
 public:
-    /// Text is drawn in `typeface`. Throws Error: exit 4 where no OpenGL context of this kind or no memory for this size
-    /// is to be had, 130 as draw().
+    /// `typeface`: the fonts of all text. Throws Error: exit 4 if there is no such OpenGL context or no memory for this
+    /// size, exit 130 as draw().
     explicit Renderer(Size size, const DisplayList& backdrop = {}, Gl gl = Gl::automatic,
                       const std::atomic<bool>& stop = false, const Typeface& typeface = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// The backdrop with `list` on top, valid until the next draw(). Throws Error: exit 4 where OpenGL fails, exit 130
+    /// The backdrop with `list` on top, valid until the next draw(). Throws Error: exit 4 if OpenGL fails, exit 130
     /// soon after `stop` is set.
     const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop = false);
 
-    /// Where the last picture differs from the one before it; the whole picture after the first draw().
+    /// Where the last picture differs from the previous one; after the first draw(), everywhere.
     const std::vector<Rect>& changed() const;
 
-    /// What draws, for the manifest: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3 Mesa 22.3.6".
+    /// The library and driver for the manifest: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3 Mesa 22.3.6".
     std::string description() const;
 
 private:

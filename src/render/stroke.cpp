@@ -8,10 +8,11 @@
 namespace doppel {
 namespace {
 
-constexpr float hair = 1.0f / 10;  // px
-constexpr float steepest = 0.25f;  // slope of a parabola at its ends: the shader's distance assumes flat ones
+constexpr float hair = 1.0f / 10;  // tolerance of positions, px
+constexpr float steepest =
+    0.25f;  // largest slope of a parabola at its ends; the shader's distance is an approximation for flat ones
 
-/// In the axes of a chord: along it from its start, and to its right, px.
+/// Coordinates relative to a chord, px: along it from its start, and to its right.
 Point local(const Chord& chord, Point at) {
     const Point out{at.x - chord.from.x, at.y - chord.from.y};
     return {chord.axis.x * out.x + chord.axis.y * out.y, chord.axis.x * out.y - chord.axis.y * out.x};
@@ -21,7 +22,7 @@ float part_of(const Chord& chord, float along) {
     return chord.length > 0 ? std::clamp(along / chord.length, 0.f, 1.f) : 0;
 }
 
-/// A parabola's height at a part of the way, where it is 1 in the middle.
+/// Height of a parabola of height 1 at a fraction of its chord.
 float height(float part) {
     return 4 * part * (1 - part);
 }
@@ -32,12 +33,12 @@ bool is_like(const Stroke::Vertex& from, const Stroke::Vertex& to, float part, c
            std::abs(std::lerp(from.glow, to.glow, part) - v.glow) <= 5 * hair;
 }
 
-/// The bend of the piece that passes all vertices between first and last, if there is one.
+/// The bend of the piece that passes all vertices between first and last within tolerance, if there is one.
 std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_t first, std::size_t last,
                              Bends bends) {
     const Stroke::Vertex &from = path[first], &to = path[last];
     const Chord chord(from.at, to.at);
-    // as high as one in the middle wants it
+    // the bend given by the vertex in the middle
     const Point middle = local(chord, path[(first + last) / 2].at);
     const float scale = height(part_of(chord, middle.x));
     const float bend = bends == Bends::yes && scale > 0.3f ? middle.y / scale : 0;
@@ -63,7 +64,7 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
 std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1) {
     Shares within;
     const double dx = x1 - x0, dy = y1 - y0;
-    // on the inner side of an edge where share · step ≤ room
+    // keeps the shares for which share · step ≤ room
     const auto cut = [&](double step, double room) {
         if (step < 0) within.from = std::max(within.from, room / step);
         if (step > 0) within.to = std::min(within.to, room / step);

@@ -11,7 +11,7 @@ namespace doppel {
 
 /// The straight line between two points.
 struct Chord {
-    Point from, to, axis{1, 0};  // axis: unit vector along it
+    Point from, to, axis{1, 0};  // axis: unit vector along the line
     float length;                // px
 
     Chord(Point start, Point end) : from(start), to(end) {
@@ -22,43 +22,43 @@ struct Chord {
     Point middle() const { return {(from.x + to.x) / 2, (from.y + to.y) / 2}; }
 };
 
-/// The part of the segment from (x0, y0) to (x1, y1) within the area, as shares of its length, 0…1; nothing where it
-/// lies outside (Liang & Barsky 1984).
+/// The part of the segment from (x0, y0) to (x1, y1) inside the area, as fractions of its length, 0…1. Nothing if the
+/// segment is outside (Liang & Barsky 1984).
 struct Shares {
     double from = 0, to = 1;
 };
 std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1);
 
-/// A part of a stroke drawn as one primitive: from vertex `first` to `last` along a parabola whose middle lies `bend`
-/// px to the right of the chord. Opacity, width and glow vary linearly along the chord.
+/// A part of a stroke drawn as one primitive: a parabola from vertex `first` to `last`, whose middle is `bend` px to
+/// the right of the chord. Opacity, width and glow vary linearly along the chord.
 struct StrokePiece {
     std::size_t first, last;
     float bend = 0;
 };
 
-/// Whether pieces may be parabolas, or only straight.
+/// Whether pieces may be parabolas, or only straight lines.
 enum class Bends { no, yes };
 
-/// The longest piece from vertex `first`, at most `most` vertices on and no further than a joint, that keeps to all
-/// vertices between within tolerances: 1/10 px of position and of either edge (1/5 px of position half way between
-/// vertices), 1/2 px of glow, 1/255 of opacity. Widths and glow in px.
+/// The longest piece from vertex `first`, of at most `most` vertices and up to the next joint, that fits the vertices
+/// in between. Tolerances: position and edges 1/10 px (1/5 px half way between vertices), glow 1/2 px, opacity 1/255.
+/// Widths and glow are in px.
 StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t most = 24);
 
-/// A curve over time, growing to the right, simplified: points within 1/5 px of the line through the kept ones are left
-/// out. What is kept depends only on earlier points.
+/// The simplified curve of a quantity over time: points within 1/5 px of the line through the kept points are left out.
+/// Which points are kept depends only on earlier points.
 class Trace {
 public:
-    /// x must grow from point to point.
+    /// x must increase from point to point.
     void add(Point point);
 
-    /// All of it, up to the newest point.
+    /// All kept points and the newest point.
     std::vector<Stroke::Vertex> vertices() const;
 
 private:
     std::vector<Stroke::Vertex> kept_;
     Point newest_{};
-    bool pending_ = false;               // the newest point is not among the kept
-    float steepest_ = 0, flattest_ = 0;  // slopes from the last kept point that miss no point since
+    bool pending_ = false;               // the newest point is not a kept point
+    float steepest_ = 0, flattest_ = 0;  // range of slopes from the last kept point that stay within tolerance
 };
 
 }  // namespace doppel

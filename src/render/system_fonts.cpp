@@ -21,7 +21,7 @@ using Pattern = std::unique_ptr<FcPattern, GiveBack<FcPattern, FcPatternDestroy>
 using Letters = std::unique_ptr<FcCharSet, GiveBack<FcCharSet, FcCharSetDestroy>>;
 using Fonts = std::unique_ptr<FcFontSet, GiveBack<FcFontSet, FcFontSetDestroy>>;
 
-/// The system's fonts with outlines, those first that suit a letter best.
+/// Fonts of the system with outlines, sorted by suitability for the letter.
 Fonts fonts_for(FcConfig* config, char32_t letter) {
     const Pattern wanted(FcPatternCreate());
     const Letters letters(FcCharSetCreate());
@@ -36,7 +36,7 @@ Fonts fonts_for(FcConfig* config, char32_t letter) {
     return Fonts(FcFontSort(config, wanted.get(), FcFalse, nullptr, &result));
 }
 
-/// What fontconfig has found for letters, kept: fonts stay for the rest of the process, as all may be drawn in them.
+/// Caches the fonts found by fontconfig. They are kept for the rest of the process.
 class SystemFonts {
 public:
     const Font* font_for(char32_t letter) {
@@ -61,20 +61,20 @@ private:
                 FcPatternGetString(found, FC_FILE, 0, &file) != FcResultMatch)
                 continue;
             FcPatternGetInteger(found, FC_INDEX, 0, &index);
-            // the upper half names an instance of a variable font: its default is taken
+            // the upper 16 bits number an instance of a variable font; the default instance is used
             const auto* font = opened(reinterpret_cast<const char*>(file), index & 0xffff);
             if (font && font->number_of(letter) != 0) return font;
         }
         return nullptr;
     }
 
-    /// Null where it is no font with outlines.
+    /// Null if it is no font with outlines.
     const Font* opened(const std::string& file, int index) {
         const auto [place, is_new] = by_file_.try_emplace({file, index});
         if (is_new) {
             try {
                 place->second = Font::from_file(file, index);
-            } catch (const Error&) {  // of a kind that Doppel does not read: the next may do
+            } catch (const Error&) {  // a type of font that Doppel does not read; the next may be readable
             }
         }
         return place->second.get();

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// Chooses among the forms of the letter before it.
+/// Selects a form of the preceding letter.
 bool is_variation_selector(char32_t character) {
     return character >= 0xfe00 && character <= 0xfe0f;
 }
