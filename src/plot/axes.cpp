@@ -11,7 +11,7 @@ namespace {
 
 constexpr float label_line = 1.4f;  // em of a label above the panel
 
-/// The one colour of the curves on a vertical axis; that of text where they have several.
+/// The colour of a vertical axis: that of its curves if they share one, otherwise that of text.
 Color axis_color(const Plot& plot, bool right, const PlotStyle& style) {
     std::optional<Color> color;
     for (const Curve& curve : plot.curves) {
@@ -23,7 +23,7 @@ Color axis_color(const Plot& plot, bool right, const PlotStyle& style) {
     return plot.right && color ? *color : style.theme.text;
 }
 
-/// Words above the panel.
+/// A text above the panel.
 struct Heading {
     std::string text;
     Align align;
@@ -39,7 +39,7 @@ std::vector<Heading> headings(const Plot& plot, const AxisWords& words, const Pl
     return all;
 }
 
-/// Whether all stand in one line: at most one from either side.
+/// Whether all fit on one line: at most one at the left and one at the right.
 bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle& style) {
     float need = 1.5f * style.axis * static_cast<float>(all.size() - 1);
     for (const Heading& heading : all) need += text_width(heading.text, style.axis);
@@ -74,7 +74,7 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
         plot.x.label, {middle, baseline + 1.5f * style.axis}, style.axis, Align::center, weight, style.theme.text});
 }
 
-/// A vertical axis, left or right of the area.
+/// A vertical axis at the left or right edge of the area.
 void draw_y_axis(const Axis& y, const PlotAxis& asked, AxisLook::Edge edge, const Area& area, bool grid, bool words,
                  Color color, const PlotStyle& style, PageList& list) {
     append(axis_items(y, y_ticks(y, asked, style), area, area,
@@ -127,7 +127,7 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
     fit(plot.x.label, style.axis, Weight::regular, width, fitted.axis);
     for (const Heading& heading : headings(plot, {}, style))
         fit(heading.text, style.axis, Weight::regular, width, fitted.axis);
-    // rather a smaller title than no note beside it
+    // shrinks the title a little, so that the note fits beside it
     constexpr float least = 0.85f;
     const float beside = plot.note.empty() ? 0 : 1.5f * style.heading + text_width(plot.note, style.tick);
     const bool has_note =
@@ -138,7 +138,7 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
 
 void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
                    const AxisWords& words, const PlotStyle& style, PageList& list) {
-    // above the panel, and above the words beside it that are its own
+    // above the panel, and above the panel's own axis labels
     const bool own_words = plot.right || (plot.map && !plot.map->shares_bar);
     const float left = words.y ? held.left : area.left;
     const float right = own_words ? held.right : area.right;
@@ -153,7 +153,7 @@ void draw_headings(const Plot& plot, const Area& area, const Area& held, float t
     const auto all = headings(plot, words, style);
     const bool together = !all.empty() && side_by_side(all, held.width(), style);
     float baseline = held.top + title + labels - 0.35f * style.axis;
-    // from the line next to the panel up
+    // upwards from the line next to the panel
     for (std::size_t i = all.size(); i-- > 0;) {
         write(all[i], baseline, style.axis, Weight::regular);
         if (!together) baseline -= label_line * style.axis;

@@ -23,9 +23,9 @@ std::string power_of_ten(int exponent) {
 
 double Axis::share(double value) const {
     if (low == high) return 0.5;
-    // halves, so that no difference of finite values overflows
+    // halves, so that the difference of finite values cannot overflow
     if (!logarithmic) return (value / 2 - low / 2) / (high / 2 - low / 2);
-    // a ratio beyond what a double holds is still a difference of logarithms
+    // a ratio that overflows a double is still a difference of logarithms
     const double part = value / low, whole = high / low;
     if (std::isnormal(part) && std::isnormal(whole)) return std::log(part) / std::log(whole);
     return (std::log(value) - std::log(low)) / (std::log(high) - std::log(low));
@@ -38,7 +38,7 @@ float Axis::at(double value) const {
 
 namespace {
 
-/// multiple · 10^exponent
+/// The value multiple · 10^exponent.
 struct Step {
     long long multiple = 1;
     int exponent = 0;
@@ -51,7 +51,7 @@ struct Step {
     }
 };
 
-/// number · 10^exponent in digits
+/// The digits of number · 10^exponent.
 std::string decimal(long long number, int exponent) {
     if (number == 0) exponent = std::min(exponent, 0);
     std::string digits = fmt::format("{}", std::abs(number));
@@ -69,7 +69,7 @@ int decade_below(long double value) {
     return static_cast<int>(std::floor(std::log10(value)));
 }
 
-/// The same for k steps of an axis that reaches to `most`.
+/// The label of k steps, on an axis whose largest value is `most`.
 std::string tick_text(const Step& step, long long k, double most) {
     const long long number = k * step.multiple;
     if (number == 0) return step.exponent < 0 && most < 1e6 && most >= 1e-4 ? decimal(0, step.exponent) : "0";
@@ -93,13 +93,13 @@ bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickLabels& la
     return true;
 }
 
-/// All multiples of the step on the axis; none where they are too many to be told apart.
+/// All multiples of the step on the axis; none if there are too many to be distinct.
 std::vector<Tick> multiples(const Step& step, double low, double high) {
-    constexpr long double most = 1e15L;  // of a step, so that a double tells k from k + 1
+    constexpr long double most = 1e15L;  // steps; doubles still distinguish k from k + 1
     const long double width = step.value(), from = std::ceil(low / width), to = std::floor(high / width);
     if (!(std::abs(from) * step.multiple < most && std::abs(to) * step.multiple < most && to - from < 1000)) return {};
     auto first = static_cast<long long>(from), last = static_cast<long long>(to);
-    // the division may have missed an end by a rounding
+    // rounding in the division may have missed an end
     if (step.times(first - 1) >= low) --first;
     if (step.times(last + 1) <= high) ++last;
     while (first <= last && step.times(first) < low) ++first;
@@ -115,7 +115,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
     const long double span = static_cast<long double>(high) - low;
     const float room = std::abs(axis.to - axis.from);
     if (!(span > 0 && room > 0)) return {};
-    // from the smallest step that could fit to the first that does
+    // from the smallest step that could fit, up to the first that does
     const long double least = span * std::max(1.0f, labels.spacing) / room;
     std::vector<Tick> best;
     for (int exponent = decade_below(least); exponent <= decade_below(span) + 1; ++exponent) {
@@ -131,7 +131,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
     return best;
 }
 
-/// Multiples of what was asked for, to ten digits; none where no two of them fit.
+/// Multiples of the requested step, to ten digits; none if no two of them fit.
 std::vector<Tick> asked_ticks(const Axis& axis, const TickLabels& labels, double every) {
     int exponent = decade_below(every) - 9;
     auto number = static_cast<long long>(std::llround(every / std::pow(10.0L, exponent)));
@@ -144,7 +144,7 @@ std::vector<Tick> asked_ticks(const Axis& axis, const TickLabels& labels, double
     return {};
 }
 
-/// Some multiples of each decade, with labels.
+/// The given multiples of each decade, with labels.
 std::vector<Tick> subdivided(double low, double high, std::initializer_list<long long> multiples_of_it) {
     std::vector<Tick> ticks;
     const bool plain = low >= 1e-4 && high < 1e6;
@@ -160,7 +160,7 @@ std::vector<Tick> subdivided(double low, double high, std::initializer_list<long
     return ticks;
 }
 
-/// Every n-th decade with a label, the others without; with ticks inside the decades where these are wide.
+/// Ticks at all decades, with a label at every n-th; if there is space, also unlabelled ticks inside the decades.
 std::vector<Tick> decades(const Axis& axis, double low, double high, int every) {
     std::vector<Tick> ticks;
     const int first = decade_below(low), last = decade_below(high);
@@ -196,7 +196,7 @@ std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels, 
             if (named(ticks) >= 2 && fits(ticks, axis, labels)) return ticks;
         }
     }
-    if (span < 2) {  // less than two whole decades
+    if (span < 2) {  // less than two decades
         auto ticks = subdivided(low, high, {1, 3});
         if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
     }
@@ -221,7 +221,7 @@ std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::o
 
 std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every) {
     const float length = std::abs(axis.to - axis.from);
-    // small charts have their numbers closer together
+    // in small charts the numbers are closer together
     const float spacing = across ? std::max(length / 15, std::min(3.6f * em, length / 4))
                                  : std::max({length / 11, std::min(2.4f * em, length / 5), 1.6f * em});
     const TickLabels labels{.size = em, .gap = (across ? 1.1f : 0.5f) * em, .spacing = spacing, .across = across};
@@ -256,7 +256,7 @@ DisplayList axis_items(const Axis& axis, const std::vector<Tick>& ticks, const A
                                  right ? Align::left : Align::right));
             continue;
         }
-        // the number stands below its tick, a unit after it
+        // the number is centred below its tick; a unit follows it
         const std::string unit = &tick == &*last ? look.unit : "";
         const float half = text_width(tick.text, em) / 2, end = half + text_width(unit, em);
         if (at - half < within.left - 0.5f || at + end > within.right + 0.5f) continue;

@@ -11,7 +11,7 @@ struct Place {
     double x, y;
 };
 
-/// Gathers a line piece by piece, cut to an area.
+/// Collects a polyline segment by segment, clipped to an area.
 class Clipper {
 public:
     Clipper(const Area& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
@@ -37,7 +37,7 @@ private:
         }
         const double dx = to.x - from.x, dy = to.y - from.y;
         const auto at = [&](double part) {
-            // within, though from far away the rounding is larger than the panel
+            // clamped, because rounding of a far point may exceed the panel
             return Point{std::clamp(static_cast<float>(from.x + part * dx), area_.left, area_.right),
                          std::clamp(static_cast<float>(from.y + part * dy), area_.top, area_.bottom)};
         };
@@ -49,10 +49,10 @@ private:
     Area area_;
     std::vector<std::vector<Point>>& lines_;
     Place last_{};
-    bool down_ = false, joined_ = false;  // the pen; the last piece ends at last_
+    bool down_ = false, joined_ = false;  // state of the pen; whether the last piece ends at last_
 };
 
-/// Passes a dense line on with at most four points for each half column of pixels.
+/// Passes on at most four points of a dense line for each half pixel column.
 class Thinner {
 public:
     explicit Thinner(Clipper& clipper) : clipper_(clipper) {}
@@ -67,7 +67,7 @@ public:
             held_.push_back(place);
             return;
         }
-        // the newest is the last; one between goes: neither first nor an extreme
+        // replaces the previous point if it is neither first nor an extreme
         held_.push_back(place);
         std::size_t low = 1, high = 1;
         for (std::size_t i = 1; i + 1 < held_.size(); ++i) {
@@ -102,7 +102,7 @@ double pixel(const Axis& axis, double value) {
     return axis.from + (static_cast<double>(axis.to) - axis.from) * axis.share(value);
 }
 
-/// A line for the others to lie on.
+/// A thick or pale line behind the others.
 void draw_background(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                      PageList& list) {
     std::vector<std::vector<Point>> lines;
@@ -118,7 +118,7 @@ void draw_background(const Curve& curve, const Axis& x, const Axis& y, const Are
                   mixed(style.theme.background, curve_color(curve, style, false), 0.3f), style, list);
 }
 
-/// Marks in a panel: from here on they are drawn as images, and smaller. Points of a line: from here on it is thin.
+/// Above these numbers, marks are drawn smaller and as images, and lines are thin.
 constexpr std::size_t many = 400;
 
 }  // namespace
@@ -137,7 +137,7 @@ DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& a
         }
         if (curve.mark == Mark::line || curve.mark == Mark::both) dense ? thinner.add(at) : clipper.move(at);
         const bool inside = at.x >= area.left && at.x <= area.right && at.y >= area.top && at.y <= area.bottom;
-        // a value between two gaps shows as a dot, or it would not show at all
+        // a value between two gaps is drawn as a dot, otherwise it would be invisible
         const auto gap = [&](std::size_t k) {
             return k >= curve.x.size() || !std::isfinite(pixel(x, curve.x[k]) + pixel(y, curve.y[k]));
         };
@@ -161,7 +161,7 @@ void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& are
     if (curve.uncertainty.empty()) return;
     Polylines band{.lines = {}, .color = curve_color(curve, style, false).with_alpha(0.2f), .within = area};
     const auto place = [](double at_x, double at_y) {
-        constexpr double far = 1e5;  // px: beyond any panel, and within what Cairo counts to
+        constexpr double far = 1e5;  // px: outside any panel, and inside the range of Cairo's numbers
         return Point{static_cast<float>(std::clamp(at_x, -far, far)), static_cast<float>(std::clamp(at_y, -far, far))};
     };
     std::vector<Point> above, below;
@@ -173,7 +173,7 @@ void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& are
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const double wide = std::abs(curve.uncertainty[i]);
         double low = curve.y[i] - wide;
-        // on a logarithmic axis a band that reaches zero reaches the end of the axis
+        // on a logarithmic axis, a band that reaches zero extends to the end of the axis
         if (y.logarithmic && low <= 0 && curve.y[i] > 0) low = std::min(y.low, y.high);
         const double at = pixel(x, curve.x[i]), lower = pixel(y, low), upper = pixel(y, curve.y[i] + wide);
         if (!std::isfinite(at + lower + upper)) {
@@ -206,7 +206,7 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
     float radius = curve.quiet ? 0.75f * style.marker : style.marker;
     if (curve.mark == Mark::line) radius = 0.8f * width;
     if (drawn.marks_in_panel > many) {
-        // px where the unit is 1: a panel of which so many marks are many, and marks that pixels do not turn into a pattern
+        // px for unit 1: the width of a panel to which `many` refers, and the smallest marks that give no moiré pattern
         constexpr float wide = 450, least = 1;
         const float side = std::sqrt(std::max(area.width(), 0.0f) * std::max(area.height(), 0.0f)) / style.unit;
         const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double greatest = std::numeric_limits<double>::max();
 
-/// The values of one axis.
+/// The extent of the values on one axis.
 class Extent {
 public:
     explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
@@ -21,11 +21,11 @@ public:
         high_ = std::max(high_, value);
     }
 
-    /// What `axis` does not set, with `margin` on either side, of the range.
+    /// The range with a `margin` at either side, except for ends that `axis` sets.
     Axis range(const PlotAxis& axis, double margin) const {
         double low = low_, high = high_;
         if (!(low <= high)) low = logarithmic_ ? 1 : 0, high = logarithmic_ ? 10 : 1;
-        // one end given on the wrong side of the values: the other one beyond it
+        // if the given end is on the wrong side of the values, the other is chosen beyond it
         if (axis.low && !axis.high) high = above(*axis.low, high), low = std::min(*axis.low, low);
         if (axis.high && !axis.low) low = below(*axis.high, low), high = std::max(*axis.high, high);
         if (low == high) low = below(low, low), high = above(high, high);
@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    /// `value`, or what is a little more than `limit`.
+    /// `value`, or something a little larger than `limit`.
     double above(double limit, double value) const {
         if (value > limit) return value;
         return logarithmic_ ? std::min(limit * 3, greatest)

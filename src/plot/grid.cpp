@@ -6,14 +6,14 @@
 namespace doppel {
 namespace {
 
-/// The map whose bar stands for those of all panels; null where each has its own.
+/// The map whose colour bar is shared by all panels; null if each has its own.
 const HeatMap* sharing_map(const Figure& figure) {
     const auto found = std::find_if(figure.panels.begin(), figure.panels.end(),
                                     [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
     return found == figure.panels.end() ? nullptr : &*found->map;
 }
 
-/// Panels that share their axes leave words to the one on their left, or below them.
+/// If panels share axes, only the leftmost and lowest ones show the texts of these.
 AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t columns) {
     if (!figure.shares_axes) return {};
     const auto& all = figure.panels;
@@ -25,7 +25,7 @@ AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t column
     return words;
 }
 
-/// Gives axes that are alike the range of them all.
+/// Gives axes with the same label the union of their ranges.
 void share_ranges(const std::vector<Plot>& panels, std::vector<PlotRanges>& ranges) {
     for (const auto& [axis, range] : {std::pair(&Plot::x, &PlotRanges::x), {&Plot::y, &PlotRanges::y}})
         for (const auto& one : panels) {
@@ -40,18 +40,18 @@ void share_ranges(const std::vector<Plot>& panels, std::vector<PlotRanges>& rang
         }
 }
 
-/// The cells of all panels, and what around the panels is for words.
+/// The cells of all panels and the space for texts around the panels.
 struct Cells {
     std::vector<Gutters> columns, rows;
-    float width, height;  // of a panel without its words, px
+    float width, height;  // size of a panel without its texts, px
 
     Gutters around(std::size_t column, std::size_t row) const {
         return {columns[column].left, columns[column].right, rows[row].title, rows[row].labels, rows[row].bottom};
     }
 };
 
-/// Of whole pixels, so that all panels come out alike. Where they share axes, a column or row takes no more than its own
-/// words need; else all take as much as the largest.
+/// Whole pixels, so that all panels have the same size. If they share axes, each column and row takes what its own
+/// texts need; otherwise all take as much as the largest.
 Cells cells_of(const std::vector<Gutters>& own, const PanelGrid& grid, float width, float height, bool shares_axes,
                const PlotStyle& style) {
     const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
@@ -86,7 +86,7 @@ PanelGrid grid_of(const Figure& figure, const Area& body) {
     const int panels = static_cast<int>(figure.panels.size());
     const auto grid = [&](int columns) { return PanelGrid{columns, (panels + columns - 1) / columns}; };
     if (figure.columns > 0) return grid(std::min(figure.columns, panels));
-    const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // width to height that suits
+    const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // preferred ratio of width to height
     PanelGrid best = grid(1);
     float most = 0;
     for (int columns = 1; columns <= panels; ++columns) {
@@ -112,7 +112,7 @@ void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageLi
     std::vector<PlotRanges> ranges;
     for (const auto& panel : figure.panels) ranges.push_back(fitted_ranges(panel));
     if (figure.shares_axes) share_ranges(figure.panels, ranges);
-    // once more where labels take what they do not have
+    // drawn again if the labels need more space than they were given
     const std::size_t before = list.size();
     for (LabelNeeds given;;) {
         std::vector<Gutters> own;

@@ -10,19 +10,19 @@
 namespace doppel {
 namespace {
 
-/// Opaque.
+/// Sets an opaque pixel.
 void set_pixel(Picture& picture, int x, int y, Color color) {
     std::ranges::copy(bytes_of(color.with_alpha(1)), picture.at(x, y));
 }
 
 constexpr float heading_width = 7.5f;  // em
 
-/// A bar before it has a place: top 0, left 0.
+/// A colour bar at top 0, left 0.
 struct Bar {
     MapScale scale;
-    Axis axis = {};  // from its bottom up, px below the top of the panel
+    Axis axis = {};  // upwards; px below the top of the panel
     std::vector<Tick> ticks = {};
-    std::vector<std::string> none = {};  // lines
+    std::vector<std::string> none = {};  // lines of text for cells without a value
     float thickness = 0, text_left = 0, width = 0, none_top = 0;
 };
 
@@ -53,14 +53,14 @@ Image colors(const Bar& bar, float left, float top, float scale) {
     return {left, top, left + bar.thickness, top + bar.axis.from, std::move(pixels)};
 }
 
-/// The label of a bar that maps share, in lines above it.
+/// The label of a shared colour bar, as lines above it.
 TextBlock bar_heading(const HeatMap& map, const PlotStyle& style) {
     if (!map.shares_bar) return {};
     return {evenly_wrapped(map.label, style.tick, Weight::regular, heading_width * style.tick), style.tick,
             Weight::regular, style.theme.text};
 }
 
-/// What a heading leaves of a height.
+/// The height below a heading.
 float below(const TextBlock& heading, float height, const PlotStyle& style) {
     return heading.lines.empty() ? height : std::max(height - heading.height() - style.tick, 1.0f);
 }
@@ -119,7 +119,7 @@ void draw_bar(const HeatMap& map, Area area, float left, const PlotStyle& style,
             horizontal_line(area.top + y, ticks_left, ticks_left + 0.25f * em, style.line, style.theme.frame));
         write(tick.text, y);
     }
-    // centred on the tick as all labels are, so none is above the panel by more than half a line
+    // labels are centred on their ticks, so none exceeds the panel by more than half a line
     if (bar.none.empty()) return;
     const float top = std::round(area.top + bar.none_top + 0.1f * em);
     list.push_back(

@@ -9,14 +9,14 @@
 namespace doppel {
 namespace {
 
-/// The label of a curve or rule before it has a place.
+/// The label of a curve or rule, not yet placed.
 struct LabelText {
     std::string text;
     float size;
     Weight weight;
     Color color;
 
-    /// With the box of their ink at `left` and `top`.
+    /// The label with its ink box at `left` and `top`.
     Label at(float left, float top) const {
         return {text, {left, top + 0.8f * size}, size, Align::left, weight, color};
     }
@@ -29,7 +29,7 @@ struct Found {
     float cost;
 };
 
-/// A label; on a map with a dark box behind it.
+/// Draws a label; over a map, on a dark box.
 void write(const Label& label, bool over_map, PageList& list) {
     if (over_map) {
         const Area box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
@@ -39,13 +39,13 @@ void write(const Label& label, bool over_map, PageList& list) {
     list.push_back(label);
 }
 
-/// Points of the curve to write at, from its right end on, each with how far left it is, 0…1.
+/// Candidate points of the curve, from its right end on, each with its distance from that end, 0…1.
 std::vector<Point> places(const DrawnCurve& curve) {
     std::vector<Point> all;
     for (const auto& line : curve.lines) {
         for (std::size_t i = 0; i < line.size(); ++i) {
             if (i > 0) {
-                // long straight pieces have places within
+                // long straight pieces have candidates inside
                 const float length = distance(line[i], line[i - 1]);
                 const int parts = static_cast<int>(std::min(length / 24, 40.0f));
                 for (int k = 1; k < parts; ++k) {
@@ -59,7 +59,7 @@ std::vector<Point> places(const DrawnCurve& curve) {
     }
     if (curve.lines.empty()) all = curve.points;
     if (all.empty()) return {};
-    // few of many, evenly, and always both ends
+    // a few of many, evenly spaced, always with both ends
     constexpr std::size_t most = 72;
     std::vector<Point> few;
     const std::size_t step = all.size() / most + 1;
@@ -69,7 +69,7 @@ std::vector<Point> places(const DrawnCurve& curve) {
     return few;
 }
 
-/// The best place beside the curve that touches nothing.
+/// The best position beside the curve that touches nothing.
 std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const LabelText& text, float clear,
                             const LabelPlacer& placer) {
     std::optional<Found> best;
@@ -82,7 +82,7 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
         for (const float across : {1.0f, 0.5f, 0.0f}) {
             for (const float down : {0.5f, 0.0f, 1.0f}) {
                 if (across == 0.5f && down == 0.5f) continue;
-                // right of the place, in its middle, left of it; likewise above and below
+                // right of the point, centred, left of it; likewise above and below
                 const float left = across == 1 ? p.x + gap : across == 0 ? p.x - gap - w : p.x - w / 2;
                 const float top = down == 1 ? p.y + gap : down == 0 ? p.y - gap - h : p.y - h / 2;
                 const Area box{left, top, left + w, top + h};
@@ -94,7 +94,7 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
                 if (!placer.is_free(box.grown(margin, 0.5f * margin)) ||
                     placer.ink(box.grown(margin, 0.5f * margin)) > 0)
                     continue;
-                // near other curves it is unclear whose label it is
+                // near other curves it is unclear which curve a label belongs to
                 if (placer.ink(box.grown(1.0f * text.size, 0.8f * text.size), owner) > 0) cost += 0.7f;
                 if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
             }
@@ -103,7 +103,7 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
     return best;
 }
 
-/// A place on the curve, where the label hides least of the others.
+/// The position on the curve at which the label hides the least of the other curves.
 std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
                           const LabelPlacer& placer) {
     std::optional<Found> best;
@@ -117,7 +117,7 @@ std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const Labe
     return best;
 }
 
-/// A place above or below a single mark, off all lines, and the leader line to it.
+/// A position above or below a single mark that touches no line, and the leader line to it.
 std::optional<Found> with_leader(Point mark, const LabelText& text, const LabelPlacer& placer, Capsule& leader) {
     constexpr int farthest = 12;  // half lines
     const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
@@ -156,7 +156,7 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
         std::optional<Found> best;
         for (int place = 0; place <= 10; ++place) {
             for (const int side : {0, 1}) {
-                // from the right end, or from the top, onwards
+                // from the right end, or from the top
                 const float along = static_cast<float>(place) / 10;
                 const float left = level       ? area.right - gap - w - along * (area.width() - w - 2 * gap)
                                    : side == 0 ? at + gap
@@ -178,7 +178,7 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
 
 namespace {
 
-/// What is written beside or on the curves, and those for which there is no room.
+/// The labels placed beside or on the curves, and the curves without space for one.
 struct Written {
     std::vector<Label> labels;
     std::vector<Area> backgrounds;
@@ -186,10 +186,10 @@ struct Written {
     std::vector<std::size_t> left_over;
 };
 
-/// Labels of `size` for all curves but those that are named elsewhere.
+/// Places labels of `size` at all curves except those named elsewhere.
 Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, float size, bool dense,
                 const std::vector<std::size_t>& elsewhere, const PlotStyle& style, bool over_map, LabelPlacer placer) {
-    constexpr std::size_t most_marks = 60;  // beyond this no label has room beside marks
+    constexpr std::size_t most_marks = 60;  // beside more marks no label has space
     Written made;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& curve = curves[i];
@@ -224,7 +224,7 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
 
 LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const LabelNeeds& given,
                         const Area& beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list) {
-    constexpr int many = 10;  // curves that leave little room beside each
+    constexpr int many = 10;  // so many curves leave little space beside each
     const auto& curves = plot.curves;
     const bool over_map = plot.map.has_value();
     const float small = 0.8f * style.text;
@@ -236,7 +236,7 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
     };
     float size = dense ? small : style.text;
     Written made = tried(size, placer);
-    // rather small words at all curves than a legend, and rather on the curves than a legend over them
+    // prefers small labels at all curves to a legend, and labels on the curves to a legend that covers them
     if (!dense && !made.left_over.empty()) {
         Written fine = tried(small, placer);
         const auto legend = fitted_legend(curves, made.left_over, size, placer);
@@ -244,7 +244,7 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
         if (dense) fine = tried(small, placer);
         if (dense || fine.left_over.empty()) made = std::move(fine), size = small;
     }
-    // the legend first, for it is the larger; who then finds no place beside it joins it
+    // the legend is larger and placed first; curves that then have no space beside it join it
     std::optional<Legend> legend;
     while (!made.left_over.empty()) {
         others.insert(others.end(), made.left_over.begin(), made.left_over.end());

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// A place for a box of this size where nothing is drawn, preferably a corner.
+/// A position for a box of this size where nothing is drawn, preferably a corner.
 std::optional<Point> empty_place(float width, float height, float margin, const LabelPlacer& placer) {
     constexpr int steps = 20;
     const Area& area = placer.area();
@@ -31,7 +31,7 @@ std::optional<Point> empty_place(float width, float height, float margin, const 
     return best;
 }
 
-/// A short piece of the curve.
+/// A short sample of the curve.
 void draw_sample(const Curve& curve, float left, float right, float y, const PlotStyle& style, bool over_map,
                  PageList& list) {
     DrawnCurve sample;
@@ -41,7 +41,7 @@ void draw_sample(const Curve& curve, float left, float right, float y, const Plo
     draw_curve(curve, sample, {}, style, over_map, list);
 }
 
-// of a legend's parts, em
+// dimensions of a legend, em
 constexpr float row = 1.4f, pad = 0.5f, sample = 1.7f, gap = 0.5f;
 
 float legend_width(const std::vector<Curve>& curves, const std::vector<std::size_t>& which, float size) {
@@ -49,7 +49,7 @@ float legend_width(const std::vector<Curve>& curves, const std::vector<std::size
     for (const std::size_t i : which) widest = std::max(widest, text_width(curves[i].label, size));
     return (2 * pad + sample + gap) * size + widest;
 }
-/// The height, em.
+/// Its height, em.
 float legend_rows(std::size_t count) {
     return 2 * pad - 0.35f + row * static_cast<float>(count);
 }

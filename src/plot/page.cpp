@@ -14,14 +14,14 @@
 namespace doppel {
 namespace {
 
-/// The metadata's text of that key; empty where there is none.
+/// The text of this key in the metadata; empty if there is none.
 std::string text_of(const Metadata& metadata, std::string_view key) {
     const auto found =
         std::ranges::find(metadata, key, [](const auto& entry) -> std::string_view { return entry.first; });
     return found == metadata.end() ? "" : found->second;
 }
 
-/// The program that makes a page, by which it is known for Doppel's: "Doppel" and more.
+/// The program that makes the page, "Doppel …", by which made_by() recognises it.
 std::string maker_of(const Metadata& metadata) {
     const auto maker = text_of(metadata, "encoder");
     return maker.starts_with("Doppel") ? maker : "Doppel";
@@ -43,10 +43,10 @@ void describe_pdf(cairo_surface_t* surface, const Metadata& metadata) {
     set("comment", CAIRO_PDF_METADATA_SUBJECT);
     set("encoder", CAIRO_PDF_METADATA_CREATOR);
     cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
-    cairo_pdf_surface_restrict_to_version(surface, CAIRO_PDF_VERSION_1_5);  // newer Cairos write 1.7
+    cairo_pdf_surface_restrict_to_version(surface, CAIRO_PDF_VERSION_1_5);  // newer versions of Cairo would write 1.7
 }
 
-/// Draws the page, `units` of the surface to a pixel of the page.
+/// Draws the page, with `units` of the surface per pixel of the page.
 void draw(const Page& page, cairo_surface_t* surface, double units, bool pixels, const std::atomic<bool>& stop) {
     check_cairo(cairo_surface_status(surface));
     const CairoContext context(cairo_create(surface));
@@ -107,7 +107,7 @@ std::string page_file(const Page& page, PictureFormat format, double width_pt, c
     cairo_surface_finish(surface.get());
     check_cairo(cairo_surface_status(surface.get()));
     const auto maker = maker_of(metadata);
-    if (is_pdf) {  // what a PDF holds may be compressed; what follows it is free
+    if (is_pdf) {  // the contents of a PDF may be compressed; a comment at its end is not
         file.resize(file.rfind("%%EOF"));
         return file + fmt::format("%%EOF\n% {}\n", maker);
     }

@@ -13,59 +13,60 @@
 
 namespace doppel {
 
-/// What a page is written as: pixels, or paths and text.
+/// The file format of a page: pixels (png), or paths and text.
 enum class PictureFormat { png, pdf, svg };
 
-/// A picture stretched over a rectangle, whose edges are rounded to whole pixels; nearest neighbour.
+/// A picture stretched to a rectangle, whose edges are rounded to whole pixels; nearest neighbour.
 struct Image {
     float left = 0, top = 0, right = 0, bottom = 0;  // px
-    std::shared_ptr<const Picture> pixels;           // with opacity
+    std::shared_ptr<const Picture> pixels;           // with alpha
 };
 
-/// Lines drawn with a pen of round joints, dashed where `dash` > 0; or, where the width is 0, polygons that are filled.
+/// Lines with round joints, dashed if `dash` > 0. If the width is 0, filled polygons.
 struct Polylines {
     std::vector<std::vector<Point>> lines;
     float width = 0;  // px
     Color color;
     float dash = 0, gap = 0;          // px
-    std::optional<Area> within = {};  // what lies outside is cut off
+    std::optional<Area> within = {};  // clipped to this area
 };
 
-/// A picture stretched over `at`, whose ends may be in reverse, cut off at `within`; its pixels are squares where they are
-/// as large as the page's, else averaged.
+/// A picture stretched to `at`, mirrored if its edges are in reverse order, and clipped to `within`. Cells larger than
+/// pixels have sharp edges; smaller ones are averaged.
 struct CellImage {
     Area at, within;  // px
     std::shared_ptr<const Picture> pixels;
 };
 
-/// What to draw, back to front: what a display list may hold, and what only charts have.
+/// One thing to draw: the items of a display list, and those that only charts have. Lists are in order from back to
+/// front.
 using PageItem = std::variant<Box, Capsule, Ring, Stroke, Label, Image, Polylines, CellImage>;
 using PageList = std::vector<PageItem>;
 
 PageList page_list(const DisplayList& list);
 
-/// A sheet and what is on it.
+/// A page and the items on it.
 struct Page {
     Size size;        // px
-    float scale = 1;  // px to a unit of the items
+    float scale = 1;  // px per unit of the items
     PageList items;
-    Typeface typeface = {};               // of its text
-    std::vector<std::string> notes = {};  // what there was no room for
+    Typeface typeface = {};               // fonts of its text
+    std::vector<std::string> notes = {};  // what was left out for lack of space
 };
 
-/// The page in pixels, by Cairo: the same on every machine to within its rounding. Throws Error: exit 4 where there is no
-/// memory, 130 soon after `stop` is set.
+/// Draws the page with Cairo: the same on every machine except for rounding. Throws Error: exit 4 if memory is
+/// exhausted, 130 soon after `stop` is set.
 Picture picture_of(const Page& page, const std::atomic<bool>& stop = false);
 
-/// The page as a PDF 1.5 or an SVG, `width_pt` (1/72 inch) wide: paths as paths, images pixel by pixel as they are, glows as
-/// rings. The PDF holds those letters of the fonts that it needs, and its text can be searched; in an SVG letters are paths. Of
-/// the metadata both hold title, comment and encoder. Throws Error (exit 4) where there is no memory.
+/// The page as a PDF 1.5 or an SVG, `width_pt` (1/72 inch) wide: paths as paths, images unscaled, glows as rings. A PDF
+/// contains the glyphs it needs, and its text can be searched; in an SVG letters are paths. Of the metadata, both store
+/// title, comment and encoder. Throws Error (exit 4) if memory is exhausted.
 std::string page_file(const Page& page, PictureFormat format, double width_pt, const Metadata& metadata);
 
-/// What draws, for the manifest: "Cairo 1.16.0".
+/// The library for the manifest: "Cairo 1.16.0".
 std::string page_library();
 
-/// Of a page whose size is in pixels alone, as browsers have it.
+/// For a page whose size is given in pixels, as in browsers.
 inline constexpr double pt_per_px = 0.75;
 
 }  // namespace doppel

@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// The font; where it lacks the weight, FreeType makes it. It keeps FreeType until Cairo has let go of it.
+/// The font for Cairo; if it lacks the weight, FreeType emboldens it. FreeType lives until Cairo has released the font.
 CairoFontFace load_font(const Font& font, Weight weight) {
     struct Loaded {
         FT_Library library = nullptr;
@@ -37,7 +37,7 @@ CairoFontFace load_font(const Font& font, Weight weight) {
     return face;
 }
 
-/// The picture as Cairo has it: premultiplied, in words of the machine's order.
+/// The picture in Cairo's format: premultiplied 32-bit words in native byte order.
 CairoSurface surface_of(const Picture& pixels) {
     CairoSurface surface(cairo_image_surface_create(pixels.is_opaque() ? CAIRO_FORMAT_RGB24 : CAIRO_FORMAT_ARGB32,
                                                     pixels.size.width, pixels.size.height));
@@ -58,8 +58,8 @@ CairoSurface surface_of(const Picture& pixels) {
     return surface;
 }
 
-/// A glow's rings from its outer edge inward, each `beyond` px past the shape's edge and so opaque: together they fall
-/// off with the square of the distance, from a third at the edge.
+/// The rings of a glow from the outside in, each `beyond` px outside the shape's edge, with its opacity. Their sum
+/// falls with the square of the distance, from 1/3 at the edge.
 template <class Add>
 void for_each_ring(float reach, const Add& add) {
     constexpr int rings = 6;
@@ -71,10 +71,10 @@ void for_each_ring(float reach, const Add& add) {
     }
 }
 
-/// A straight part of a stroke. Its looks are even.
+/// A straight part of a stroke with constant opacity, width and glow.
 struct Part {
     Point from, to;
-    float alpha, width, glow;  // alpha 0…1, px
+    float alpha, width, glow;  // alpha 0…1; px
 
     bool goes_on(const Part& next) const {
         return to.x == next.from.x && to.y == next.from.y && alpha == next.alpha && width == next.width &&
@@ -82,7 +82,7 @@ struct Part {
     }
 };
 
-/// Bends are cut into chords at most 1/20 px off, changing looks into steps of 4 %.
+/// Bends become chords with errors of at most 1/20 px; changes of opacity and width become steps of 4 %.
 std::vector<Part> parts_of(const Stroke& stroke) {
     std::vector<Part> parts;
     for (std::size_t i = 0; i + 1 < stroke.vertices.size(); ++i) {
@@ -203,7 +203,7 @@ void PagePainter::operator()(const Stroke& stroke) {
     for_each_even_part([&](const Part& looks, const std::vector<Point>& line) {
         const auto color = stroke.color.with_alpha(stroke.color.a * looks.alpha);
         add_line(to_, line);
-        // see-through parts must not overlap
+        // transparent parts must not overlap
         this->stroke(looks.width, color, color.a == 1 ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
     });
 }
@@ -227,12 +227,12 @@ void PagePainter::operator()(const Label& label) {
     start.y = std::round(label.anchor.y * scale_) / scale_;
     cairo_set_font_size(to_, label.size);
     for (std::size_t i = 0; i < line.glyphs.size();) {
-        // as far as one font has the letters
+        // a run of letters in the same font
         const auto* font = line.glyphs[i].font;
         const std::size_t begin = line.glyphs[i].byte;
         std::size_t end = begin;
         std::vector<cairo_glyph_t> glyphs;
-        std::vector<cairo_text_cluster_t> letters;  // a glyph each
+        std::vector<cairo_text_cluster_t> letters;  // one glyph each
         for (; i < line.glyphs.size() && line.glyphs[i].font == font; ++i) {
             const auto& glyph = line.glyphs[i];
             glyphs.push_back({static_cast<unsigned long>(glyph.number), start.x + glyph.pen, start.y});
@@ -253,7 +253,7 @@ void PagePainter::operator()(const Label& label) {
 
 void PagePainter::operator()(const Image& image) {
     if (!(image.right > image.left && image.bottom > image.top) || !image.pixels || image.pixels->rgba.empty()) return;
-    const auto whole = [&](float at) { return std::round(at * scale_) / scale_; };  // pixels, as in a picture
+    const auto whole = [&](float at) { return std::round(at * scale_) / scale_; };  // whole pixels, as in a picture
     paint(*image.pixels, {whole(image.left), whole(image.top), whole(image.right), whole(image.bottom)},
           CAIRO_FILTER_NEAREST);
 }
@@ -281,7 +281,7 @@ void PagePainter::paint(const Picture& pixels, const Area& at, cairo_filter_t fi
                 at.height() / static_cast<float>(pixels.size.height));
     cairo_set_source_surface(to_, surface.get(), 0, 0);
     cairo_pattern_set_filter(cairo_get_source(to_), filter);
-    cairo_pattern_set_extend(cairo_get_source(to_), CAIRO_EXTEND_PAD);  // no edge fades out
+    cairo_pattern_set_extend(cairo_get_source(to_), CAIRO_EXTEND_PAD);  // so that the edges do not fade out
     cairo_rectangle(to_, 0, 0, pixels.size.width, pixels.size.height);
     cairo_fill(to_);
     cairo_restore(to_);

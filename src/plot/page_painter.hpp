@@ -22,15 +22,15 @@ using CairoSurface = std::unique_ptr<cairo_surface_t, CairoDestroy<cairo_surface
 using CairoContext = std::unique_ptr<cairo_t, CairoDestroy<cairo_destroy>>;
 using CairoFontFace = std::unique_ptr<cairo_font_face_t, CairoDestroy<cairo_font_face_destroy>>;
 
-/// Throws Error (exit 4) where Cairo failed.
+/// Throws Error (exit 4) if Cairo failed.
 void check_cairo(cairo_status_t status);
 
-/// Draws items of a page (page_painter.cpp). Circles are Cairo's arcs; a stroke of even opacity and width is one path, any
-/// other a path for each even part; glows are stacks of wide faint paths.
+/// Draws the items of a page (page_painter.cpp). Circles are Cairo's arcs. A stroke of constant opacity and width is
+/// one path; others have a path for each part. Glows are stacks of wide faint paths.
 class PagePainter {
 public:
-    /// Units of the items are those of `to`, `scale` of its pixels. In `pixels` letters stand where they belong to a
-    /// fraction of a pixel, which not every Cairo does with its own letters.
+    /// The items have the units of `to`, which are `scale` pixels. With `pixels`, letters are drawn as images at
+    /// subpixel positions, which not every version of Cairo supports for text.
     PagePainter(cairo_t* to, const Typeface& typeface, float scale, bool pixels)
         : to_(to), typeface_(typeface), scale_(scale), pixels_(pixels) {}
 

@@ -15,7 +15,7 @@ Axis placed(Axis axis, float from, float to) {
     return axis;
 }
 
-/// What all drawing in a panel needs.
+/// The data that all drawing in a panel needs.
 struct Panel {
     const Plot& plot;
     Axis x, y, right;
@@ -29,7 +29,7 @@ Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
             placed(ranges.right.value_or(Axis{}), area.bottom, area.top), area};
 }
 
-/// Rules, dashed.
+/// Dashed lines.
 void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, PageList& list) {
     for (const Rule& rule : panel.plot.rules) {
         const bool level = rule.orientation == Rule::Orientation::horizontal;
@@ -62,10 +62,10 @@ LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& 
                 placer.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, owner);
         draw_band(curves[i], panel.x, panel.y_of(curves[i]), panel.area, style, list);
     }
-    std::array<std::size_t, 2> marks{};  // quiet ones apart
+    std::array<std::size_t, 2> marks{};  // normal and quiet marks
     for (std::size_t i = 0; i < curves.size(); ++i) marks[curves[i].quiet] += all[i].points.size();
     for (std::size_t i = 0; i < curves.size(); ++i) all[i].marks_in_panel = marks[curves[i].quiet];
-    // what is there to compare with lies below
+    // quiet curves are drawn first, below the others
     for (const bool quiet : {true, false})
         for (std::size_t i = 0; i < curves.size(); ++i)
             if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
@@ -93,7 +93,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
     if (!words.x) return made;
-    // the first and the last label below the axis reach out by half
+    // the first and last label below the axis extend beyond it by half their width
     const float wide = std::max(width - made.left - made.right, 1.0f);
     const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
     const float half = widest(below, em) / 2;
@@ -108,7 +108,7 @@ LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& ce
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
     Area held = cell;
     if (plot.square) {
-        // in the middle of its cell, labels included
+        // centred in its cell, including labels
         const float side = std::min(area.width(), area.height());
         const float right = std::floor((area.width() - side) / 2), down = std::floor((area.height() - side) / 2);
         held = held.grown(-right, -down);

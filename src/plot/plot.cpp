@@ -12,13 +12,13 @@
 namespace doppel {
 namespace {
 
-/// What stands above and below the panels, and the room between.
+/// The texts above and below the panels, and the area between.
 struct Layout {
     TextBlock title, subtitle;
     std::vector<TextBlock> captions;
     Area body;
     float captions_top = 0;
-    std::string_view left_out;  // for want of room
+    std::string_view left_out;  // left out for lack of space
 };
 
 Layout laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, bool subtitle, bool captions) {
@@ -43,7 +43,7 @@ Layout laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style,
     return page;
 }
 
-/// Whether what stands in the body can be read there.
+/// Whether the contents of the body are large enough to read.
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
     if (figure.panels.empty()) return body.height() >= 0;
     const auto rows = static_cast<float>(grid_of(figure, body).rows);
@@ -51,7 +51,7 @@ bool legible(const Figure& figure, const Area& body, const Area& sheet, const Pl
     return body.height() >= std::max(share * sheet.height(), lines * style.tick * rows);
 }
 
-/// Whether the panels have room besides their labels and ticks.
+/// Whether the panels have space besides their labels and ticks.
 bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
     if (figure.panels.empty()) return true;
     const auto [columns, rows] = grid_of(figure, body);
@@ -59,7 +59,8 @@ bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
            body.width() >= 9 * style.tick * static_cast<float>(columns);
 }
 
-/// With all text where it leaves the panels enough room, else without captions, else without subtitle.
+/// The layout with all text if that leaves the panels enough space; otherwise without captions, or also without
+/// subtitle.
 Layout laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style) {
     Layout page;
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}, {false, false}}) {
@@ -85,16 +86,16 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
     for (;; made.scale *= 0.8f) {
         const float width = static_cast<float>(size.width) / made.scale;
         const float height = static_cast<float>(size.height) / made.scale;
-        // smaller text than that of 800 × 450 cannot be read
+        // text smaller than that of an 800 × 450 picture cannot be read
         const float by_size = std::max(std::min(width / 1600, height / 900), 0.5f);
         const PlotStyle style{
             .theme = theme, .unit = unit.value_or(by_size), .scale = made.scale, .on_paper = unit.has_value()};
-        // a page has margins of its own
+        // a page has its own margins
         const float across = std::round((style.on_paper ? 8 : 34) * style.unit);
         const float down = std::round((style.on_paper ? 8 : 28) * style.unit);
         const Area sheet{across, down, width - across, height - down};
         const Layout page = laid_out(figure, sheet, style);
-        // many panels in a small picture: smaller text rather than no room for panels
+        // with many panels in a small picture, shrinks the text to leave space for the panels
         constexpr float least_scale = 0.1f;
         if (!has_room(figure, page.body, style) && made.scale > least_scale) continue;
 

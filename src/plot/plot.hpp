@@ -11,92 +11,93 @@
 
 namespace doppel {
 
-/// An axis as the person who asks for a chart sees it.
+/// An axis as specified for a chart.
 struct PlotAxis {
-    std::string label;                // with the unit: "release angle θ1, °"
-    std::optional<double> low, high;  // fitted to what is drawn where not given; low > high: inverted
+    std::string label;                // including the unit: "release angle θ1, °"
+    std::optional<double> low, high;  // fitted to the contents if not given; low > high: inverted
     bool logarithmic = false;
-    std::optional<double> every;  // between ticks, as long as their labels fit: 45 for degrees
+    std::optional<double> every;  // distance of ticks, as long as their labels fit: 45 for degrees
 
     friend bool operator==(const PlotAxis&, const PlotAxis&) = default;
 };
 
-/// What a line of data looks like. Many points of a density add up where they overlap.
+/// How data are drawn. In `density`, many overlapping points add up.
 enum class Mark { line, points, both, density };
 
-/// A curve behind the others: pale and thin, or a wide pale band along it.
+/// A curve behind the others: a pale thin line, or a wide pale band.
 enum class Background { none, line, band };
 
-/// One series. Points that are not finite, or not positive on a logarithmic axis, interrupt the line.
+/// One series. Values that are not finite, or not positive on a logarithmic axis, interrupt the line.
 struct Curve {
-    std::string label;  // at the line where there is room, else in the legend; empty: neither
+    std::string label;  // at the curve if there is space, otherwise in the legend; empty: none
     std::vector<double> x, y;
     std::vector<double> uncertainty;  // of y, drawn as a band; empty: none
     Mark mark = Mark::line;
-    int hue = 0;                               // of the theme's palette; curves that belong together share one
-    bool right = false;                        // on the second y axis
-    bool dashed = false, quiet = false;        // quiet: grey and thin, to compare with
-    Background background = Background::none;  // then it has no label, and labels may cover it
+    int hue = 0;                               // index in the theme's palette; related curves share one
+    bool right = false;                        // belongs to the second y axis
+    bool dashed = false, quiet = false;        // quiet: grey and thin, for comparison
+    Background background = Background::none;  // a background curve has no label, and labels may cover it
 };
 
-/// A straight line across the chart with a label: a limit, a time.
+/// A labelled straight line across the chart: a limit, a time.
 struct Rule {
     enum class Orientation { horizontal, vertical } orientation = Orientation::horizontal;
     double at = 0;
     std::string label;
 };
 
-/// A quantity over a rectangle as colour, with a bar that tells what the colours mean.
+/// A quantity on a rectangle, shown as colour with a colour bar.
 struct HeatMap {
     std::size_t columns = 0, rows = 0;
-    std::vector<float> values;  // row by row, from y_low up; NaN = none, shown as `none_label`
-    double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  // outer edges of the cells, which are even on their axes
-    std::string label;                                    // of the bar, with the unit
-    std::string none_label;                               // "no flip within 20 s"
-    bool none_is_bad = false;                             // shown in the colour of what is bad
-    std::optional<double> low, high;                      // of the scale; fitted to the values where not given
+    std::vector<float> values;  // row by row, from y_low up; NaN = no value, shown as `none_label`
+    double x_low = 0, x_high = 1, y_low = 0,
+           y_high = 1;                // outer edges of the cells, which are equidistant on their axes
+    std::string label;                // of the colour bar, including the unit
+    std::string none_label;           // "no flip within 20 s"
+    bool none_is_bad = false;         // shown in the theme's `bad` colour
+    std::optional<double> low, high;  // of the colour scale; fitted to the values if not given
     bool logarithmic = false;
-    std::optional<double> threshold;  // two colours, up to it and above it
-    bool shares_bar = false;          // with all maps of the figure: one bar, on the right of them
+    std::optional<double> threshold;  // only two colours: up to this value, and above it
+    bool shares_bar = false;          // one colour bar for all maps of the figure, at their right
 };
 
-/// One pair of axes and what is drawn between them.
+/// A pair of axes and its contents.
 struct Plot {
-    std::string title;  // of a panel among several
-    std::string note;   // beside the title where there is room: a number or two
+    std::string title;  // of one panel among several
+    std::string note;   // short text beside the title, if there is space
     PlotAxis x, y;
     std::optional<PlotAxis> right;
     std::optional<HeatMap> map;
     std::vector<Curve> curves;
     std::vector<Rule> rules;
     bool square = false;           // as high as wide
-    bool needs_no_legend = false;  // words that have no room beside their curves stand on them
+    bool needs_no_legend = false;  // labels without space beside their curves are written on them
 };
 
-/// A picture fit for a paper: headings, panels in a grid, and lines of caption below.
+/// A complete figure: headings, panels in a grid, and captions below.
 struct Figure {
     std::string title, subtitle;
     std::vector<Plot> panels;
-    int columns = 0;           // of panels; 0 = as fits
-    bool shares_axes = false;  // numbers and names stand once for a row, or column, of panels whose axes are alike
+    int columns = 0;                    // of panels; 0 = automatic
+    bool shares_axes = false;           // numbers and labels of equal axes are shown once for each row and column
     std::vector<std::string> captions;  // paragraphs, broken into lines
 };
 
-/// A map's scale of colours.
+/// The colour scale of a map.
 struct MapScale {
     explicit MapScale(const HeatMap& map);
 
-    Axis axis;                        // from its own ends, or those of its numbers
-    std::optional<double> step = {};  // share of the axis at which the one of two colours ends
+    Axis axis;                        // from its given ends, or those of its values
+    std::optional<double> step = {};  // position on the axis where the first of two colours ends
     Color color(double share) const;
 };
-/// A map by itself, a pixel a cell, the first row at the bottom.
+/// A picture of the map alone, one pixel per cell, the first row at the bottom.
 Picture cell_picture(const HeatMap& map, const Theme& theme);
 
-/// Composes a figure for a picture of `size` px. `scale` = 2 gives every length twice as many pixels: the same layout
-/// as a picture of half the size, for print. Text of labels is 20 px times `unit` and scale, the rest in proportion; by the
-/// size where it is not given. Text never overlaps: what does not fit is shrunk, in all panels alike, moved to the legend,
-/// which covers no data, or left out (tick labels).
+/// Lays out a figure for a picture of `size` px. With `scale` = 2 every length has twice as many pixels: the layout of
+/// a picture of half the size, for print. Labels have 20 px times `unit` and scale; other text is in proportion.
+/// Without `unit` the size decides. Text never overlaps. What does not fit is shrunk in all panels alike, moved to the
+/// legend, which covers no data, or left out (tick labels).
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale = 1, std::optional<float> unit = {});
 
 }  // namespace doppel

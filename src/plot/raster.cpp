@@ -11,7 +11,7 @@ Image scatter_image(const std::vector<Point>& points, float radius, Color color,
     const int left = below(area.left), top = below(area.top);
     const Size size{std::max(1, static_cast<int>(std::ceil(area.right * scale)) - left),
                     std::max(1, static_cast<int>(std::ceil(area.bottom * scale)) - top)};
-    std::vector<float> covered(static_cast<std::size_t>(size.width) * size.height);  // how much of each pixel, 0…1
+    std::vector<float> covered(static_cast<std::size_t>(size.width) * size.height);  // coverage of each pixel, 0…1
     const float reach = std::max(radius * scale, 0.5f);
     for (const Point& point : points) {
         const float x = point.x * scale - static_cast<float>(left), y = point.y * scale - static_cast<float>(top);

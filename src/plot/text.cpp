@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// How many bytes of `text` make whole characters of at most `width` px in all, at least one character.
+/// The number of bytes of `text` whose whole characters are at most `width` px wide; at least one character.
 std::size_t bytes_within(std::string_view text, float size, Weight weight, float width) {
     std::size_t taken = 0;
     for (std::string_view rest = text; !rest.empty();) {
@@ -21,19 +21,19 @@ std::size_t bytes_within(std::string_view text, float size, Weight weight, float
     return taken;
 }
 
-/// Whether a line may not end between the words: "2 464", "1 kg", "θ₁ = 45°".
+/// Whether a line must not break between the words: "2 464", "1 kg", "θ₁ = 45°".
 bool stay_together(std::string_view word, std::string_view next) {
     const auto is_sign = [](std::string_view text) { return text == "=" || text == "×" || text == "±"; };
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (is_sign(word) || is_sign(next)) return true;
     if (!is_digit(word.back())) return false;
-    constexpr std::size_t unit = 4;  // letters, a mark behind them included
+    constexpr std::size_t unit = 4;  // letters, with punctuation
     std::size_t letters = 0;
     for (std::string_view rest = next; !rest.empty(); ++letters) next_character(rest);
     return is_digit(next.front()) || letters <= unit;
 }
 
-/// The parts of `text` between which a line may end.
+/// The parts of `text` between which a line may break.
 std::vector<std::string> words_of(std::string_view text, float size, Weight weight, float width) {
     std::vector<std::string> words;
     std::string_view before;
@@ -62,7 +62,7 @@ void wrap_paragraph(std::string_view text, float size, Weight weight, float widt
             lines.push_back(std::move(line));
             line = word;
         }
-        // what alone is too wide
+        // wider than a line by itself
         while (text_width(line, size, weight) > width) {
             const std::size_t part = bytes_within(line, size, weight, width);
             if (part == line.size()) break;
