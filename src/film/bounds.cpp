@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-/// Whether the outstretched chain's circle holds all that is drawn: droplets pull from afar, and are not shown.
+/// Whether the circle of the outstretched chain contains all that is drawn. Droplets are far away and not drawn.
 bool stays_in_circle(const SideSpec& side) {
     return side.particles.empty() && side.constraints.empty() &&
            std::all_of(side.forces.begin(), side.forces.end(),
@@ -21,21 +21,21 @@ bool has_circle(const Scene& scene) {
     return stays_in_circle(scene.preset.a) && stays_in_circle(scene.preset.b);
 }
 
-/// With a margin of a tenth; includes zero.
+/// The range with a margin of a tenth; includes zero.
 Range padded(const Spread& seen) {
     const double low = seen.low, high = seen.high, width = high - low;
     if (!(width > 0) || !std::isfinite(width)) return {0, 1};
     return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
 }
 
-/// m
+/// In m.
 double chain_length(const SideSpec& side) {
     double sum = 0;
     for (const auto& length : side.length_m) sum += static_cast<double>(length);
     return sum;
 }
 
-/// The nearest 1, 2 or 5 times a power of ten that is no larger, or no smaller.
+/// The nearest 1, 2 or 5 times a power of ten, rounded up or down.
 double round_number(double value, bool up) {
     const double unit = std::pow(10, std::floor(std::log10(value)));
     double best = up ? 10 * unit : unit;
@@ -47,10 +47,9 @@ double round_number(double value, bool up) {
     return best;
 }
 
-/// The distance axis where the preset names none: all that the two do, a power of ten at least; of pairs that start
-/// alike no more than eight, as they come from nothing.
+/// The default axis of the distance: all values of the pair, at least one power of ten.
 Range fitted_distance(const Spread& seen) {
-    constexpr double decades = 1e60;  // the most an axis spans, whatever the masses and lengths
+    constexpr double decades = 1e60;  // the largest ratio of an axis's ends, whatever the masses and lengths
     if (seen.count == 0) return {1e-8, 1};
     const double most = std::clamp(seen.most, 1e-290, decades);
     const double high = round_number(1.02 * most, true);
@@ -60,7 +59,7 @@ Range fitted_distance(const Spread& seen) {
     return {std::clamp(low, high / decades, high / 10), high};
 }
 
-/// From the least error that shows to the largest there is, two powers of ten to six.
+/// The default axis of an error, two to six powers of ten: from a tenth of its geometric mean to its largest value.
 Range fitted_error(const Spread& seen) {
     if (seen.count == 0) return {1e-16, 1};
     const double high = std::pow(10, std::ceil(std::log10(1.02 * seen.most)));
@@ -100,7 +99,7 @@ void MotionBounds::add(const Scene& scene, const PairState& state, double start_
         if (link < side->bobs.size()) fastest = std::max(fastest, std::abs(side->bobs[link].omega));
     }
     for (const auto kind : video.strips) {
-        // pairs that start alike come from nothing
+        // a pair that starts equal has distances near zero at first; they are left out
         if (kind == StripKind::distance && !(start_distance > 0) && 50 * state.sample < scene.samples) continue;
         for (const auto& curve : strip_curves(kind, scene, state, start_distance, themes[0], 1))
             if (curve.value) strips[static_cast<std::size_t>(kind)].add(*curve.value);

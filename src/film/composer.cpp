@@ -16,23 +16,23 @@ namespace doppel {
 
 namespace {
 
-constexpr float leading = 1.55f;  // of a line's size
+constexpr float leading = 1.55f;  // times the text size
 
-/// A line of text on a card; where it goes depends on the others.
+/// A line of text on a card; its position depends on the other lines.
 Label card_line(std::string text, double size, Weight weight, Color color) {
     return label(std::move(text), {}, px(size), color, Align::center, weight);
 }
 
-// px of a 1920×1080 picture: what all lines of a card but the still take
+// px of a 1920×1080 picture: the height of all lines of a card, without its picture
 constexpr float card_words = 400;
 
-/// All as opaque as the card.
+/// The list with the opacity `alpha` of the card.
 DisplayList faded(DisplayList list, float alpha) {
     for (auto& item : list) std::visit([&](auto& shape) { shape.color.a *= alpha; }, item);
     return list;
 }
 
-/// A film's panel once more, in the middle of the card; smaller where the words need its room.
+/// One of the film's panels, in the middle of the card; smaller if the lines need the space.
 PendulumPanel still_panel(const Layout& layout) {
     auto panel = layout.panels.front();
     const auto& page = layout.page;
@@ -94,7 +94,7 @@ DisplayList Composer::frame() const {
     return list;
 }
 
-/// Lines above the still, and below it; without one all in the middle.
+/// Lines above and below a picture of the pendulums; without it, all lines in the middle.
 DisplayList Composer::card(const std::vector<Label>& above, const std::vector<Label>& below, double opacity) const {
     const auto& page = state_.layout.page;
     const float middle = (page.left + page.right) / 2;

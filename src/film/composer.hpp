@@ -7,28 +7,28 @@
 
 namespace doppel {
 
-/// Turns a film's snapshots into display lists, layer by layer. A list depends only on the scene, the samples so far and
-/// the snapshot that it shows: any frame can be drawn alone, and is the same at any frames a second.
+/// Turns snapshots of a film into display lists, layer by layer. A list depends only on the scene, the earlier samples
+/// and the snapshot. So any frame can be drawn alone, and is the same at any frame rate.
 class Composer {
 public:
-    /// `bounds` as make_layout() takes them.
+    /// `bounds` as for make_layout().
     Composer(const Scene& scene, const MotionBounds& bounds, PictureKind dress = PictureKind::film);
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 
-    /// What never changes: the page, the panels, the axes and their labels.
+    /// The constant part: page, panels, axes and their labels.
     DisplayList backdrop() const;
 
-    /// The next snapshot, in order: all samples from 0 on, and any moments between them.
+    /// Adds the next snapshot in order: all samples from 0 on, and any times between them.
     void add(const Snapshot& snapshot);
 
-    /// The picture of the snapshot added last.
+    /// The picture of the last snapshot.
     DisplayList frame() const;
 
     Color page_color() const { return state_.layout.style.theme.background; }
 
-    /// A card over the whole picture, `opacity` 0…1: a still of the pendulums as they are between words: what the film is
-    /// about and how the two start; what came of it so far. Without a title or end card in the film there is no still.
+    /// A card over the whole picture, `opacity` 0…1. It shows the pendulums between lines of text: title and initial
+    /// difference, or the results up to now. Without a title or end card in the film, the pendulums are left out.
     DisplayList title_card(double opacity) const;
     DisplayList end_card(double opacity) const;
 
@@ -37,9 +37,9 @@ private:
     std::string outcome() const;
 
     FilmState state_;
-    std::vector<std::unique_ptr<Layer>> layers_;  // back to front
+    std::vector<std::unique_ptr<Layer>> layers_;  // in order from back to front
     PendulumPanel still_panel_;
-    std::unique_ptr<Layer> still_;  // of cards
+    std::unique_ptr<Layer> still_;  // draws the pendulums on cards
 };
 
 }  // namespace doppel

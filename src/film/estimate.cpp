@@ -16,7 +16,7 @@ namespace {
 
 SimulationEstimate estimated_side(const Scene& scene, Side side, char name, const std::atomic<bool>& stop) {
     constexpr double look_s = 0.025, patience_s = 0.3;
-    // a sample may hold any number of steps: parts of it, a few steps each or brief
+    // one sample may take many steps: some parts of it are timed, a few steps each, or shortened
     constexpr long few_steps = 250;
     constexpr double brief_s = 0.01, most_parts = 1e12;
     const bool adaptive = side.method.adaptive;
@@ -53,7 +53,7 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
     return {elapsed * share, steps, done < 1};
 }
 
-/// The motion of an ensemble's members, s a sample.
+/// Time for the motion of an ensemble's members, s per sample.
 double seconds_of_members(const Scene& scene, const std::atomic<bool>& stop) {
     if (scene.members.empty()) return 0;
     constexpr double look_s = 0.05;
@@ -83,13 +83,13 @@ Scene beginning_of(Scene scene, long samples) {
     return scene;
 }
 
-/// What some frames take, s.
+/// The time for some frames, s.
 struct FrameCost {
     double frames = 1, wall_s = 0, cpu_s = 0;  // from the first of them on
     double run_s = 0;                          // of the whole run
 };
 
-/// Of the last `count` frames of the scene.
+/// Measured on the last `count` frames of the scene.
 FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>& stop) {
     const TemporaryFolder folder;
     double wall_s = 0, cpu_s = 0;
@@ -101,7 +101,7 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
             seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s, result.wall_s};
 }
 
-/// Of one frame: what many take more than few. The run is that of few.
+/// Time for one frame: the difference between many frames and few. `run_s` is that of few.
 FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
     constexpr double enough_s = 0.1, slow_s = 0.5;
     const auto few = cost_of_frames(scene, 2, stop);
@@ -131,7 +131,7 @@ SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bo
 }
 
 double estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
-    // far enough for trails, in little time
+    // long enough for trails to form, and short
     constexpr double motion_s = 4, begin_s = 0.15, patience_s = 1;
     const auto samples = static_cast<double>(scene.samples);
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;

@@ -6,18 +6,18 @@
 
 namespace doppel {
 
-/// What simulating a scene takes, by the beginning of its run.
+/// The time to simulate a scene, extrapolated from the beginning of its run.
 struct SimulationEstimate {
     double seconds = 0;
     double steps = 0;
-    bool at_least = false;  // where the beginning was too brief
+    bool at_least = false;  // the beginning was too short for an estimate: a lower bound
 };
 
 /// Throws as a run does; exit 130 soon after `stop` is set.
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop);
 
-/// What rendering it takes, s: some frames are drawn and written, in a folder that is removed, for about a second. Throws
-/// as run() does, as where nothing can draw here.
+/// The time to render the scene, s. Draws and writes some frames in a temporary folder, for about a second. Throws as
+/// run() does, for example if there is no OpenGL.
 double estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -13,7 +13,7 @@ namespace doppel {
 
 namespace {
 
-/// Adds the CPU time that this thread spends while it lives, s.
+/// Adds the CPU time that this thread spends during its lifetime, s.
 class Stopwatch {
 public:
     explicit Stopwatch(double& total) : total_(total), start_(seconds_of(CLOCK_THREAD_CPUTIME_ID)) {}
@@ -131,7 +131,7 @@ const Picture& Film::take(const DisplayList& list) {
     return *picture;
 }
 
-/// The frame shown last under a card that goes, or comes up.
+/// Draws the first or last frame with a card fading out or in over it.
 void Film::take_card(long frames, bool fades_in) {
     for (long k = 0; k < frames; ++k) {
         const double opacity = card_opacity(k, frames, scene_.fps.value(), fades_in);

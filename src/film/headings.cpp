@@ -16,7 +16,7 @@
 namespace doppel {
 namespace {
 
-/// What is said of a side above its panel.
+/// The texts above a side's panel.
 struct Heading {
     std::size_t panel, side;
     SideCaptions said;
@@ -31,9 +31,9 @@ std::vector<Heading> headings_of(const Scene& scene) {
     return {{0, 0, said[0]}, {apart ? 1u : 0u, 1, said[1], apart ? Align::left : Align::right}};
 }
 
-/// Sizes at which all headings fit, alike in all panels, px.
+/// Text sizes at which the headings of all panels fit, px.
 struct HeadingSizes {
-    float heading, note, width;  // width: of all words of a side
+    float heading, note, width;  // width: of all texts of a side
     bool two_lines = false;
 };
 
@@ -50,7 +50,7 @@ HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, 
         heading = std::min(heading, width / std::max(head, 1.0f));
         note = std::min(note, width / std::max(tail, 1.0f));
     }
-    constexpr float least = 0.85f;  // before notes go to a line of their own
+    constexpr float least = 0.85f;  // smallest scale before notes go on a line of their own
     const bool two = (one < least || one * px(font.note) < layout.least_text) &&
                      std::ranges::any_of(headings, [](const Heading& words) { return !words.said.note.empty(); });
     if (!two) return {one * px(font.heading), one * px(font.note), width};
@@ -83,7 +83,7 @@ void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, 
     add(tail, left + head_width + note_gap * t, base, theme.quiet_text, Weight::regular, Align::left);
 }
 
-/// A bar of the members' colours between what the first and what the last one is.
+/// A colour bar for the members, between the captions of the first and the last one.
 void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, const Area& panel) {
     const float t = layout.text, base = panel.top - 14 * t, gap = 14 * t;
     std::array<float, 2> width{};
@@ -98,12 +98,12 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
     }
     const float left = std::round(panel.left + width[0] + gap), right = std::round(panel.right - width[1] - gap);
     const float top = std::round(base - 0.6f * size), bottom = std::round(base);
-    for (float x = left; x < right; ++x)  // each up to the end, so that no seam shows on paper
+    for (float x = left; x < right; ++x)  // columns overlap, so that no seam shows in PDF and SVG
         layout.words.push_back(
             Box{x, top, right, bottom, 0, member_color(layout.style, double{x - left} / double{right - left - 1})});
 }
 
-/// What tells the listed members apart, "120.01°", by member; what is said before them, "θ₁ =".
+/// The common part of the members' captions ("θ₁ ="), and what differs for each ("120.01°").
 std::pair<std::string, std::vector<std::string>> legend_words(const Scene& scene) {
     const auto& members = scene.preset.video.members.releases;
     std::string before;
@@ -132,8 +132,8 @@ std::pair<std::string, std::vector<std::string>> legend_words(const Scene& scene
     return {before + " =", words};
 }
 
-/// What the listed members are, each after a dot of its colour, in as many lines as need be, the last one `base` px down.
-/// Returns how many.
+/// The captions of listed members, each after a dot in its colour. They take as many lines as needed; the last baseline
+/// is at `base` px. Returns the number of lines.
 int add_legend(Layout& layout, const Scene& scene, float left, float width, float base) {
     const auto [before, words] = legend_words(scene);
     const auto& theme = layout.style.theme;
@@ -201,13 +201,13 @@ float place_header(Layout& layout, const Scene& scene) {
     const auto width_of = [&](const std::string& text, double size, Weight weight = Weight::regular) {
         return layout.style.type.width(text, px(size), weight);
     };
-    // a little picture says what moves, in words that can be read, and not how it is integrated
+    // a small picture has a short subtitle: the system in readable text, without the integrator
     if (!scene.preset.subtitle && 0.8f * width_of(below, font.subtitle) > 0.85f * page.width())
         below = scene_caption(scene, Wording::plain);
     const auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
     if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
         below += (below.empty() ? "" : " · ") + speed;
-    // long text shrinks a little until it fits beside what stands at the right, then goes on below
+    // long text is shrunk a little to fit beside the text at the right, then continues below
     const float first = page.top + 36 * t;
     float base = first;
     const auto add = [&](const std::string& text, double size, Weight weight, Color color, float beside) {
@@ -277,7 +277,7 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
         return regions;
     }
     const float share = headings.size() > 1 && headings[0].panel == headings[1].panel ? 0.48f : 1;
-    const auto width = [&] { return share * regions.panels[0].width() - 14 * t; };  // apart from the words beside it
+    const auto width = [&] { return share * regions.panels[0].width() - 14 * t; };  // separate from the text beside it
     auto sizes = fitted(headings, layout, width());
     if (sizes.two_lines) {
         needs.heading = 81 * t;

@@ -10,13 +10,13 @@
 
 namespace doppel {
 
-/// The cubic from p to q with the slopes v and w (Hermite), at the share s of the way, which takes dt.
+/// Cubic Hermite interpolation from p to q with slopes v and w, at the fraction s of the interval dt.
 inline double hermite(double p, double v, double q, double w, double dt, double s) {
     const double r = 1 - s;
     return (1 + 2 * s) * r * r * p + s * r * r * dt * v + s * s * (3 - 2 * s) * q - s * s * r * dt * w;
 }
 
-/// A path that fades and tapers with its age.
+/// A path that fades and narrows with age.
 class Trail {
 public:
     /// `width` in px.
@@ -25,11 +25,11 @@ public:
         : Trail(scene, style, style.theme.sides[side], px(style.width.trail)) {}
 
     std::optional<Point> end() const;
-    /// The path goes on to a place, where it was at `time`, s. What has faded by `now` goes.
+    /// Adds a point that was reached at `time`, s. Points that have faded out at `now` are removed.
     void add(Point at, double time, double now);
 
-    /// Up to the head, where there is one; broken where it leaves the area, or where a point is NaN, and between
-    /// points more than `jump` px apart across. All is moved by `shift`.
+    /// Draws the path up to the head, if there is one. It is interrupted outside the area, at NaN, and between points
+    /// more than `jump` px apart horizontally. The whole path is moved by `shift`.
     void draw(const Area& area, double now, std::optional<Point> head, DisplayList& list,
               float jump = std::numeric_limits<float>::infinity(), Point shift = {}) const;
 
@@ -37,9 +37,9 @@ private:
     struct TrailPoint {
         Point at;
         double time;         // s
-        long group;          // of points that fade together
-        float bend = 0;      // px, of the way to the next one
-        bool joint = false;  // this one stays
+        long group;          // number of the group of points that fade together
+        float bend = 0;      // of the parabola to the next point, px
+        bool joint = false;  // simplify() keeps this point
     };
     using Points = std::deque<TrailPoint>;
 
@@ -49,11 +49,11 @@ private:
     void draw_piece(Points points, const Area& area, double now, Point shift, DisplayList& list) const;
 
     double sample_hz_, trail_s_;
-    Stroke pen_;  // without a path
+    Stroke pen_;  // stroke without vertices
     Points points_;
 };
 
-/// What the layers of a film's picture draw: the scene, where everything goes, and what came of the pair so far.
+/// The data for all layers: the scene, the layout, and the state of the pair.
 struct FilmState {
     const Scene& scene;
     const Layout layout;
@@ -61,27 +61,28 @@ struct FilmState {
     Outcome outcome{};
 
     double time() const { return scene.time(snapshot.pair.moment()); }
-    /// Whether the snapshot is between two samples: traces and trails end at the last sample, and are drawn up to it.
+    /// Whether the snapshot is between two samples. Curves and trails contain only samples, and are drawn on to the
+    /// snapshot.
     bool is_between() const { return snapshot.pair.share > 0; }
     const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
     const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
 };
 
-/// A part of a film's picture. What it draws depends on the scene and on the snapshots so far, and on nothing else.
+/// A part of a film's picture. It depends only on the scene and on the snapshots up to now.
 class Layer {
 public:
     explicit Layer(const FilmState& state) : state_(state) {}
     virtual ~Layer() = default;
 
-    /// What never changes.
+    /// Draws the constant part.
     virtual void backdrop(DisplayList& list) const = 0;
-    /// The next sample, from 0 on, is that of the state.
+    /// Adds the state's snapshot, which is the next sample from 0 on.
     virtual void add() {}
-    /// What lies on the backdrop at the snapshot added last.
+    /// Draws the last snapshot over the backdrop.
     virtual void frame(DisplayList& list) const = 0;
 
 protected:
-    /// How the axes of its chart look.
+    /// The style of a chart's axes.
     AxisLook axis_look() const {
         return {.edge = AxisLook::Edge::bottom,
                 .em = px(style_.font.axis),
@@ -98,13 +99,13 @@ protected:
     const Theme& theme_ = style_.theme;
 };
 
-// `state` outlives the layers.
+// `state` must outlive the layers.
 
 /// The pendulums of a panel and their trails.
 std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel);
-/// The panel of phase space.
+/// The phase portrait.
 std::unique_ptr<Layer> make_phase_layer(const FilmState& state, const PhasePanel& panel);
-/// A strip of the chart below, by its number from the top.
+/// A strip, numbered from the top.
 std::unique_ptr<Layer> make_strip_layer(const FilmState& state, std::size_t index);
 
 }  // namespace doppel

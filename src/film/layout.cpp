@@ -18,7 +18,7 @@ namespace {
 
 Theme themed(const VideoSpec& video) {
     auto theme = *std::find_if(themes.begin(), themes.end(), [&](const auto& t) { return t.name == video.theme; });
-    if (video.transparent) {  // the page may be bright or dark
+    if (video.transparent) {  // the background of the page may be bright or dark
         theme.quiet_text = theme.text.with_alpha(0.7f);
         theme.cursor = theme.text.with_alpha(0.6f);
         theme.frame = theme.text.with_alpha(0.45f);
@@ -36,7 +36,7 @@ bool is_dark(const Theme& theme) {
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
 }
 
-/// The words of all strips in columns so wide, px.
+/// Height of the captions of strips this wide, px.
 float caption_height(const Layout& layout, const Scene& scene, float width) {
     int lines = 1;
     for (const auto kind : scene.preset.video.strips)
@@ -44,13 +44,13 @@ float caption_height(const Layout& layout, const Scene& scene, float width) {
     return static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
 }
 
-/// px of the numbers below an axis.
+/// Height of the numbers below an axis, px.
 float numbers_height(const Layout& layout) {
     return 1.75f * px(layout.style.font.axis);
 }
 
-/// In cells of one column or of rows: words, then the axes, which begin right of the widest number of all, and end where the
-/// last number of the time keeps to the cell.
+/// Places captions and axes in the cells of one column or of rows. The axes begin right of the widest number, and end
+/// so that the last number on the time axis fits.
 void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& cells, const MotionBounds& seen) {
     const auto& video = scene.preset.video;
     const float em = px(layout.style.font.axis);
@@ -60,9 +60,9 @@ void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& c
         const auto& cell = cells[i];
         const bool is_lowest = std::ranges::none_of(
             cells, [&](const Area& other) { return other.left == cell.left && other.top > cell.top; });
-        // the lowest number of the strip above ends below its curves
+        // the lowest number of a strip extends below its curves
         const float below = is_lowest ? numbers_height(layout) : 0.35f * em;
-        // words before curves, but not where many strips share a little room
+        // captions have priority over curves, unless many strips share little space
         const float high = cell.height() - below - above_curves(layout);
         const int most = std::max(1, static_cast<int>(0.4f * high / caption_line(layout)));
         const int lines = std::min(caption_lines(kind, scene, layout, cell.width()), most);
@@ -102,7 +102,7 @@ std::size_t panel_count(const VideoSpec& video) {
     return is_one ? 1 : 2;
 }
 
-/// Which sides each panel shows, and the axes of phase space.
+/// Chooses the sides that each panel shows, and the axes of the phase portrait.
 void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& areas, const MotionBounds& seen) {
     const auto kind = scene.preset.video.layout;
     if (kind == Arrangement::side_by_side || kind == Arrangement::portrait) {
@@ -121,15 +121,15 @@ void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& a
     layout.phase = {area, axes, {.low = -180, .high = 180, .from = axes.left, .to = axes.right}, rate};
 }
 
-/// How large each of many pendulums in one panel is drawn, to one alone.
+/// Size of one of many pendulums in a panel, relative to a single one.
 float member_scale(std::size_t members) {
     return members <= most_full_members
                ? 1
                : std::sqrt(static_cast<float>(most_full_members) / static_cast<float>(members));
 }
 
-/// In the middle of their panels, as large as these allow, all to one scale: of a chain the circle that it reaches, of
-/// a mechanism the places that it visits.
+/// Centres the pendulums in their panels, as large as possible, all at the same scale. A chain's scale is given by the
+/// circle it can reach, a mechanism's by the area it visits.
 void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& seen) {
     const auto& style = layout.style;
     const auto view = fitted_view(scene, seen);
@@ -148,12 +148,12 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     }
     const float radius = layout.panels.front().px_per_m * std::max(across, up) / 2;
     layout.reach = view.is_circle ? radius : 0;
-    // the bobs of a long chain do not hide its rods
+    // the bobs of a long chain must not hide its rods
     const float link =
         view.is_circle ? radius / static_cast<float>(std::max(scene.a.mass.size(), scene.b.mass.size())) : radius;
-    // a mechanism has more to show; many members share the room of a few
+    // a mechanism has more parts to show; many members share the space of a few
     const float size = view.is_circle ? member_scale(scene.members.size()) : 0.6f;
-    // many fine rods stay apart where a few are as wide as lines
+    // many thin rods remain separate; a few are at least as wide as lines
     const float thinnest = scene.members.size() > most_full_members ? 0.5f : 0.8f;
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), thinnest);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
@@ -163,18 +163,18 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     if (style.width.bob) layout.last_bob_radius = std::min(layout.last_bob_radius, layout.bob_radius);
 }
 
-/// px of a tile's panels to one of a film's.
+/// Ratio of px in a tile's panels to px in the film's.
 float tile_unit(const VideoSpec& video, float width) {
     const auto panels = static_cast<float>(panel_count(video));
     return width / panels / 888;
 }
 
-/// px of its words to those of a film.
+/// The same ratio for text.
 float tile_text(float unit) {
     return std::max(2 * unit, 0.5f);
 }
 
-/// px of a picture to one of 1920×1080, at least, as text has it; px an em of the smallest words.
+/// least ratio of text px to those of a 1920×1080 picture; smallest text, px per em
 constexpr float least_unit = 1.0f / 3, least_text = 9;
 
 constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
@@ -212,7 +212,7 @@ Style make_style(const VideoSpec& video, float unit, float text) {
     for (auto* width : {&style.width.rod, &style.width.bob})
         if (*width) **width *= unit;
     for (const auto& size : font_size_names) style.font.*size.member *= text;
-    // small pictures keep lines that can be seen
+    // in small pictures lines remain wide enough to be visible
     style.width.trail = std::max(style.width.trail, video.widths.trail > 0 ? 1.6 : 0);
     style.width.trace = std::max(style.width.trace, video.widths.trace > 0 ? 1.2 : 0);
     style.width.grid = std::max(style.width.grid, video.widths.grid > 0 ? 1.0 : 0);
@@ -223,7 +223,7 @@ Style make_style(const VideoSpec& video, float unit, float text) {
 }
 
 Color member_color(const Style& style, double share) {
-    // the end of the scale that would drown in the background is left out
+    // leaves out the end of the scale with too little contrast to the background
     return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
 }
 
@@ -246,7 +246,7 @@ Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind dre
     const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;
     Layout layout;
     layout.unit = tall ? std::min(width / 1080, height / 1920) : std::min(width / 1920, height / 1080);
-    // upright pictures are seen on telephones: larger words, and none where an app has its buttons
+    // upright pictures are for telephones: larger text, and none where an app has its buttons
     layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, least_unit);
     layout.least_text = tall ? 1080.0f / 390 * least_text * layout.unit : least_text;
     layout.style = make_style(video, layout.unit, layout.text);

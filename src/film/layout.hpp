@@ -18,12 +18,12 @@
 
 namespace doppel {
 
-/// A length as pictures take it.
+/// A length, rounded to float as in pictures.
 inline float px(double length) {
     return static_cast<float>(length);
 }
 
-/// How a film looks: the theme with what the preset changed, and sizes in px of the very picture.
+/// The style of a film: the theme with the preset's changes, and sizes in px of this picture.
 struct Style {
     Theme theme;
     Widths width;
@@ -32,117 +32,117 @@ struct Style {
     Typeface type;
 };
 
-/// `unit` = px of the picture to one of 1920×1080; `text` = the same for text.
+/// `unit` = px of this picture per px of a 1920×1080 one; `text` = the same for text.
 Style make_style(const VideoSpec& video, float unit, float text);
 
-/// Members of an ensemble that are drawn as large as a pair.
+/// An ensemble of at most this many members is drawn as large as a pair.
 inline constexpr std::size_t most_full_members = 8;
 
-/// The colour of an ensemble's member: from the first, 0, to the last, 1.
+/// The colour of a member of an ensemble, from the first (0) to the last (1).
 Color member_color(const Style& style, double share);
-/// The colour of member `k` of a scene's: of a list a hue of its own, else by the scale.
+/// The colour of member `k`: listed members have distinct hues, others the colour scale.
 Color member_color(const Style& style, const Scene& scene, std::size_t k);
 
-/// A panel of pendulums and how metres become pixels in it.
+/// A panel of pendulums and its map from metres to pixels.
 struct PendulumPanel {
     Area area;
-    std::vector<std::size_t> sides{};   // whose pendulum it shows, the front one first
-    Point center{};                     // px, the area's, where (center_x, center_y) is
-    double center_x = 0, center_y = 0;  // m: the pivot of a chain
+    std::vector<std::size_t> sides{};   // sides whose pendulums it shows, the front one first
+    Point center{};                     // the position of (center_x, center_y), px
+    double center_x = 0, center_y = 0;  // m; the pivot of a chain
     float px_per_m = 1;
-    Point at(double x_m, double y_m) const;  // within a million px of the centre, wherever a diverging run puts a bob
+    Point at(double x_m, double y_m) const;  // clamped to a million px from the centre, for runs that diverge
 };
 
-/// A panel of phase space: angles across, rates up.
+/// A phase portrait: angle horizontally, rate vertically.
 struct PhasePanel {
-    Area panel, area;  // the panel; the axes in it
+    Area panel, area;  // of the panel; of its axes
     Axis angle, rate;
 };
 
-/// A strip: a chart of a quantity over time, with words above it.
+/// A strip: the chart of a quantity over time, with its caption above.
 struct StripLayout {
     StripKind kind;
-    Area cell;           // all of it
-    Area area;           // within the axes
-    Axis time, value;    // across, up
-    int lines = 1;       // of its caption
-    float baseline = 0;  // of the first, px
+    Area cell;           // including captions and numbers
+    Area area;           // inside the axes
+    Axis time, value;    // horizontal; vertical
+    int lines = 1;       // of the caption
+    float baseline = 0;  // of the caption's first line, px
 };
 
-/// Upright: for a telephone.
+/// Upright, for telephones.
 inline bool is_tall(const VideoSpec& video) {
     return video.size.height > video.size.width;
 }
 
-/// Where everything of a film's picture goes: a function of the scene, and of how far its motion gets.
+/// The layout of a film's picture: a function of the scene and the bounds of its motion.
 struct Layout {
-    float unit = 1;        // 1 px of a 1920×1080 picture
+    float unit = 1;        // px per px of a 1920×1080 picture
     float text = 1;        // the same for text, which stays legible in small pictures and on telephones
-    float least_text = 9;  // px an em, of any word
+    float least_text = 9;  // smallest size of text, px per em
     Style style;
-    Area page;          // within the margins
-    DisplayList words;  // that never change: the title, what is said beside it, the headings above panels
-    std::optional<Label> clock, speed;  // without their texts; the speed where it changes
+    Area page;                          // inside the margins
+    DisplayList words;                  // constant texts: title, subtitle, headings of panels
+    std::optional<Label> clock, speed;  // without their texts; the speed if it changes
     std::vector<PendulumPanel> panels;
     std::optional<PhasePanel> phase;
-    std::vector<StripLayout> strips;  // from the top down
-    float reach = 0;                  // px, the radius of the circle that an outstretched chain reaches; 0 = none
-    float bob_radius = 0;             // px, of the heaviest
-    float last_bob_radius = 0;        // px, at least, of the one that leaves the trail; of long chains
+    std::vector<StripLayout> strips;  // from top to bottom
+    float reach = 0;                  // radius of the circle that an outstretched chain reaches, px; 0 = none
+    float bob_radius = 0;             // of the heaviest bob, px
+    float last_bob_radius = 0;        // at least, for the bob that leaves the trail, in long chains, px
     float rod_radius = 0;             // half its width, px
 };
 
-/// A film's picture, or a tile of a contact sheet: pendulums and time alone.
+/// A picture of the film, or a tile of the contact sheet with only pendulums and time.
 enum class PictureKind { film, tile };
 
-/// `bounds`: of the whole motion, where the picture depends on it (depends_on_motion()). A tile has no strips.
+/// `bounds`: of the whole motion, if depends_on_motion(). A tile has no strips.
 Layout make_layout(const Scene& scene, const MotionBounds& bounds, PictureKind dress = PictureKind::film);
 
-/// The size of a tile of that width, px.
+/// The size of a tile of this width, px.
 Size tile_size(const Scene& scene, int width);
 
-/// What decides how a picture is split; lengths in px.
+/// The quantities that decide how a picture is divided; lengths in px.
 struct RegionNeeds {
-    std::size_t panels = 2, strips = 0;        // how many
-    bool tall = false;                         // strips below one another, below the panels
-    float heading = 0;                         // height of the words above each panel
-    float gap = 0;                             // between panels, and between them and strips
-    float height = 0;                          // of the whole picture
-    float numbers = 0;                         // height of the numbers of the time, below the lowest strip of a column
-    std::function<float(float)> caption = {};  // height of the words above strips that wide
+    std::size_t panels = 2, strips = 0;  // numbers of them
+    bool tall = false;                   // strips one below the other, below the panels
+    float heading = 0;                   // height of the heading of each panel
+    float gap = 0;                       // between panels, and between panels and strips
+    float height = 0;                    // of the whole picture
+    float numbers = 0;                   // height of the numbers on the time axis, below the lowest strip of a column
+    std::function<float(float)> caption = {};  // height of the captions of strips of a given width
 };
 
-/// A picture below the header, split.
+/// The areas of a picture below the header.
 struct Regions {
-    std::vector<Area> panels;  // without their headings
+    std::vector<Area> panels;  // without headings
     std::vector<Area> strips;  // with captions and numbers
 };
 
-/// A panel's size to that of the circle in it: a bob at the circle's rim stays inside.
+/// Ratio of a panel's size to the circle in it, so that a bob at its rim stays inside.
 inline constexpr float around_circle = 1.08f;
 
-/// Strips get a fifth of the picture's height each, without their words, as far as there is room: up to three in a row
-/// below panels beside each other, more, or in small pictures, in a column at the right; below one another in upright
-/// pictures. Panels get the largest circles then.
+/// Divides the area. Curves of strips take a fifth to a third of the picture's height. Up to three strips stand in a
+/// row below panels; more, or in small pictures, in a column at the right; in upright pictures, one below the other.
+/// The panels get the largest possible circles.
 Regions split(const Area& room, const RegionNeeds& needs);
 
-/// How a film's words put it: upright ones are for a telephone.
+/// Which wording of captions a film uses: upright ones have the shorter one, for telephones.
 Wording wording_of(const Scene& scene);
 
-/// The time as the clock shows it, with as many decimals as tell one frame from the next.
+/// The time on the clock, with enough decimals to distinguish frames.
 std::string clock_text(const Scene& scene, double time);
-/// What the film says of its speed: "slow motion ×0.25"; where it changes, "¼ speed".
+/// The text for the speed: "slow motion ×0.25"; if it changes, "¼ speed".
 std::string speed_text(const Scene& scene, double time);
 
-/// Adds the title, the line below it, the speed, and the clock's place. Returns where they end, px from the top.
+/// Adds title, subtitle and speed, and places the clock. Returns where they end, px from the top.
 float place_header(Layout& layout, const Scene& scene);
 
-/// Splits the room below the header, and adds what sets the sides apart: above the panels in a line, in two where it is
-/// long.
+/// Divides the area below the header, and adds the headings of the panels, which state how the sides differ. A heading
+/// is one line, or two if it is long.
 Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs);
 
-/// Text in as much as `width` px: shrunk to no less than three quarters and to what can be read, then without its last
-/// words.
+/// Fits a text into `width` px: shrinks it to at least three quarters and to the smallest legible size, then drops its
+/// last words.
 struct FittedText {
     std::string text;
     float size;

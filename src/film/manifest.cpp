@@ -15,7 +15,7 @@
 namespace doppel {
 namespace {
 
-/// Of a side that shows a track.
+/// For a side that shows a measured track.
 Json track_json(const Replay& replay, const TrackSpec& spec) {
     const auto& piece = replay.samples();
     const Json measured{
@@ -62,15 +62,15 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     return json;
 }
 
-/// null where the speed changes.
+/// null if the speed changes.
 Json samples_per_frame(const FrameTimes& frames) {
     if (!frames.changing.empty()) return nullptr;
     return frames.stride.is_whole() ? Json(frames.stride.numerator) : Json(frames.stride.text());
 }
 
-/// The fonts of the film's words with their hashes, but for the built-in one: another machine may have others.
+/// The fonts of the film's text with their hashes, except the built-in one: fonts differ between machines.
 Json fonts_json(const Preset& preset) {
-    std::string words = "0 " + preset.title + preset.subtitle.value_or("");  // digits are in every film
+    std::string words = "0 " + preset.title + preset.subtitle.value_or("");  // every film contains digits
     for (const auto* side : {&preset.a, &preset.b}) {
         words += side->label.value_or("") + side->note.value_or("");
         for (const auto& particle : side->particles) words += particle.name;
@@ -99,7 +99,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
             if (const auto words = early_error(scene, scene.side(name), record.last_sample, limit.reached()))
                 record.warnings.push_back(fmt::format("side {}: {}", name, *words));
     } catch (const std::exception&) {
-        throw_if_set(stop);  // else it is not known: it takes too long, or there is no thread to watch the time
+        throw_if_set(stop);  // otherwise unknown: it takes too long, or no thread can watch the time
     }
 }
 

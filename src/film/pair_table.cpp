@@ -14,7 +14,7 @@ namespace doppel {
 
 namespace {
 
-/// Of the masses of a side, or of a member of an ensemble. Angles and rates only where they hang in a chain.
+/// Columns of the masses of a side, or of a member of an ensemble. Only chains have angles and rates.
 void add_columns(const std::string& prefix, const Side& side, std::vector<std::string>& names) {
     const auto add = [&](const std::string& name) { names.push_back(prefix + name); };
     const auto bobs = side.mass.size();

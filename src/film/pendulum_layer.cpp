@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// The part of a line from…to that is in the area, if any.
+/// Adds the part of a line that lies in the area, if any.
 void add_line(Point from, Point to, float radius, Color color, const Area& area, DisplayList& list) {
     const auto within = clip_segment(area, from.x, from.y, to.x, to.y);
     if (!within) return;
@@ -52,10 +52,10 @@ public:
     void frame(DisplayList& list) const override;
 
 private:
-    /// That of a side's last bob.
+    /// The path of a side's last bob.
     struct Path {
         Trail trail;
-        std::optional<std::pair<Bob<double>, double>> last{};  // and its time, s
+        std::optional<std::pair<Bob<double>, double>> last{};  // the last bob and its time, s
     };
 
     void extend(Path& path, const Bob<double>& bob) const;
@@ -76,7 +76,7 @@ private:
     float radius_of(std::size_t side, double mass) const;
     bool shows(std::string_view part) const { return video_.shows(part); }
     void draw_surroundings(DisplayList& list) const;
-    /// Where all is drawn besides, px, where the view follows a mass.
+    /// The shift of all that is drawn, px, if the view follows a mass.
     Point shift() const {
         if (video_.view.follow == 0) return {};
         const auto& members = state_.snapshot.members;
@@ -91,7 +91,7 @@ private:
     }
     Point at(const Bob<double>& bob) const { return at(bob.x, bob.y); }
     Point at(const Place<double>& place) const { return at(place[0], place[1]); }
-    /// Of trails, which are moved as they are drawn.
+    /// Position without shift; trails are shifted when they are drawn.
     Point still_at(const Bob<double>& bob) const { return panel_.at(bob.x, bob.y); }
 
     const PendulumPanel& panel_;
@@ -110,7 +110,7 @@ void PendulumLayer::backdrop(DisplayList& list) const {
     if (video_.view.follow == 0) draw_surroundings(list);
 }
 
-/// The circle that the outstretched chain reaches, where the panel holds it, and slots.
+/// The circle that the outstretched chain reaches, if the panel contains it, and slots.
 void PendulumLayer::draw_surroundings(DisplayList& list) const {
     const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
     const Point pivot = at(0, 0);
@@ -120,7 +120,7 @@ void PendulumLayer::draw_surroundings(DisplayList& list) const {
     for (const auto side : panel_.sides) draw_tracks(side, list);
 }
 
-/// Adds the way from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
+/// Adds the path from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
 void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     const float piece = std::max(8 * layout_.unit, 2.0f), least = std::max(1.5f * layout_.unit, 0.5f);  // px
     const double now = state_.time();
@@ -144,7 +144,7 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     path.last = {bob, now};
 }
 
-/// Up to the bob.
+/// Draws the trail up to the bob.
 void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const {
     const auto draw = [&](const Trail& trail) {
         trail.draw(panel_.area, state_.time(), still_at(bob), list, std::numeric_limits<float>::infinity(), shift());
@@ -159,7 +159,7 @@ void PendulumLayer::frame(DisplayList& list) const {
     if (video_.view.follow > 0) draw_surroundings(list);
     if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
-    // where the other pendulum is now, faintly and behind all else; as long as they swing as one this side hides it
+    // the other pendulum, faint and behind; this side hides it as long as both move together
     if (alone && shows("twin") && !state_.scene.is_single() && !swing_as_one()) {
         const std::size_t other = 1 - panel_.sides.front();
         const Color hue = theme_.sides[other];
@@ -175,7 +175,7 @@ void PendulumLayer::frame(DisplayList& list) const {
     for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side) draw_pendulum(*side, alone, list);
 }
 
-/// Whether the two cannot be told apart in this panel.
+/// Whether the two pendulums coincide in this panel.
 bool PendulumLayer::swing_as_one() const {
     const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
         return a.mass == b.mass && distance(at(a), at(b)) < 0.1f;  // px
@@ -187,7 +187,7 @@ bool PendulumLayer::swing_as_one() const {
            std::ranges::equal(state_.scene.a.lines, state_.scene.b.lines, same_line);
 }
 
-/// Rods, then the pivot and the bobs. Where two share a panel all of each has its hue.
+/// Rods, then the pivot and the bobs. If two pendulums share a panel, each has its own hue.
 void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& list) const {
     const auto& bobs = state_.seen(side).bobs;
     const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
@@ -197,7 +197,7 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
               list);
 }
 
-/// Each on a rim that sets it off, the last one `least` px or more.
+/// Bobs with a contrasting rim, the last one with a radius of at least `least` px.
 void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses,
                               Color of_last, Color of_others, float least, DisplayList& list) const {
     if (!shows("bobs") || !(layout_.bob_radius > 0)) return;
@@ -210,7 +210,7 @@ void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, const 
     }
 }
 
-/// A member's colour; the more members there are, the more they let through, a few nothing.
+/// The colour of a member; many members are more transparent, few are opaque.
 Color PendulumLayer::member_hue(std::size_t k, float opacity) const {
     const auto count = state_.scene.members.size();
     const auto color = member_color(style_, state_.scene, k);
@@ -223,8 +223,8 @@ float PendulumLayer::member_trail_width() const {
     return px(style_.width.trail) * std::clamp(std::sqrt(most_full_members / count), 0.4f, 1.0f);
 }
 
-/// The members of an ensemble, the last one behind: trails, rods that let each other shine through where they are many,
-/// and the last bobs; of a few, all bobs.
+/// The members of an ensemble, the last one behind: trails, rods (transparent if they are many), and the last bobs; for
+/// few members, all bobs.
 void PendulumLayer::draw_members(DisplayList& list) const {
     const auto& members = state_.snapshot.members;
     const bool few = members.size() <= most_full_members;
@@ -266,7 +266,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
     }
 }
 
-/// Slots that bobs slide in.
+/// Slots in which bobs slide.
 void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
     const float width = px(style_.width.grid);
     const auto& color = theme_.grid;
@@ -278,7 +278,7 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
         if (line.kind == MechanismLine::Kind::slot_circle)
             list.push_back(Ring{start, panel_.px_per_m * static_cast<float>(line.radius), width, color});
         if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
-        // on beyond both ends, to the edges of the panel
+        // extended beyond both ends to the edges of the panel
         const Point end = at(*to), along{end.x - start.x, end.y - start.y};
         const float far = (panel_.area.width() + panel_.area.height()) / std::max(distance(start, end), 1e-3f);
         add_line({start.x - far * along.x, start.y - far * along.y}, {start.x + far * along.x, start.y + far * along.y},
@@ -286,13 +286,13 @@ void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
     }
 }
 
-/// A fixed end; of a chain the pivot, which may move.
+/// The position of a fixed end; for a chain, of the pivot, which may move.
 Point PendulumLayer::place_at(std::size_t side, const Place<double>& place) const {
     const auto& pivot = state_.seen(side).pivot;
     return at(place[0] + pivot.x, place[1] + pivot.y);
 }
 
-/// Where the fixed ends are.
+/// Symbols at the fixed ends.
 void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
     if (!shows("rods") || !(layout_.rod_radius > 0)) return;
     const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
@@ -306,15 +306,15 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
     }
 }
 
-/// A disc that is at home in the panel; one that a diverging run has put out of it is not shown.
+/// A disc; it is not drawn if the run diverges and it leaves the panel.
 void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& list, float glow) const {
-    // with a view of one's own nothing leaves the panel
+    // with a view set by the preset, nothing is drawn outside the panel
     const float edge = video_.view.height_m || video_.view.center_m || video_.view.follow > 0 ? radius : 0;
     if (panel_.area.grown(-edge, -edge).holds(at))
         list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});
 }
 
-/// Area by mass, but never too small to see; px.
+/// Radius in px: area proportional to mass, with a visible minimum.
 float PendulumLayer::radius_of(std::size_t side, double mass) const {
     const auto share = static_cast<float>(std::sqrt(mass / heaviest_));
     float thickest = 1;

@@ -16,7 +16,7 @@ double degrees(double rad) {
     return rad * 180 / pi;
 }
 
-/// Where in the way between two samples θ1 passes a whole number of turns upwards, 0…1; nothing where it does not.
+/// The fraction of the interval between two samples at which θ1 passes a whole number of turns upwards, if it does.
 std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>& to, double dt) {
     const double turns = std::floor(to.theta / (2 * pi));
     if (!(turns > std::floor(from.theta / (2 * pi)))) return std::nullopt;
@@ -54,7 +54,7 @@ private:
     const VideoSpec& video_ = state_.scene.preset.video;
     const std::size_t link_ = static_cast<std::size_t>(video_.phase_link - 1);
     std::array<Trail, 2> trails_;
-    std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // of a section
+    std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // for a section
     std::array<std::vector<Point>, 2> section_;
     double last_time_ = 0;  // s
 };
@@ -78,7 +78,7 @@ void PhaseLayer::backdrop(DisplayList& list) const {
     list.push_back(label(fits.text, {around.left, around.top - 12 * layout_.text}, fits.size, theme_.text));
 }
 
-/// A point where the way from the last sample crosses the section.
+/// Adds a point if the path since the last sample crosses the section.
 void PhaseLayer::add_to_section(std::size_t side) {
     const auto& bobs = state_.seen(side).bobs;
     if (const auto& last = last_bobs_[side]) {
@@ -99,7 +99,7 @@ void PhaseLayer::frame(DisplayList& list) const {
         const auto color = theme_.sides[side];
         for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
         if (video_.phase != PhaseKind::rate) continue;
-        // a path that leaves at ±180° comes back at the other end
+        // a path that leaves at +180° continues at -180°
         const Point now = at(state_.seen(side).bobs[link_]);
         auto trail = trails_[side];
         if (state_.is_between()) trail.add(now, state_.time(), state_.time());

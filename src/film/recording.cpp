@@ -34,7 +34,7 @@ Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, 
     }
 }
 
-/// About what keeping it takes.
+/// Approximate memory of the recording.
 double Recording::bytes() const {
     const auto bobs = static_cast<double>(scene_.a.mass.size() + scene_.b.mass.size());
     const auto is_quad = [](const Side& side) { return side.motion.precision == Precision::in_quad; };
@@ -51,7 +51,7 @@ void Recording::play(const Visit& visit) {
     if (fault_) std::rethrow_exception(fault_);
 }
 
-/// The moments that are wanted; then on to sample `last`, for the bounds alone.
+/// Simulates the required snapshots; then on to sample `last`, only for the bounds.
 void Recording::simulate(long last, const Visit& visit) {
     const bool is_bounded = last != no_bounds;
     record_ = {};
@@ -99,7 +99,7 @@ void Recording::simulate(long last, const Visit& visit) {
     }
     try {
         for (; sample.sample <= last; ++sample.sample) add_sample(pair.next(stop_));
-    } catch (const RunFailure&) {  // what is wanted is whole
+    } catch (const RunFailure&) {  // the required part is complete
     }
     cpu_s_ += spent_s() - begun;
 }

@@ -14,15 +14,15 @@
 
 namespace doppel {
 
-/// The state at a sample, or between two where a frame is: the pair, and the bobs of an ensemble's members.
+/// The state at a sample, or at a frame between two: the pair, and the bobs of an ensemble's members.
 struct Snapshot {
     PairState pair;
     std::vector<Bobs<double>> members;
 };
 
-/// How far a pair came, from its samples in their order.
+/// Distances of a pair, updated sample by sample.
 struct Outcome {
-    double start_distance = 0, largest_distance = 0;  // state space
+    double start_distance = 0, largest_distance = 0;  // in state space
     Divergence parting{};
 
     void add(double time, const PairState& state) {
@@ -32,55 +32,56 @@ struct Outcome {
     }
 };
 
-/// A side's largest errors, and its cost.
+/// Largest errors of a side, and its computing effort.
 struct SideRecord {
-    double energy_error = 0;   // relative to the energy at the start, however close to zero that is
+    double energy_error = 0;   // relative to the initial energy, however close to zero that is
     double energy_change = 0;  // J
     double length_error = 0;   // m
     Effort effort;
 };
 
-/// What came of the part of a motion that a run wants.
+/// The results of the part of a motion that a run requires.
 struct MotionRecord {
     SideRecord a, b;
     Outcome outcome;
 };
 
-/// How far a run is, as often as a frame or a sample is done.
+/// The progress of a run, reported after each frame or sample.
 struct Progress {
     long done, total;
 };
 using Report = std::function<void(const Progress&)>;
 
-/// The motion of a scene up to a moment: its samples, and with pictures the frames between them and the members of an
-/// ensemble (these also where the table has them). Where a picture depends on the whole motion (depends_on_motion()),
-/// or is drawn after the others (the contact sheet), it is simulated at once and kept, some 0.7 kB a sample of a double
-/// pendulum, 29 kB of 256 links; where that would take more than `most_bytes`, and for all other runs, it is simulated
-/// as it is played.
+/// The motion of a scene up to a given time: its samples, and for pictures also the frames between them and the members
+/// of an ensemble (which the table may require, too). The whole motion is simulated first and kept if a picture depends
+/// on it (depends_on_motion()) or is drawn after the others (the contact sheet). This takes some 0.7 kB per sample for
+/// a double pendulum, 29 kB for 256 links. If it would exceed `most_bytes`, and for all other runs, the motion is
+/// simulated while it is played.
 class Recording {
 public:
     static constexpr double usual_bytes = 256e6;
 
-    /// The moments before `end`. `report` is told of all samples as they are simulated. `scene` and `stop` outlive the
-    /// recording. Throws Error: exit 130 soon after `stop` is set, or of what comes after `end`; else play() throws.
+    /// Records the snapshots before `end`. `report` is called for each simulated sample. `scene` and `stop` must
+    /// outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
+    /// play() throws the others.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
               Report report = {}, double most_bytes = usual_bytes);
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 
     using Visit = std::function<void(const Snapshot&)>;
-    /// Calls visit(snapshot) in the order of time. Then throws what ended the simulation: Error, as SideRun::next() and
-    /// check_distance() do.
+    /// Calls visit(snapshot) in order of time. Then throws the error that ended the simulation, if any, as
+    /// SideRun::next() and check_distance() do.
     void play(const Visit& visit);
 
-    /// Whether it is known that play() throws.
+    /// Whether it is already known that play() will throw.
     bool fails() const { return fault_ != nullptr; }
-    /// Of the whole motion, or up to where it fails: frames have the same pixels alone as in the film. Empty where no
-    /// picture depends on it.
+    /// Bounds of the whole motion, or up to its failure. So a frame has the same pixels alone as in the film. Empty if
+    /// no picture depends on them.
     const MotionBounds& bounds() const { return bounds_; }
     /// Complete after play().
     const MotionRecord& record() const { return record_; }
-    /// Spent on simulating, s.
+    /// CPU time of the simulation, s.
     double cpu_s() const { return cpu_s_; }
 
 private:

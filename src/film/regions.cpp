@@ -6,12 +6,12 @@
 namespace doppel {
 namespace {
 
-// of the picture's height: a strip's curves, and a pair's circles beside which strips may stand below
+// in units of the picture's height: curves of a strip; circles of a pair for which strips still go below
 constexpr float least_curves = 0.2f, most_curves = 0.34f, least_circle = 0.45f;
-// of the room: all strips below panels; a column of strips
+// in units of the area: all strips below panels; a column of strips
 constexpr float most_below = 0.62f, least_column = 0.285f;
 
-constexpr std::size_t most_in_row = 3;  // strips below panels
+constexpr std::size_t most_in_row = 3;  // strips in a row below panels
 
 /// Panels side by side, or one above the other, each below its heading.
 std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool stacked) {
@@ -29,7 +29,7 @@ std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool s
     return areas;
 }
 
-/// Strips in columns, row by row, with curves of one height.
+/// Strips in columns, row by row, with curves of equal height.
 std::vector<Area> strip_cells(const Area& room, const RegionNeeds& needs, std::size_t columns) {
     const auto rows = static_cast<float>((needs.strips + columns - 1) / columns), n = static_cast<float>(columns);
     const float width = std::floor((room.width() - (n - 1) * needs.gap) / n);
@@ -45,13 +45,13 @@ std::vector<Area> strip_cells(const Area& room, const RegionNeeds& needs, std::s
     return cells;
 }
 
-/// Of panels' circles, px.
+/// Diameter of the panels' circles, px.
 float circle_in(const Regions& regions) {
     const auto& panel = regions.panels.front();
     return std::min(panel.width(), panel.height()) / around_circle;
 }
 
-/// Strips get the least that they need, and what the panels leave of the rest.
+/// Strips get the height they need, and what the panels leave of the rest.
 Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_t columns, bool stacked) {
     const auto rows = static_cast<float>((needs.strips + columns - 1) / columns), n = static_cast<float>(needs.panels),
                across = static_cast<float>(columns);
@@ -66,7 +66,7 @@ Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_
             strip_cells({room.left, part, room.right, room.bottom}, needs, columns)};
 }
 
-/// A panel alone is a square; strips get what it leaves.
+/// A single panel is a square; strips get the rest.
 Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
     const float square = room.height() - needs.heading, least = least_column * room.width();
     const float column = needs.panels == 1 ? std::max(room.width() - square - needs.gap, least) : least;

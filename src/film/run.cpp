@@ -16,7 +16,7 @@
 namespace doppel {
 namespace {
 
-/// Whether the side comes to the sample of `fault`; and what it took.
+/// Whether the side reaches the sample at which `fault` occurred, and the effort.
 std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunFailure& fault,
                                 const std::atomic<bool>& stop) {
     SideRun run(scene, side, fault.side);
@@ -33,8 +33,8 @@ std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunF
     return {true, effort};
 }
 
-/// What would have held where `fault` failed, in words: with a fixed step, the first of its halves, quarters … that
-/// comes as far; of an adaptive method, the smallest step that it took. Gives up early where `stop` is set.
+/// The step size that would have reached the sample of `fault`, in words. For a fixed step, it is the first half,
+/// quarter … that works; for an adaptive method, the smallest step that it took. Gives up early if `stop` is set.
 std::string step_that_holds(const Scene& scene, const RunFailure& fault, const std::atomic<bool>& stop) {
     auto side = fault.side == 'a' ? scene.a : scene.b;
     if (side.method.adaptive) {
@@ -42,7 +42,7 @@ std::string step_that_holds(const Scene& scene, const RunFailure& fault, const s
         if (smallest == 0) return "the first step failed";
         return fmt::format("the smallest successful step was {:.3g} s; a smaller tolerance may work", smallest);
     }
-    auto finest = side.step;                 // that was tried
+    auto finest = side.step;                 // tried
     constexpr long most_steps = 20'000'000;  // a few seconds for a double pendulum
     const long samples = static_cast<long>(side.mass.size()) * std::max(1L, fault.sample);
     for (int halvings = 1; halvings < 40 && !stop; ++halvings) {
@@ -57,13 +57,13 @@ std::string step_that_holds(const Scene& scene, const RunFailure& fault, const s
     return fmt::format("no step down to {} s works", finest.text());
 }
 
-/// "NAME.failed.csv": what stays of a failed run.
+/// "NAME.failed.csv": the files kept of a failed run.
 std::string failed_name(const std::string& name, const std::string& ending) {
     return name + ".failed" + ending;
 }
 
-/// Keeps the samples before the failure, under a name that says so, with a manifest; throws the error that tells
-/// where they are, and which step would have held.
+/// Keeps the samples before the failure in files of their own, with a manifest. Throws an error with their path and the
+/// step size that would have worked.
 [[noreturn]] void keep_failed(const Scene& scene, const RunFailure& fault, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
@@ -79,7 +79,7 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     throw method_failed("{}; the samples before are in {}", record.failure, files.front().string());
 }
 
-/// The frames first … last − 1 that are asked for, and the samples of their time: from `begin` to before `end`.
+/// The frames first … last − 1 to draw, and the samples of the same period: from `begin` to before `end`.
 struct Part {
     long first, last;
     Moment begin, end;
@@ -88,7 +88,7 @@ struct Part {
     long last_sample() const { return end.share > 0 ? end.sample : end.sample - 1; }
 };
 
-/// From options.from_s to before options.to_s. Throws Error (exit 2) where no frame is there.
+/// From options.from_s to before options.to_s. Throws Error (exit 2) if there is no frame.
 Part part_between(const Scene& scene, const RunOptions& options) {
     const auto& name = scene.preset.name;
     const double duration = scene.preset.duration_s.value(), hz = scene.preset.sample_hz.value();
@@ -106,7 +106,7 @@ Part part_between(const Scene& scene, const RunOptions& options) {
     return part;
 }
 
-/// The frames from options.first to before options.last. Throws Error (exit 2) where the scene has not all of them.
+/// From frame options.first to before options.last. Throws Error (exit 2) if the scene lacks some of them.
 Part part_of_frames(const Scene& scene, const RunOptions& options) {
     const auto& frames = scene.frames;
     const long first = options.first, last = options.last < 0 ? frames.count : options.last;
@@ -116,7 +116,7 @@ Part part_of_frames(const Scene& scene, const RunOptions& options) {
     return {first, last, frames.at(first), last == frames.count ? Moment{scene.samples + 1} : frames.at(last)};
 }
 
-/// Throws Error (exit 2) as these do, and where the poster is none of the frames.
+/// Throws Error (exit 2) as the two above, and if the poster's frame is not included.
 Part part_of(const Scene& scene, const RunOptions& options) {
     const bool by_time = options.from_s || options.to_s;
     const auto part = by_time ? part_between(scene, options) : part_of_frames(scene, options);
@@ -181,7 +181,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     } catch (const RunFailure& fault) {
         record.motion = recording.record();
         table.finish();
-        film.reset();  // its threads write into what goes now
+        film.reset();  // its threads use what is destroyed next
         keep_failed(scene, fault, record, parts, stop);
     }
     const auto finish = [&] {
@@ -197,7 +197,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
         record.encode_cpu_s =
             std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
-        // those of an earlier run that failed
+        // files of an earlier run that failed
         for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(scene.preset.name, ending));
         write_manifest(parts, scene.preset.name + ".json", scene, record);
         throw_if_set(stop);

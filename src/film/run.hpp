@@ -14,44 +14,44 @@
 
 namespace doppel {
 
-/// What a run writes, and where.
+/// What a run writes, and to which folder.
 struct RunOptions {
     std::filesystem::path out = "out";               // the files go to OUT/NAME/
-    bool pictures = true;                            // false: the table and the manifest alone; no GL
-    long first = 0, last = -1;                       // frames first … last − 1; all where last < 0
-    std::optional<Rational> from_s = {}, to_s = {};  // in their place: times, up to before to_s; to the end without it
-    int jobs = 0;                                    // threads that compress PNGs; 0 = one a core
-    Gl gl = Gl::automatic;                           // what draws
-    std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all where there is none
+    bool pictures = true;                            // false: only the table and the manifest; no OpenGL
+    long first = 0, last = -1;                       // frames first … last − 1; all if last < 0
+    std::optional<Rational> from_s = {}, to_s = {};  // instead of frames, a period: up to before to_s, or to the end
+    int jobs = 0;                                    // threads that compress PNGs; 0 = one per core
+    Gl gl = Gl::automatic;                           // which OpenGL draws
+    std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all if empty
     Replacing replacing = {};
 };
 
-/// What came of a run.
+/// The results of a run.
 struct RunResult {
     std::vector<std::filesystem::path> files;
     long frames = 0;   // pictures written
     long samples = 0;  // rows of the table
     double wall_s = 0;
-    std::vector<std::string> warnings = {};  // sentences; the manifest has them, too
+    std::vector<std::string> warnings = {};  // also in the manifest
 };
 
-/// One picture, OUT/NAME/NAME.14s.png (or .pdf, .svg): that of any `time`, s. `options` say where to, and what draws.
-/// Throws Error as run(), and exit 2 where the scene ends before.
+/// Draws one picture at any `time`, s, as OUT/NAME/NAME.14s.png (or .pdf, .svg). Of `options`, `out` and `gl` apply.
+/// Throws Error as run(), and exit 2 if the scene ends earlier.
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
                      const std::atomic<bool>& stop, const Report& report);
-/// That of such a picture. Throws Error (exit 2) where the scene ends before.
+/// The sample or time between samples for such a picture. Throws Error (exit 2) if the scene ends earlier.
 Moment still_moment(const Scene& scene, const Rational& time);
-/// "NAME.14s.png", of such a picture.
+/// The file name of such a picture: "NAME.14s.png".
 std::string still_name(const Scene& scene, const Moment& moment, PictureFormat format);
 
-/// Throws Error (exit 2) where the scene has not all of the frames, or of the columns, that `options` ask for.
+/// Throws Error (exit 2) if the scene lacks some of the frames or columns in `options`.
 void check_run(const Scene& scene, const RunOptions& options);
 
-/// What run() writes into OUT/NAME/, folders with "/".
+/// The files that run() writes in OUT/NAME/; names of folders end with "/".
 std::vector<std::string> run_files(const Scene& scene, bool pictures);
 
-/// Simulates, then draws and writes, which overlap. Files appear complete or not at all.
-/// Throws Error: exit 2, 3, 4 or, soon after `stop` is set, 130.
+/// Simulates, draws and writes, in parallel. Files appear complete or not at all. Throws Error: exit 2, 3, 4, or 130
+/// soon after `stop` is set.
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report);
 
 }  // namespace doppel

@@ -21,7 +21,7 @@ namespace doppel {
 
 namespace {
 
-/// "14", "6.8": up to microseconds, without zeros at the end.
+/// For example "14", "6.8": at most microseconds, without trailing zeros.
 std::string seconds_text(double seconds) {
     auto text = fmt::format("{:.6f}", seconds);
     text.erase(text.find_last_not_of('0') + 1);
@@ -49,13 +49,13 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     const auto name = still_name(scene, moment, format);
     Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
-    auto alone = scene;  // with one frame
+    auto alone = scene;  // with a single frame
     alone.frames = {.last = moment, .count = 1};
     alone.preset.video.contact_sheet.reset();
     const long samples = moment.sample + 1;
     Recording recording(alone, {samples}, true, stop, report);
     Composer composer(scene, recording.bounds());
-    std::optional<Canvas> canvas;  // now: what cannot draw says so at once
+    std::optional<Canvas> canvas;  // made first, so that missing OpenGL is reported at once
     if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);
     recording.play([&](const Snapshot& snapshot) { composer.add(snapshot); });
     const auto& video = scene.preset.video;
@@ -80,10 +80,10 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
 
 namespace {
 
-/// The scene as a tile shows it: its panels beside each other, nothing else.
+/// The scene of a tile: only its panels, side by side.
 Scene tile_scene(Scene scene) {
     auto& video = scene.preset.video;
-    constexpr int sheet_width = 1920;  // px, about
+    constexpr int sheet_width = 1920;  // approximate width, px
     const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
     video.strips.clear();
     video.pendulums = true;
@@ -95,7 +95,7 @@ Scene tile_scene(Scene scene) {
     return scene;
 }
 
-/// The title of the film, what it is about, and the two sides.
+/// The title and subtitle of the film, and the captions of the sides.
 DisplayList title_of(const Scene& scene, const Style& style, Size size, float unit) {
     const auto& font = style.font;
     const auto& theme = style.theme;
@@ -121,7 +121,7 @@ DisplayList title_of(const Scene& scene, const Style& style, Size size, float un
 Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,
                          const std::atomic<bool>& stop) {
     const auto [across, down] = *scene.preset.video.contact_sheet;
-    std::vector<Moment> moments;  // of frames spread over all, both ends included
+    std::vector<Moment> moments;  // frames evenly spaced over the film, with both ends
     const long count = long{across} * down, high = last - 1;
     for (long k = 0; k < count; ++k)
         moments.push_back(scene.frames.at(count == 1 ? high

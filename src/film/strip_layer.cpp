@@ -31,7 +31,7 @@ private:
     void extend(Trace& trace, const StripCurve& now) const {
         if (now.value) trace.add({strip_.time.at(state_.time()), strip_.value.at(*now.value)});
     }
-    /// Whether what is known of the pair as a whole stands here: in the strip of the distance, or the first.
+    /// Whether this strip shows the marks of the pair: that of the distance, otherwise the first.
     bool is_of_pair() const {
         const auto of_distance = std::ranges::find(layout_.strips, StripKind::distance, &StripLayout::kind);
         return of_distance == layout_.strips.end() ? index_ == 0 : strip_.kind == StripKind::distance;
@@ -41,13 +41,13 @@ private:
 
     const std::size_t index_;
     const StripLayout& strip_ = layout_.strips[index_];
-    std::vector<Trace> traces_;  // by curve
+    std::vector<Trace> traces_;  // one for each curve
 };
 
 void StripLayer::backdrop(DisplayList& list) const {
     const auto& area = strip_.area;
     const float em = px(style_.font.axis), line = px(style_.width.grid);
-    // what lies beyond the time up to which the pair can be predicted is dimmed
+    // times after the predictability limit are dimmed
     if (const auto limit = state_.scene.horizon())
         list.push_back(Box{strip_.time.at(*limit), area.top, area.right, area.bottom, 0, theme_.panel});
     auto look = axis_look();
@@ -68,8 +68,9 @@ void StripLayer::backdrop(DisplayList& list) const {
     draw_limits(list);
 }
 
-/// A dashed line at a time, and what it marks at its foot, where traces are high up: beside the line, in lines of their own
-/// where there is little room. `foot`: above that, px; the words end above them.
+/// A dashed vertical line at a time, with its text at the foot, where curves are high up. The text is beside the line,
+/// or on separate lines if there is little space. `foot`: height above which the text is placed, px; it is advanced
+/// past the text.
 void StripLayer::draw_mark(double time, const std::string& text, float& foot, DisplayList& list) const {
     const auto& area = strip_.area;
     const float t = layout_.text, size = px(style_.font.strip), x = strip_.time.at(time), dash = 5 * t, gap = 10 * t;
@@ -85,7 +86,7 @@ void StripLayer::draw_mark(double time, const std::string& text, float& foot, Di
     const float from = std::clamp(is_right ? x + gap : x - gap - widest_line, area.left + 2 * t,
                                   std::max(area.left + 2 * t, area.right - widest_line - 2 * t));
     for (auto words = lines.rbegin(); words != lines.rend(); ++words, foot -= 1.2f * size) {
-        // no line of the grid crosses the words
+        // no grid line crosses the text
         if (!state_.scene.preset.video.transparent)
             list.push_back(Box{from - 4 * t, foot - 0.9f * size, from + text_width(*words, size) + 4 * t,
                                foot + 0.28f * size, 0, theme_.background.with_alpha(0.85f)});
@@ -93,7 +94,7 @@ void StripLayer::draw_mark(double time, const std::string& text, float& foot, Di
     }
 }
 
-/// Up to when the motion can be predicted. Returns where further words may stand.
+/// Marks the predictability limit. Returns where more text may be placed.
 float StripLayer::draw_limits(DisplayList& list) const {
     float foot = strip_.area.bottom - 0.45f * px(style_.font.strip);
     if (const auto limit = state_.scene.horizon())
@@ -108,7 +109,7 @@ void StripLayer::frame(DisplayList& list) const {
     const auto& area = strip_.area;
     for (auto words : strip_caption(strip_.kind, state_.scene, layout_, now, state_.outcome.start_distance == 0,
                                     strip_.cell.width())) {
-        if (words.anchor.y > caption_line(layout_) * (static_cast<float>(strip_.lines) - 0.5f)) break;  // no room
+        if (words.anchor.y > caption_line(layout_) * (static_cast<float>(strip_.lines) - 0.5f)) break;  // no space left
         words.anchor = {strip_.cell.left + words.anchor.x, strip_.baseline + words.anchor.y};
         list.push_back(std::move(words));
     }

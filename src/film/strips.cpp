@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// What strips show: the words before their values or names of curves.
+/// The quantities of strips, before their values or names of curves.
 constexpr std::array<const char*, strip_kinds> titles{"state-space distance",
                                                       "finite-time growth rate, 1/s",
                                                       "energy error, of the potential range",
@@ -40,7 +40,7 @@ std::string strip_title(StripKind kind, const Scene& scene) {
     return differ_in_kind(a, b) ? title + ", of the last masses" : title;
 }
 
-/// A curve for each link or rod: of few, of many the first and the last; the inner ones paler.
+/// A curve for each link or rod; for many, the first and the last one. The inner ones are paler.
 template <class Value>
 void add_links(std::vector<StripCurve>& curves, char side, std::size_t count, const Value& value, Color color,
                Color pale, double width) {
@@ -52,7 +52,7 @@ void add_links(std::vector<StripCurve>& curves, char side, std::size_t count, co
                 {value(k), mixed(color, pale, k + 1 == count ? 0 : paleness), width, fmt::format("{}{}", side, k + 1)});
 }
 
-/// Part of a caption. Where `room` > 0 it stays in one line and keeps that width, px, whatever it says.
+/// A part of a caption. With `room` > 0 it is not broken, and has that width in px whatever its text.
 struct Piece {
     std::string text;
     Color color;
@@ -79,7 +79,7 @@ std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& l
     return pieces;
 }
 
-/// The words of a text, each with the space after it.
+/// The words of a text, each with the following space.
 std::vector<std::string> words_of(const std::string& text) {
     std::vector<std::string> words;
     for (std::size_t from = 0; from < text.size();) {
@@ -103,7 +103,7 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
         const auto& side = scene.side(letter);
         const auto& seen = is_a ? state.a : state.b;
         const auto color = theme.sides[is_a ? 0 : 1];
-        // the first is the wider, and drawn first: where both run as one, both show
+        // the first is drawn first and is wider, so that both are visible where they coincide
         const double of_side = (scene.is_single() ? 1 : is_a ? 1.5 : 0.6) * width;
         const auto add_all = [&](std::size_t count, const auto& value) {
             add_links(curves, letter, count, value, color, theme.text, of_side);
@@ -112,7 +112,7 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
             case StripKind::rod_error:
                 curves.push_back({seen.length_error, color, of_side});
                 break;
-            case StripKind::energy:  // where damping takes energy no change of it is an error
+            case StripKind::energy:  // damping reduces the energy, so its change is no error
                 curves.push_back({std::abs(seen.energy_change) / scene.energy_range(), color, of_side});
                 if (!side.has_energy_error) curves.back().value.reset();
                 break;
@@ -163,7 +163,7 @@ std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layou
     for (const auto& piece : pieces_of(kind, scene, layout, curves, is_alike)) {
         if (pen.x > 0) pen.x += gap;
         const auto parts = piece.room > 0 ? std::vector{piece.text} : words_of(piece.text);
-        bool goes_on = false;  // the label of the part before
+        bool goes_on = false;  // continues the previous label
         for (const auto& part : parts) {
             const float room = std::max(piece.room, width_of(part.substr(0, part.find_last_not_of(' ') + 1)));
             if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, goes_on = false;

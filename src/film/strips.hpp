@@ -11,7 +11,7 @@
 
 namespace doppel {
 
-/// A curve of a strip at a moment; with a name where the strip has several.
+/// A curve's value at one time; named if the strip has several curves.
 struct StripCurve {
     std::optional<double> value;
     Color color;
@@ -19,24 +19,25 @@ struct StripCurve {
     std::string name{};
 };
 
-/// What goes up in a strip, where curves of one line are `width` px wide. Potential energies count from the lowest point
-/// that a chain reaches; the energy of a driven side is the mean over the drive's last period.
+/// The values that a strip shows; single curves are `width` px wide. Potential energy is zero at the lowest point that
+/// a chain can reach. The energy of a driven side is its mean over the last drive period.
 std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const PairState& state, double start_distance,
                                      const Theme& theme, double width);
 
-/// ln(d/d0) / t, 1/s: nothing in the first twentieth of the scene, when it says nothing yet, or where a distance is 0.
+/// ln(d/d0) / t, 1/s. Nothing in the first twentieth of the scene, where it is not meaningful yet, or if a distance is
+/// 0.
 std::optional<double> growth_rate(const Scene& scene, const PairState& state, double start_distance);
 
-/// A line below a caption's words is so many px further down; the last one is so far above the curves.
+/// Line spacing of captions, px; also the distance from the last line to the curves.
 float caption_line(const Layout& layout);
 float above_curves(const Layout& layout);
 
-/// The caption of a strip whose curves are `curves`, in lines no wider than `width` px: what it shows, the value of one
-/// curve, the names of several. The first line begins at (0, 0).
+/// The caption of a strip, in lines no wider than `width` px: the quantity, and its value (one curve) or the curves'
+/// names. The first line begins at (0, 0).
 std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
                                  const std::vector<StripCurve>& curves, bool is_alike, float width);
 
-/// How many lines the caption takes, whatever the curves do.
+/// The number of lines that a caption takes for any values.
 int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width);
 
 }  // namespace doppel

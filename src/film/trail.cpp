@@ -7,11 +7,11 @@
 namespace doppel {
 namespace {
 
-// What fades would have to be drawn anew at every sample. Instead the points of a trail fade in groups, each by steps
-// of 3 % of the light, and hardly ever two at once.
+// Fading points have to be redrawn. To limit this, the points of a trail fade in groups, in steps of 3 % of the light,
+// and rarely two groups at once.
 constexpr long group = 24;      // samples
 constexpr double steps = 32;    // from full light to none
-constexpr double fading = 1.6;  // the light is this power of the freshness
+constexpr double fading = 1.6;  // brightness = freshness to this power
 
 }  // namespace
 
@@ -24,12 +24,12 @@ std::optional<Point> Trail::end() const {
     return points_.empty() ? std::nullopt : std::optional(points_.back().at);
 }
 
-/// Whole groups go when they have faded.
+/// Removes whole groups that have faded out.
 void Trail::add(Point at, double time, double now) {
     const long g = static_cast<long>(std::floor(time * sample_hz_ + 1e-6)) / group;
     if (!points_.empty() && points_.back().group != g) {
         simplify(points_);
-        // the new group continues where the last one ends
+        // the new group begins where the last one ends
         TrailPoint first = points_.back();
         first.group = g;
         points_.push_back(first);
@@ -38,13 +38,13 @@ void Trail::add(Point at, double time, double now) {
     while (end_of(points_.front().group) < now - trail_s_) points_.pop_front();
 }
 
-/// Keeps of the newest group only the points between which it bends evenly.
+/// Removes points of the newest group between which the path bends evenly.
 void Trail::simplify(Points& points) const {
     std::size_t begin = points.size() - 1;
     while (begin > 0 && points[begin - 1].group == points.back().group) --begin;
     std::vector<Stroke::Vertex> path;
     for (std::size_t i = begin; i < points.size(); ++i) {
-        // light falls with time: evenly, in short
+        // brightness falls almost linearly over short times
         const double part = (points[i].time - points[begin].time) / trail_s_;
         path.push_back(
             {.at = points[i].at, .alpha = static_cast<float>(part), .bend = points[i].bend, .joint = points[i].joint});
@@ -60,12 +60,12 @@ void Trail::simplify(Points& points) const {
     points.resize(kept);
 }
 
-/// When the last sample of a group is over, s.
+/// The time of a group's last sample, s.
 double Trail::end_of(long g) const {
     return static_cast<double>((g + 1) * group) / sample_hz_;
 }
 
-/// For what time a group's points look their age: not yet that of the next step.
+/// The time for which the points of a group show their age; it advances in steps.
 double Trail::faded_until(long g, double now) const {
     const double end = end_of(g);
     const double light = std::pow(std::max(1 - (now - end) / trail_s_, 0.0), fading);
