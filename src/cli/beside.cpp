@@ -10,8 +10,8 @@
 namespace doppel {
 namespace {
 
-/// How the other pendulum is integrated while its start is fitted: as the preset has it, or by series where it requires
-/// an accuracy.
+/// How the other pendulum is integrated while its start is fitted: with the preset's method, or by Taylor series if the
+/// preset requires an accuracy.
 MotionSpec simulated_motion(SideSpec twin, const Rational& sample_hz) {
     if (twin.accuracy) {
         twin.accuracy.reset();

@@ -35,7 +35,7 @@ std::string format_words(const VideoSpec& video) {
     return fmt::format("{} {}, crf {}, {}", row.title, video.preset, video.crf, name_of(video.pixel_format));
 }
 
-/// "1 800 000", whatever the number.
+/// "1 800 000", for numbers of any size.
 std::string counted(double number) {
     constexpr double most = 1e18;
     return number < most ? grouped(std::llround(number)) : scientific(number);
@@ -50,7 +50,7 @@ void print_side(char name, const Side& side) {
     print_line("         {}: {}", name_of(side.motion.model), side.why);
 }
 
-/// What to expect of a side: how far it errs, and how far any run of its precision could be right.
+/// The expected error of a side, and the predictability limit of its precision.
 void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) {
     const auto unit = side.has_angles ? "rad" : "of its size";
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
@@ -91,7 +91,7 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
     }
 }
 
-/// What half or ten times the accuracy would take, against what is asked.
+/// The work for half or ten times the accuracy, compared with the required one.
 std::vector<std::string> rivals_of(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
     std::vector<std::string> all;
     const auto& choice = *(scene.*which).choice;
@@ -101,7 +101,7 @@ std::vector<std::string> rivals_of(const Scene& scene, Side Scene::*which, const
         try {
             const auto rivals = scene.chooser->choose(factor, stop);
             const auto& rival = *rivals[which == &Scene::a ? 0 : 1];
-            // where rounding decides how far it holds, it decides the work too
+            // if round-off limits how long it is accurate, it determines the work, too
             words = rival.choice->horizon < scene.samples
                         ? fmt::format("holds up to {:.3g} s", scene.time(rival.choice->horizon))
                         : fmt::format("takes {:.2f} times the work ({}, {})", rival.choice->work / choice.work,
@@ -114,16 +114,16 @@ std::vector<std::string> rivals_of(const Scene& scene, Side Scene::*which, const
     return all;
 }
 
-/// All that check tells of a film.
+/// All results of check for a film.
 struct SceneCheck {
     struct OfSide {
-        std::optional<Forecast> forecast;  // where it takes little time
+        std::optional<Forecast> forecast;  // if it takes little time
         std::vector<std::string> rivals;
     };
     const Scene& scene;
     SimulationEstimate simulation;
     std::optional<double> render_s;
-    std::string why_not;  // where it is not known what rendering takes
+    std::string why_not;  // if the rendering time is unknown
     std::array<OfSide, 2> sides;
 };
 
@@ -136,7 +136,7 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
         if (fault.code() == ExitCode::interrupted) throw;
         check.why_not = fault.what();
     }
-    constexpr double patience = 2;  // s, for runs that only inform
+    constexpr double patience = 2;  // limit for runs that only give information, s
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
         auto& [forecast, rivals] = check.sides[letter == 'a' ? 0 : 1];
@@ -167,7 +167,7 @@ void print(const SceneCheck& check) {
                : estimate.at_least ? "more than "
                                    : "about ",
                counted(estimate.steps));
-    const auto& every = scene.frames.stride;  // samples
+    const auto& every = scene.frames.stride;  // samples per frame
     const bool is_of_samples = every.is_whole() && every.numerator > 1;
     const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
@@ -191,7 +191,7 @@ Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
     return json;
 }
 
-/// Of one side; adds its warnings to `warnings`.
+/// The JSON of one side; adds its warnings to `warnings`.
 Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
     const auto& scene = check.scene;
     const auto& side = which == 0 ? scene.a : scene.b;
@@ -212,7 +212,7 @@ Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
     return json;
 }
 
-/// What preset files of films and figures have in common.
+/// The part common to films and figures.
 Json heading_json(const PresetText& preset, const std::string& title) {
     std::error_code ignored;
     const bool is_file = std::filesystem::exists(preset.path, ignored);
@@ -247,7 +247,7 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     return json;
 }
 
-/// All that check tells of a figure.
+/// All results of check for a figure.
 struct FigureCheck {
     const FigurePreset& figure;
     double units = 0;

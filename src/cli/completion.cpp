@@ -25,7 +25,7 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
-/// Presets that are built in, and those that lie here, of the kind that the command takes.
+/// Built-in presets and those in this folder, of the kind that the command accepts.
 void add_presets(const std::string& command, Candidates& all) {
     const bool films = command != "figure", figures = command == "figure" || command == "check" || command == "show";
     if (command == "figure") all.push_back({"all", "every figure that is built in"});
@@ -37,7 +37,7 @@ void add_presets(const std::string& command, Candidates& all) {
     }
 }
 
-/// Folders, and the files with that ending, that the word may go on to.
+/// Folders and files with this extension that begin with the word.
 void add_files(const std::string& word, std::string_view ending, Candidates& all) {
     const auto folder = word.substr(0, word.rfind('/') + 1);
     const bool wants_hidden = fs::path(word).filename().string().starts_with('.');
@@ -52,16 +52,16 @@ void add_files(const std::string& word, std::string_view ending, Candidates& all
     }
 }
 
-/// Of a check such as CLI::IsMember: what its description lists, "{mp4,webm}".
+/// The choices listed in the description of a check such as CLI::IsMember: "{mp4,webm}".
 void add_choices(const CLI::Option& option, const std::string& before, Candidates& all) {
-    auto text = option.get_type_name();  // with the descriptions of checks behind a colon
+    auto text = option.get_type_name();  // descriptions of other checks follow a colon
     const auto open = text.find('{'), close = text.find('}');
     if (open == std::string::npos || close == std::string::npos) return;
     text = text.substr(open + 1, close - open - 1);
     for (const auto& choice : CLI::detail::split(text, ',')) all.push_back({before + choice});
 }
 
-/// What find(preset) has for the first preset among the words for which it does not throw.
+/// find(preset) for the first of the words that is a readable preset.
 template <class Find>
 auto of_preset(const std::vector<std::string>& words, const Find& find) {
     for (std::size_t i = 1; i + 1 < words.size(); ++i) {
@@ -69,20 +69,20 @@ auto of_preset(const std::vector<std::string>& words, const Find& find) {
         try {
             return std::optional(find(find_preset(words[i])));
         } catch (const Error&) {
-            continue;  // a value, or not yet whole
+            continue;  // the value of an option, or an incomplete name
         }
     }
     return std::optional<decltype(find(PresetText()))>();
 }
 
-/// The kinds that --set may be for: that of the preset which is named, or those that the command takes.
+/// The kinds that --set may apply to: that of the given preset, or those that the command accepts.
 std::vector<std::string> kinds_of(const std::string& command, const std::vector<std::string>& words) {
     if (const auto kind = of_preset(words, kind_of_preset)) return {*kind};
     if (command != "figure") return {std::string(pair_kind)};
     return {scene_kinds.begin() + 1, scene_kinds.end()};
 }
 
-/// "table.key=", or values of the key where it is there.
+/// "table.key=", or the values of the key if it is complete.
 void add_keys(const FieldTable& table, const std::string& above, const std::string& word, Candidates& all) {
     const auto name = table.key().empty() ? "" : fmt::format("{}{}.", above, table.key());
     for (const auto& inner : table.tables) add_keys(inner, name, word, all);
@@ -94,7 +94,7 @@ void add_keys(const FieldTable& table, const std::string& above, const std::stri
             continue;
         }
         for (const auto& choice : field.choices)
-            all.push_back({key + choice});  // text needs no quotes, nor one of a list
+            all.push_back({key + choice});  // texts and lists of one text need no quotes
         const auto example = field.example();
         if (example == "true" || example == "false")
             all.insert(all.end(), {{key + "true"}, {key + "false"}});
@@ -110,7 +110,7 @@ void add_settings(const std::string& command, const std::vector<std::string>& wo
             if (!table.name.starts_with("[[")) add_keys(table, "", word, all);
 }
 
-/// The last name of --columns: those of the preset that is named, where nothing has to be computed for them.
+/// The last name of --columns: those of the given preset, if they are known without computation.
 void add_columns(const std::vector<std::string>& words, const std::string& word, const std::string& option,
                  Candidates& all) {
     const auto columns = of_preset(words, [](const PresetText& source) {
@@ -128,10 +128,10 @@ void add_values(const CLI::Option& option, const std::string& command, const std
     if (option.get_name() == "--set") return add_settings(command, words, word, all);
     if (option.get_name() == "--columns") return add_columns(words, word, before, all);
     add_choices(option, before, all);
-    if (option.get_type_name() == "DIR") add_files(word, "/", all);  // folders alone
+    if (option.get_type_name() == "DIR") add_files(word, "/", all);  // only folders
 }
 
-/// What the last of the words may become. `words` begin with the command.
+/// Completions of the last of `words`, which begin with the command.
 Candidates candidates(CLI::App& app, const std::vector<std::string>& words) {
     Candidates all;
     const auto& word = words.back();

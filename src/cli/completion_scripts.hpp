@@ -4,7 +4,7 @@
 
 namespace doppel {
 
-// What "doppel completion" prints: each asks "doppel complete WORD…".
+// The output of "doppel completion"; each script calls "doppel complete WORD…".
 
 inline constexpr std::string_view bash_script = R"(# Completion of doppel for bash: source <(doppel completion bash)
 _doppel() {

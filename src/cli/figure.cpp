@@ -31,7 +31,7 @@ std::vector<Override> overrides(const FigureCommandOptions& options) {
     return all;
 }
 
-/// "all" is every figure that is built in.
+/// "all" means every built-in figure.
 std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
     std::vector<PresetText> chosen;
     for (const auto& name : options.presets) {
@@ -58,7 +58,7 @@ std::optional<Shard> shard_of(const FigureCommandOptions& options) {
     return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
 }
 
-/// Progress of several figures, of which the first to be computed and the last to be drawn may overlap.
+/// Progress of several figures. The computation of one may overlap with the drawing of another.
 class Reports {
 public:
     Reports(const std::vector<FigurePreset>& figures, ProgressStyle style, std::string streamed)
@@ -85,7 +85,7 @@ private:
     std::vector<std::optional<ProgressReport>> reports_;
 };
 
-/// What a figure's run writes into DIR/NAME/.
+/// The files that the run of a figure writes to DIR/NAME/.
 std::vector<std::string> files_of(const FigurePreset& figure, const FigureCommandOptions& options) {
     const auto& name = figure.name;
     const auto shard = shard_of(options);

@@ -24,12 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What most presets say; the rest is written as comments.
+/// Keys that most presets have; the others are written as comments.
 constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",      "sample_hz",
                                                     "links",     "mass_kg",         "length_m",
                                                     "angle_deg", "omega_deg_per_s", "gravity_m_per_s2"};
 
-/// Of [system], what such figures give themselves.
+/// Keys of [system] that such figures set themselves.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> unused_keys{
     {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}}};
 
@@ -42,16 +42,16 @@ bool is_used(const FieldTable& table, std::string_view key, std::string_view kin
            std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();
 }
 
-/// The value that a starting preset gives a key.
+/// The value of a key in the starting preset.
 std::string starting_value(const ListedField& field) {
     if (field.key == "column") return "\"distance\"";
     if (field.key == "scene") return "\"butterfly\"";
-    if (field.key == "difference") return "0.003";  // degrees, as in the study
+    if (field.key == "difference") return "0.003";  // degrees, as in Kao's study
     if (field.key == "accuracy") return "1e-3";
     return field.example();
 }
 
-/// "# help (number, > 0; unit s; default: none)", then the key, as a comment where it is seldom used.
+/// "# help (number, > 0; unit s; default: none)", then the key, commented out if it is rarely used.
 std::string key_lines(const ListedField& field, const std::string& prefix, bool is_live) {
     auto text = fmt::format("# {} ({}", field.help, plain_words(field.takes()));
     if (!field.unit.empty()) text += fmt::format("; unit {}", field.unit);
@@ -80,12 +80,12 @@ std::string first_lines(const fs::path& file, std::string_view kind) {
 /// [a] or [b].
 std::string side_lines(std::string_view side, std::string_view kind) {
     auto text = fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", side);
-    // the pairs of a grid differ in the key of x
+    // the pairs of a grid differ in the key of its x axis
     if (side == "b" && kind != "grid") text += "angle_deg = [90.003, 90]\n";
     return kind == pair_kind ? text + table_lines(side_text_table(), kind) : text;
 }
 
-/// A preset of that kind with every key: those that most presets have, and the others as comments.
+/// A preset of that kind with all keys; rarely used ones are comments.
 std::string starting_preset(const fs::path& file, std::string_view kind) {
     auto text = first_lines(file, kind);
     const auto tables = tables_of(kind);
@@ -118,7 +118,7 @@ void write_preset(const fs::path& path, std::string_view kind) {
         throw bad_input("{}: the name of a preset's file ends in .toml", path.string());
     const PresetText preset{path.stem().string(), path.string(), starting_preset(path, kind), path.string()};
     if (kind == pair_kind)
-        read_preset(preset);  // a title that can be drawn
+        read_preset(preset);  // the title must be drawable
     else
         read_figure(preset);
     std::error_code ignored;

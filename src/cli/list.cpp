@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Entry {
-    std::string name, title, kind;  // the kind is empty where the file cannot be read, and the title says why
-    std::string path;               // of a file here; empty where it is built in
+    std::string name, title, kind;  // if the file cannot be read, the kind is empty and the title is the reason
+    std::string path;               // of a file in this folder; empty for a built-in preset
 };
 
 Entry entry_of(const PresetText& preset, const std::string& path) {
@@ -39,7 +39,7 @@ Entry entry_of(const PresetText& preset, const std::string& path) {
     }
 }
 
-/// Presets by name: those that lie here, and those that are built in and have no file here.
+/// Presets by name: those in this folder, and built-in ones without a file here.
 std::vector<Entry> all_presets() {
     std::map<std::string, Entry> entries;
     for (const auto& path : preset_files_here()) {
@@ -84,7 +84,7 @@ void list_as_json() {
     print_json(list);
 }
 
-/// A table: value of `integrator`, order, step or tolerance, models, properties.
+/// A table of methods: value of `integrator`, order, step size or tolerance, models, properties.
 void list_methods() {
     print_line("{:<20} {:>5}  {:<10} {:<32} {}", "integrator", "order", "goes by", "models", "properties");
     for (const auto& method : methods())
@@ -94,7 +94,7 @@ void list_methods() {
                    method.title, method.properties);
 }
 
-/// As it is into a file; a terminal gets sanitised lines.
+/// Unchanged into a file; sanitised on a terminal.
 void show(const std::string& text) {
     if (!isatty(STDOUT_FILENO)) return write_out(text);
     std::istringstream lines(text);

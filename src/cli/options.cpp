@@ -67,7 +67,7 @@ LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(s
     if (!folder.empty()) std::filesystem::create_directories(folder, error);
     if (error) throw cannot(folder, "made", error.value());
     place_ = folder / fmt::format(".doppel-{}-{}", path_.filename().string(), getpid());
-    write_file(place_, "");  // so that what cannot be written is said before the work
+    write_file(place_, "");  // so that an unwritable place is reported before the work starts
 }
 
 LoneFile::~LoneFile() {

@@ -22,7 +22,7 @@
 namespace doppel {
 namespace {
 
-/// A word in the place of the command that is none.
+/// Throws if the word in the place of the command is no command.
 void refuse_unknown_command(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
@@ -33,7 +33,8 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
         meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
-/// An empty argument is mostly a variable that a script did not set: taken for "not given" it would mean everything.
+/// An empty argument is usually an unset variable of a script; treating it as missing could apply the command to
+/// everything.
 void refuse_empty_arguments(const std::vector<std::string>& words) {
     for (std::size_t i = 1; i < words.size(); ++i) {
         const auto& word = words[i];
@@ -46,15 +47,15 @@ void refuse_empty_arguments(const std::vector<std::string>& words) {
     }
 }
 
-/// A standard stream that is closed would be the next file that is opened, and progress go into the film. What stands
-/// in for it can be neither read nor written, so that this is noticed.
+/// If a standard stream were closed, the next opened file would take its place, and messages would go into it. The
+/// substitute can neither be read nor written, so that uses are noticed.
 void fill_standard_streams() {
     for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
         if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream)
             throw io_failed("/dev/null cannot be opened in place of a closed standard stream");
 }
 
-/// One line that can be read, whatever the message quotes; throws nothing where nobody does.
+/// Prints the message as one readable line; never throws.
 int failed(ExitCode code, std::string_view message) {
     constexpr std::size_t most = 4000;  // bytes
     const auto line = shortened(on_one_line(message), most);
@@ -67,9 +68,10 @@ int failed(ExitCode code, std::string_view message) {
 int run_program(int argc, char** argv) {
     try {
         fill_standard_streams();
-        std::signal(SIGXFSZ, SIG_IGN);  // a file over the size limit is an error to report, not a reason to die
+        std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is an error to report, not a signal to die from
         const std::vector<std::string> words(argv, argv + argc);
-        const bool completes = words.size() > 1 && words[1] == "complete";  // of the scripts of "doppel completion"
+        const bool completes =
+            words.size() > 1 && words[1] == "complete";  // called by the scripts of "doppel completion"
         if (!completes) refuse_empty_arguments(words);
 
         CLI::App app("Doppel films pairs of chaotic pendulums that differ slightly, and charts how they diverge.",

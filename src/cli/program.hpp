@@ -6,16 +6,16 @@ class App;
 
 namespace doppel {
 
-/// The program from its arguments to its exit code: here, and nowhere else, errors are caught and said.
+/// Runs the program and returns its exit code. Errors are caught and printed only here.
 int run_program(int argc, char** argv);
 
-// Each adds a command to the program: its options, its help, and what it does.
+// Each adds a command: its options, its help, and its action.
 void add_render(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_still(CLI::App& app);
 void add_figure(CLI::App& app);
 void add_fit(CLI::App& app);
-void add_compare(CLI::App& app, int& exit_code);  // the code is 1 where the pictures differ
+void add_compare(CLI::App& app, int& exit_code);  // sets the exit code 1 if pictures differ
 void add_list(CLI::App& app);
 void add_show(CLI::App& app);
 void add_check(CLI::App& app);

@@ -46,7 +46,7 @@ Rational seconds_of_option(const std::string& option, const std::string& text) {
     return *seconds;
 }
 
-/// The scene of each preset, all of them read before the first one runs. `more` = overrides from other options.
+/// Reads the scenes of all presets before the first one runs. `more` = overrides from other options.
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {}) {
     auto overrides = overrides_of(options);
     overrides.insert(overrides.end(), more.begin(), more.end());
@@ -63,7 +63,7 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     return scenes;
 }
 
-/// The files that the scenes are read from: presets, tracks and fonts.
+/// The files that scenes are read from: presets, tracks and fonts.
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
                                              const std::vector<Scene>& scenes) {
     std::vector<std::filesystem::path> inputs;
@@ -78,8 +78,7 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
     return inputs;
 }
 
-/// Calls work(scene, report) for one scene after the other and tells the person how far it is, in `unit`. `streamed` is
-/// as ProgressReport has it.
+/// Calls work(scene, report) for each scene and reports progress in `unit`. `streamed` as for ProgressReport.
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
                  const std::string& streamed,
                  const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
@@ -96,7 +95,7 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
     }
 }
 
-/// Runs the scenes one after the other and tells the person how far they are.
+/// Runs the scenes one after the other and reports progress.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
     run_options.replacing = {inputs_of(options.presets, scenes), options.force};
     const auto& stop = watch_interrupts();
@@ -117,7 +116,7 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
                 [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
 }
 
-/// The frames of --frames, or the times of --from and --to.
+/// Sets the range from --frames, or from --from and --to.
 void take_range(const RenderOptions& options, RunOptions& run) {
     if (!options.from.empty()) run.from_s = seconds_of_option("--from", options.from);
     if (!options.to.empty()) run.to_s = seconds_of_option("--to", options.to);
@@ -178,7 +177,7 @@ void add_render(CLI::App& app) {
                        .columns = columns_of_option(options->columns)};
         take_range(*options, run);
         const auto scenes = read_scenes(*options, overrides(*options));
-        // before the first of them is filmed
+        // before the first one is rendered
         for (const auto& scene : scenes) check_video(video_options(scene));
         run_all(scenes, *options, run);
     });

@@ -21,7 +21,7 @@ namespace doppel {
 
 namespace {
 
-// a signal can reach nothing but what is global; only this file sees it
+// signal handlers can only use globals; these are local to this file
 std::atomic<bool> stop_requested = false, termination_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
@@ -36,7 +36,7 @@ const std::atomic<bool>& watch_interrupts() {
     action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    // the terminal closes; nohup's wish to go on counts
+    // the terminal was closed; nohup's setting is respected
     struct sigaction before {};
     if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
     return stop_requested;
@@ -52,12 +52,12 @@ void ignore_sigpipe() {
 
 namespace {
 
-/// To standard output, at once; the errno of a failure, or 0.
+/// Writes to standard output without buffering; returns errno, or 0.
 int write_error(std::string_view text) {
     return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 ? 0 : errno;
 }
 
-/// Throws the Error (exit 4) of such a failure.
+/// Throws Error (exit 4) for such an errno.
 void check_written(int error) {
     if (error != 0)
         throw Error(code_of_errno(error),
@@ -72,7 +72,7 @@ std::string bar(double share) {
     return text;
 }
 
-/// Where nobody reads it any more, the run goes on all the same.
+/// Prints to standard error; if nobody reads it, the run continues.
 template <class... Args>
 void say(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
     std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), to);
@@ -85,7 +85,7 @@ std::string duration(double seconds) {
 
 /// "PATH (size)", or "FOLDER/"; sanitised for a terminal.
 std::string file_line(const std::filesystem::path& file) {
-    std::error_code unknown;  // somebody may have moved it by now
+    std::error_code unknown;  // the file may have been moved meanwhile
     const auto size = std::filesystem::file_size(file, unknown);
     const auto more = std::filesystem::is_directory(file, unknown) ? "/"
                       : unknown                                    ? ""
@@ -93,7 +93,7 @@ std::string file_line(const std::filesystem::path& file) {
     return (isatty(STDOUT_FILENO) ? on_one_line(file.string()) : file.string()) + more;
 }
 
-/// Copies it to standard output, for as long as somebody reads.
+/// Copies the file to standard output until the reader closes it.
 void stream_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::vector<char> bytes(1 << 20);
@@ -181,7 +181,7 @@ void ProgressReport::tell(const nlohmann::ordered_json& event) {
     const auto line = event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (!streamed_.empty()) return say(stderr, "{}", line);
     const int error = write_error(line);
-    if (error != 0 && error != EPIPE) write_error_ = error;  // a reader may leave
+    if (error != 0 && error != EPIPE) write_error_ = error;  // the reader may close the pipe
 }
 
 void ProgressReport::clear() {
@@ -204,7 +204,7 @@ void ProgressReport::done(const RunResult& result) {
         tell(line);
         return check_written(write_error_);
     }
-    constexpr long few = 10;  // whose rate says nothing
+    constexpr long few = 10;  // too few for a meaningful rate
     if (style_ != ProgressStyle::none && count < few)
         say(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
     else if (style_ != ProgressStyle::none)
