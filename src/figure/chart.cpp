@@ -7,9 +7,9 @@ namespace doppel {
 namespace {
 
 constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
-constexpr double label_px = 20;    // text of labels where the unit is 1 (plot/chart_parts.hpp), layout px
-constexpr double paths_scale = 4;  // of what is made of paths
-constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL takes, which says so itself
+constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/chart_parts.hpp), layout px
+constexpr double paths_scale = 4;                 // for output made of paths
+constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL supports, which reports its own limit
 
 Size scaled(double width, double height, double scale) {
     return {static_cast<int>(std::lround(width * scale)), static_cast<int>(std::lround(height * scale))};
@@ -34,12 +34,12 @@ ChartLayout layout_of(const ChartSpec& chart) {
 
 namespace {
 
-/// A picture that can be made, with room for its words.
+/// Checks that the picture can be made, with space for its text.
 void check_chart(const TomlReader& table, const ChartSpec& chart) {
     const auto layout = layout_of(chart);
     const auto [width, height] = layout.picture;
     const double height_pt = layout.width_pt * height / width;
-    // as letters are high: the least in which axes, their labels and a curve have room
+    // in text heights: the smallest chart with space for axes, labels and a curve
     constexpr double least_width = 12, least_height = 10;
     if (const double most = std::min(layout.width_pt / least_width, height_pt / least_height);
         chart.width_cm && chart.font_pt > most)
@@ -59,7 +59,7 @@ void check_chart(const TomlReader& table, const ChartSpec& chart) {
 }  // namespace
 
 void read_chart(TomlReader& table, ChartSpec& chart) {
-    // which keys count depends on this one
+    // the meaning of other keys depends on this one
     table({.key = "width_cm"}, chart.width_cm.emplace(0));
     if (!table.has("width_cm")) chart.width_cm.reset();
     chart_fields(table, chart);

@@ -12,26 +12,26 @@ struct ChartSpec {
     PictureFormat format = PictureFormat::png;
     Size size{1600, 900};
     std::string theme = "light";
-    double scale = 1;                           // picture pixels to a layout pixel: 2 for print
-    std::optional<double> width_cm, height_cm;  // on paper
+    double scale = 1;                           // picture pixels per layout pixel: 2 for print
+    std::optional<double> width_cm, height_cm;  // size on paper
     double font_pt = 8;
     int dpi = 300;
     ChosenText title, captions;
 };
 
-/// A chart as it is composed (plot/plot.hpp) and written.
+/// How a chart is laid out (plot/plot.hpp) and written.
 struct ChartLayout {
     Size picture;               // px
-    float scale = 1;            // picture pixels to a layout pixel
-    std::optional<float> unit;  // of text and lines, layout pixels; by the size where not given
-    double width_pt = 0;        // on paper, 1/72 inch
+    float scale = 1;            // picture pixels per layout pixel
+    std::optional<float> unit;  // of text and lines, layout pixels; from the picture's size if not given
+    double width_pt = 0;        // width on paper, 1/72 inch
 };
 
-/// On paper text of the labels is `font_pt` high and a PNG has `dpi` pixels an inch; else a layout pixel is 3/4 pt. What is
-/// made of paths is composed on pixels so fine that they do not show.
+/// With a size on paper, labels are `font_pt` high and a PNG has `dpi` pixels per inch. Otherwise a layout pixel is 3/4
+/// pt. Output made of paths is laid out on a grid too fine to see.
 ChartLayout layout_of(const ChartSpec& chart);
 
-/// The keys of [chart] that all figures have.
+/// The keys of [chart] common to all figures.
 template <class Visit, class Chart>
 void chart_fields(Visit& visit, Chart& chart) {
     const bool on_paper = chart.width_cm.has_value();

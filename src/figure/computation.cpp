@@ -40,7 +40,7 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header,
     find_groups();
 }
 
-/// Whether there is such a file of these trials, which then are known; where it is of others, nothing is taken.
+/// Reads the trials of the file, if it exists and belongs to this figure.
 bool Computation::take(const std::filesystem::path& path, bool must_be) {
     if (type_of(path) == std::filesystem::file_type::not_found) return false;
     auto part = read_part_file(path);
@@ -69,8 +69,8 @@ std::filesystem::path Computation::publish_shard() {
     return shard();
 }
 
-/// Runs of unknown trials, cut to what is best computed together. Of many groups, some evenly spaced ones come first, to
-/// estimate the time of the rest.
+/// Groups of unknown trials that are best computed together. If there are many, some evenly spaced ones come first, so
+/// that the time of the rest can be estimated.
 void Computation::find_groups() {
     const std::size_t most = figure_.experiment->together();
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
@@ -160,14 +160,14 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     const double before = now();
     for (std::size_t trial = 0; trial < trials; ++trial) {
         const double units = experiment.units(trial);
-        // trials of 0 units are what others need: computed first, outside the estimate
+        // trials of 0 units are prerequisites: computed first and not timed
         TrialNumbers numbers;
         if (units == 0) experiment.compute(trial, {&numbers, 1}, stop);
         if (units > 0) ++counted;
         total += units;
     }
     const double start = now(), needed_s = start - before;
-    // groups that are spread evenly, until the time is over
+    // evenly spaced groups, until the time is over
     const TimeLimit limit(allowed_s, stop);
     const std::size_t all_groups = (trials + together - 1) / together;
     double done = 0, seconds = 0, place = 0.5;

@@ -10,41 +10,42 @@
 
 namespace doppel {
 
-/// How far a figure is, in its units.
+/// The progress of a figure, in its units.
 struct FigureProgress {
     double done = 0, total = 0;
 };
 
-/// Progress of a figure. Called by any thread, one at a time for one figure.
+/// Reports progress of a figure. Called by any thread, by one at a time for one figure.
 struct ComputationReport {
     std::function<void(const FigureProgress&)> progress;
-    std::function<void(const std::string& sentence)> note;  // what it will take; what it resumes from
+    std::function<void(const std::string& sentence)> note;  // the estimated time; the record that it resumes from
 };
 
-/// The unknown trials of a part of a figure, in groups for threads to take, and the file that records them once the
-/// computation takes some seconds (resume_name). Destroyed before it is complete, it leaves that file.
+/// Computes the unknown trials of a part of a figure, in groups that threads take. After some seconds it records
+/// results in a file (resume_name). If it is destroyed before it is complete, the file stays.
 class Computation {
 public:
-    /// `folder` = where the files are. The trials of a finished shard there, or else of the record, are known, up to the
-    /// first damaged one. `threads` is for messages. Throws Error (exit 4) where the record is another file, which is
-    /// left alone.
+    /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to the first damaged
+    /// line. `threads` is only used in messages. Throws Error (exit 4) if the record is something else; it is then left
+    /// unchanged.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
                 int threads, ComputationReport report);
 
     std::size_t groups() const { return groups_.size(); }
-    /// Computes a group, each once, on any thread. True for the last one: then all trials are known. Throws Error: what
-    /// a trial throws, with the place of the record; exit 3 where its numbers do not fit.
+    /// Computes a group on the calling thread; each group must be computed once. Returns true for the last one: then
+    /// all trials are known. Throws Error: that of a trial, with the path of the record; exit 3 if its numbers are
+    /// invalid.
     bool compute(std::size_t group, const std::atomic<bool>& stop);
     KnownTrials take_all() { return std::move(known_); }
-    /// The same fault, with the share that is kept in the record, and its path.
+    /// The same error, with the share of results kept in the record and its path.
     Error with_record(const Error& fault);
 
-    /// The record of all trials becomes the shard. Throws Error (exit 4).
+    /// Turns the record of all trials into the shard. Throws Error (exit 4).
     std::filesystem::path publish_shard();
     const std::filesystem::path& record() const { return record_; }
-    double computed_units() const { return computed_units_; }  // without those read
-    double cpu_s() const { return cpu_s_; }                    // of the threads while they computed
-    double start_s() const { return start_s_; }                // of the first group, by CLOCK_MONOTONIC
+    double computed_units() const { return computed_units_; }  // without those read from files
+    double cpu_s() const { return cpu_s_; }                    // of the threads during computation
+    double start_s() const { return start_s_; }                // start of the first group, by CLOCK_MONOTONIC
 
 private:
     using Group = std::pair<std::size_t, std::size_t>;  // trials first … last − 1
@@ -63,7 +64,7 @@ private:
     int threads_;
     ComputationReport report_;
     std::vector<Group> groups_;
-    std::mutex mutex_;  // of all below
+    std::mutex mutex_;  // guards all members below
     KnownTrials known_;
     std::optional<PartWriter> writer_;
     bool has_record_ = false;
@@ -72,11 +73,10 @@ private:
     double done_units_ = 0, kept_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };
 
-/// What computing a figure takes, from some of its trials. Throws what a trial throws; exit 130 soon after `stop` is
-/// set.
+/// Estimates the computing time from some trials. Throws the error of a trial; exit 130 soon after `stop` is set.
 struct ComputationEstimate {
-    double seconds;  // on as many threads
-    bool at_least;   // where not even one trial was done in the time allowed
+    double seconds;  // with as many threads
+    bool at_least;   // not one trial was finished in the time allowed: a lower bound
 };
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
 

@@ -15,7 +15,7 @@
 namespace doppel {
 namespace {
 
-/// The name and look of a kind of growth: one hue for all its curves, and its law beside their names.
+/// The name of a law of growth, and the hue of its curves.
 struct GrowthLook {
     Growth::Kind kind;
     std::string_view words, law;
@@ -31,14 +31,14 @@ const GrowthLook& look_of(const Growth& growth) {
     return *std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.kind == growth.kind; });
 }
 
-/// The running maximum; NaN stays.
+/// The running maximum; NaN is kept.
 std::vector<double> worst_so_far(std::vector<double> worst) {
     for (std::size_t i = 1; i < worst.size(); ++i)
         if (!std::isnan(worst[i])) worst[i] = std::fmax(worst[i], worst[i - 1]);
     return worst;
 }
 
-/// Errors of energy and rods over a long time, every method at the same cost.
+/// Long-term errors of energy and rod lengths, every method at the same cost.
 class Drift final : public Experiment {
 public:
     Drift(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
@@ -64,7 +64,7 @@ public:
     std::string unit() const override { return "motions"; }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        constexpr std::size_t finite = 3;  // all of a DriftCost but its last
+        constexpr std::size_t finite = 3;  // all members of DriftCost except the last
         return numbers.size() == numbers_in<DriftCost> + 2 * times_s_.size() && all_finite(numbers.first(finite)) &&
                finite_or_none(numbers.subspan(finite));
     }
@@ -86,7 +86,7 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         for (const bool of_rods : {false, true}) {
             Plot plot;
-            // room for names beyond the end
+            // leaves room for names after the end
             plot.x = {.label = "time, s", .low = 1, .high = 9 * times_s_.back(), .logarithmic = true};
             plot.y = {.label = of_rods ? "maximum error of a rod to date, m, with constraints"
                                        : "maximum relative error of the energy to date",
@@ -137,7 +137,7 @@ public:
     }
 
 private:
-    /// From the first second on, at three digits.
+    /// Sets times from 1 s on, rounded to three digits.
     void find_times(int points_per_decade) {
         for (int i = 0;; ++i) {
             const int decade = i / points_per_decade;
@@ -177,13 +177,13 @@ private:
         return {row_of<DriftCost>(trial), {energy, rods}, {rods, trial.end()}};
     }
 
-    /// Of a point, or of the failure that came before it, s.
+    /// The time of a point, or of an earlier failure, s.
     double time(const DriftRun& run, std::size_t point) const { return std::fmin(times_s_[point], run.failed_at_s); }
     Growth growth(const DriftRun& run, bool of_rods) const {
         return growth_of(times_s_, worst_so_far(of_rods ? run.length_error : run.energy_error), run.failed_at_s);
     }
 
-    /// The energy in the best model that a method serves; the rods in all that have any.
+    /// The energy is shown for the best model of a method; the rods for all models with rods.
     bool shows(std::size_t run, bool of_rods) const {
         if (of_rods || runs_[run].model == Model::angles) return of_rods == (runs_[run].model == Model::constraints);
         return !is_projected(runs_[run]) && !find_method(runs_[run].method)->angles;
@@ -192,7 +192,7 @@ private:
         return runs_[run].method + (is_projected(runs_[run]) ? " projected" : "");
     }
 
-    /// So that the labels of curves that end early stand at their ends.
+    /// Curves that end early are drawn last, so that their labels are at their ends.
     std::vector<std::size_t> longest_first(std::span<const TrialNumbers> numbers) const {
         std::vector<std::size_t> order(runs_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
@@ -205,7 +205,7 @@ private:
         return order;
     }
 
-    /// A line, and a mark where it fails.
+    /// Adds a line, with a mark if the run fails.
     void add_curves(const DriftRun& run, const std::string& name, bool of_rods, Plot& plot) const {
         const auto found = growth(run, of_rods);
         const auto& look = look_of(found);
@@ -223,7 +223,7 @@ private:
         plot.curves.push_back(std::move(curve));
     }
 
-    /// How the energy's error ends, and how to read the curves.
+    /// The final energy errors, and how to read the curves.
     std::string seen_words(std::span<const TrialNumbers> numbers) const {
         std::vector<std::string> bounded;
         bool breaks = false;
@@ -241,7 +241,7 @@ private:
 
     SideSpec release_;
     double duration_s_, evaluations_per_s_;
-    std::vector<double> times_s_;  // of the points, rising; the last is the end
+    std::vector<double> times_s_;  // of the points, ascending; the last is the end of the run
     std::vector<MotionSpec> runs_;
 };
 

@@ -18,32 +18,32 @@
 
 namespace doppel {
 
-/// The numbers that one trial of a figure comes to, at least one; NaN where one is missing.
+/// The results of one trial, at least one number; NaN if one is missing.
 using TrialNumbers = std::vector<double>;
 
-/// Whether all are numbers, neither infinite nor NaN.
+/// Whether all are finite.
 inline bool all_finite(std::span<const double> numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
-/// Whether each is a number, or NaN where one could not be had.
+/// Whether each is finite or NaN (missing).
 inline bool finite_or_none(std::span<const double> numbers) {
     return std::none_of(numbers.begin(), numbers.end(), [](double x) { return std::isinf(x); });
 }
 
-/// Whether it is a whole number ≥ 0, small enough to be exact in a double.
+/// Whether it is an integer ≥ 0 that is exact in a double.
 inline bool is_count(double x) {
     return x >= 0 && x <= 0x1p53 && x == std::floor(x);
 }
 
-/// A part of a trial's numbers with names: a struct of doubles and nothing else.
+/// A struct that only consists of doubles: named numbers of a trial.
 template <class Row>
 concept NumberRow = std::is_trivially_copyable_v<Row> && sizeof(Row) % sizeof(double) == 0;
 
 template <NumberRow Row>
 inline constexpr std::size_t numbers_in = sizeof(Row) / sizeof(double);
 
-/// The first row of the numbers, which hold one.
+/// The first row of the numbers.
 template <NumberRow Row>
 Row row_of(std::span<const double> numbers) {
     std::array<double, numbers_in<Row>> first;
@@ -51,7 +51,7 @@ Row row_of(std::span<const double> numbers) {
     return std::bit_cast<Row>(first);
 }
 
-/// All rows of the numbers, whose count is a multiple of a row's.
+/// All rows of the numbers; their count must be a multiple of a row's.
 template <NumberRow Row>
 std::vector<Row> rows_of(std::span<const double> numbers) {
     std::vector<Row> rows;
@@ -71,7 +71,7 @@ TrialNumbers numbers_of(const Row& row) {
     return numbers;
 }
 
-/// Adds a whole row to the table: text, whole numbers, and doubles, whose cell is empty where one is NaN.
+/// Adds a row to the table: text, whole numbers and doubles. NaN gives an empty cell.
 template <class... Cells>
 void add_row(Csv& table, const Cells&... cells) {
     const auto add = [&](const auto& cell) {
@@ -92,69 +92,70 @@ inline void add_point(Curve& curve, double x, double y) {
     curve.y.push_back(y);
 }
 
-/// A result of a figure beside its table: a key of the manifest.
+/// A result of a figure outside its table: a key of the manifest.
 struct Finding {
     std::string key;
     std::variant<double, std::string, bool> value;
 };
 
-/// The cells of a figure of maps: of each panel so many, each of so many numbers.
+/// The numbers of cells of a map figure: in each panel, and numbers per cell.
 struct MapCells {
     int columns, rows;
     std::size_t panels, numbers;
 };
 
-/// What a figure computes and shows: independent trials, and the table, picture and findings of their numbers. They may
-/// be computed in any order, by any thread, in several runs on several machines; the numbers are the same to the bit.
+/// What a figure computes and shows: independent trials, and the table, picture and findings made from their numbers.
+/// Trials may be computed in any order, by any thread, in several runs on several machines; their numbers are
+/// identical.
 class Experiment {
 public:
     virtual ~Experiment() = default;
 
     virtual std::size_t trials() const = 0;
-    /// How many trials in a row one call of compute() takes best. Changes no result.
+    /// The number of consecutive trials that one call of compute() computes best. It does not change results.
     virtual std::size_t together() const { return 1; }
-    /// Whether its trials measure time, and so are computed one after the other, by themselves.
+    /// Whether trials measure time. They are then computed one after the other, without other work.
     virtual bool measures_time() const { return false; }
-    /// The unit of progress, "pairs", and how many of them a trial is; 0 for what other trials need first.
+    /// The unit of progress, "pairs", and how many of them a trial counts; 0 for trials that others require first.
     virtual std::string unit() const { return "trials"; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 
-    /// Trials first, first + 1 … one for each of `numbers`. Throws Error: exit 3 where a method fails and nothing
-    /// is left to show, exit 130 soon after `stop` is set.
+    /// Computes trials first, first + 1 …, one for each of `numbers`. Throws Error: exit 3 if a method fails and
+    /// nothing can be shown, exit 130 soon after `stop` is set.
     virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = compute_trial(first + i, stop);
     }
 
-    /// Whether the numbers can be those of the trial: as many as it has, and infinite or NaN only where they may be.
-    /// Both those read from files and those just computed are checked.
+    /// Whether the numbers are valid for the trial: their count, and infinity or NaN only where allowed. It checks
+    /// numbers that were read and those that were computed.
     virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
 
-    /// The table: its columns, and its rows from the numbers of all trials.
+    /// The columns of the table, and its rows from the numbers of all trials.
     virtual std::vector<std::string> columns() const = 0;
     virtual void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const = 0;
 
-    /// Why there is nothing to draw, as where every trial failed; nothing where there is.
+    /// Why nothing can be drawn, for example because every trial failed; otherwise nothing.
     virtual std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> /*numbers*/) const { return {}; }
 
-    /// The panels (or the page), and captions that hold numbers just found. Titles are there already.
+    /// Adds the panels (or the page), and captions with results. Titles are already set.
     virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
     virtual std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const = 0;
 
-    /// What a picture says below its title where the preset has no subtitle: what moves, and how it is integrated.
+    /// The subtitle if the preset has none: the system and the integrator.
     virtual std::string subtitle() const { return {}; }
 
-    /// Of a figure of maps: its panels each draw one; nothing of other figures.
+    /// For map figures, in which each panel shows one map; otherwise nothing.
     virtual std::optional<MapCells> map() const { return std::nullopt; }
 
-    /// Everything that the numbers depend on, as the preset's tables would say it (TOML).
+    /// All settings that the numbers depend on, as tables of the preset (TOML).
     const std::string& resolved() const { return settings_; }
-    /// The keys of [chart] among it.
+    /// The keys of [chart] that the numbers depend on.
     const std::string& resolved_chart() const { return chart_settings_; }
 
 protected:
     std::string settings_, chart_settings_;
 
-    /// One trial, of a kind that computes no two together.
+    /// Computes one trial, for kinds that do not compute several together.
     virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }
 };
 

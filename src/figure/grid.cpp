@@ -34,7 +34,7 @@ void Grid::find_axes(FigureReader& reader) {
         axis->find(reader, table.inner(table.read_table(role), fmt::format("[{}.{}]", table_key, role)), pair_);
 }
 
-/// What the axes, and other keys beside them, say together.
+/// Checks the axes together with the other keys.
 void Grid::check(const TomlReader& table) const {
     std::vector<std::string_view> names;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
@@ -136,13 +136,13 @@ void Grid::make_map() {
     if (range_) look_.low = range_->low, look_.high = range_->high;
 }
 
-/// What moves, how it is integrated and how far the two of a pair are apart, of pairs that are alike but for the axes.
+/// The subtitle: system, integrator, and difference of the two pendulums, as far as all pairs share them.
 void Grid::make_subtitle() {
     Varied varied{.method = words().method};
     auto pair = groups_.front().pair;
     if (words().is_of_side_a) pair.b = pair.a;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
-        axis->put_both(pair);  // the difference of all pairs is named on its own
+        axis->put_both(pair);  // the difference is stated separately
         if (axis->angle) varied.angles.push_back(*axis->angle);
         varied.step |= axis->is_of_method;
         varied.keys.push_back(axis->key);
@@ -289,7 +289,7 @@ Preset Grid::pair_at(const Cell& cell) const {
     return pair;
 }
 
-/// The first cell of a trial, and how many are its own.
+/// The first cell of a trial, and the number of its cells.
 Grid::Cell Grid::place_of(std::size_t trial) const {
     const auto next = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.first > trial; });
     const auto& group = *std::prev(next);
@@ -303,7 +303,7 @@ std::size_t Grid::cells_of(std::size_t trial) const {
     return std::min(piece_, line_cells(groups_[place.group]) - (are_columns_ ? place.row : place.column));
 }
 
-/// Of cells side by side.
+/// Computes adjacent cells.
 void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const {
     const auto& group = groups_[first.group];
     const std::size_t most = std::max(together(), group.measurements.front().together(false));
@@ -312,7 +312,7 @@ void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atom
     for (; !cells.empty(); cells = cells.subspan(std::min(most, cells.size())), along += most) {
         const auto at = [&](std::size_t i) -> const Preset& {
             pair.a = group.pair.a;
-            if (right_ || !words().is_of_side_a) pair.b = group.pair.b;  // else nothing is found of it
+            if (right_ || !words().is_of_side_a) pair.b = group.pair.b;  // otherwise side b is not used
             y_.put(pair, first.row + (are_columns_ ? i : 0));
             group.x.put(pair, first.column + (are_columns_ ? 0 : i), difference_);
             return pair;
@@ -348,7 +348,7 @@ bool Grid::is_at_rest(const Cell& cell) const {
     return rests(pair.a) && rests(pair.b);
 }
 
-/// Of two that are one there is no ratio to their first distance: of a curve it is not missing.
+/// An identical pair has no ratio to its initial distance; in a curve, that is not counted as missing.
 bool Grid::is_missing(const Cell& cell, double number) const {
     if (std::isfinite(number) || is_map() || quantity_ != Quantity::divergence) return !std::isfinite(number);
     const auto pair = pair_at(cell);
@@ -361,7 +361,7 @@ std::string Grid::joined_words(std::size_t group, const char* between) const {
     return panel + (panel.empty() ? "" : between) + color_.words(group % color_.count);
 }
 
-/// The order of convergence: with steps between the two finest, with tolerances over the middle third.
+/// The order of convergence: from the two finest step sizes, or from the middle third of the tolerances.
 double Grid::slope(std::span<const TrialNumbers> numbers, std::size_t group) const {
     const auto count = groups_[group].x.count;
     const bool is_adaptive = find_method(groups_[group].pair.a.integrator)->adaptive;

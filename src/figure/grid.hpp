@@ -15,8 +15,9 @@ inline constexpr std::string_view grid_key_help =
     "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
     "method";
 
-/// A quantity of pairs over the values of one to four keys: curves over x, of several colours; maps over x and y; panels of
-/// either. A trial is a value of x of a curve, or some cells of a map side by side; of a mirrored map in the lower half of it.
+/// A quantity of pairs over the values of one to four keys: curves over x, in several colours; maps over x and y;
+/// panels of either. A trial is a value of x of one curve, or some adjacent cells of a map. If the map has a mirror
+/// symmetry, only its lower half is computed.
 class Grid final : public Experiment {
 public:
     static constexpr std::string_view table_key = "grid";
@@ -96,18 +97,18 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override;  // figure/grid_plot.cpp
 
 private:
-    /// The pairs of one panel and colour, which differ along x and y alone.
+    /// The pairs of one panel and colour, which differ only along x and y.
     struct Group {
         Preset pair;
         GridAxis x;
-        std::size_t first = 0;                  // trial
-        std::vector<Measurement> measurements;  // of the quantity, and of the one at the right
+        std::size_t first = 0;                  // first trial
+        std::vector<Measurement> measurements;  // of the quantity, and of that on the right axis
     };
     struct Cell {
         std::size_t group, row, column;
     };
 
-    // reading
+    // Reading.
     void find_axes(FigureReader& reader);
     void check(const TomlReader& table) const;
     void check_overlay(const TomlReader& table) const;
@@ -120,11 +121,11 @@ private:
     bool is_of_releases() const;
     const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
     const QuantityWords& words() const { return measurements().front().words(); }
-    /// Of an exponent's first number among those of a curve's value.
+    /// The position of an exponent's first number among the numbers of a curve's point.
     std::optional<std::size_t> exponent_place() const;
     Preset pair_at(const Cell& cell) const;
 
-    // trials and cells
+    // Trials and cells.
     std::size_t lines_computed(const Group& group) const;
     std::size_t line_cells(const Group& group) const { return are_columns_ ? y_.count : group.x.count; }
     std::size_t trials_of_line(const Group& group) const { return (line_cells(group) + piece_ - 1) / piece_; }
@@ -132,9 +133,9 @@ private:
     Cell place_of(std::size_t trial) const;
     std::size_t cells_of(std::size_t trial) const;
     void find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const;
-    /// The numbers of a cell, computed or those of its mirror image.
+    /// The numbers of a cell, from the cell or from its mirror image.
     std::span<const double> at(std::span<const TrialNumbers> numbers, const Cell& cell) const;
-    /// What is drawn of it.
+    /// The drawn number of a cell.
     double value_at(std::span<const TrialNumbers> numbers, const Cell& cell) const {
         return at(numbers, cell)[words().drawn];
     }
@@ -145,9 +146,9 @@ private:
                 for (std::size_t column = 0; column < groups_[group].x.count; ++column) visit(Cell{group, row, column});
     }
     bool is_missing(const Cell& cell, double number) const;
-    /// Whether both of the pair rest in an equilibrium: their distance is that of the start, whatever the motions beside.
+    /// Whether both pendulums rest in an equilibrium: their distance stays the initial one.
     bool is_at_rest(const Cell& cell) const;
-    /// "rk4, θ₂ = 30°"; empty where there is one group.
+    /// "rk4, θ₂ = 30°"; empty if there is only one group.
     std::string joined_words(std::size_t group, const char* between) const;
     double slope(std::span<const TrialNumbers> numbers, std::size_t group) const;
 
@@ -170,11 +171,11 @@ private:
     std::optional<Rational> mark_step_;
     std::optional<Range> range_;
     std::optional<double> threshold_;
-    std::vector<Group> groups_;                 // panel by panel, of each its colours
-    std::size_t cell_numbers_ = 0, piece_ = 1;  // of a cell; cells of a trial
-    HeatMap look_;                              // of maps: all but the numbers
+    std::vector<Group> groups_;                 // panel by panel, with the colours of each
+    std::size_t cell_numbers_ = 0, piece_ = 1;  // numbers of a cell; cells of a trial
+    HeatMap look_;                              // the map without its values
     bool is_mirrored_ = false;                  // the cell at (−x, −y) has the same numbers
-    bool are_columns_ = false;                  // the cells of a trial stand above one another: of one setting
+    bool are_columns_ = false;                  // the cells of a trial form a column: they share one setting
     std::string subtitle_;
 };
 

@@ -13,12 +13,12 @@ bool is_number(const std::string& text) {
     return text.find_first_not_of("0123456789+-.eE") == std::string::npos;
 }
 
-/// "rk4" of "\"rk4\"".
+/// Removes the quotes: "rk4" from "\"rk4\"".
 std::string unquoted(const std::string& text) {
     return text[0] == '"' || text[0] == '\'' ? text.substr(1, text.size() - 2) : text;
 }
 
-/// One side may say otherwise what the key says of both. A resolved preset has all keys in both.
+/// Throws if [a] or [b] override a key of both sides. A resolved preset has all keys in both.
 void require_last_word(FigureReader& reader, const TomlReader& table, const std::string& path) {
     const auto key = path.substr(path.find('.') + 1);
     const auto has = [&](const char* side) { return reader.document.table(reader.top, side).has(key); };
@@ -65,7 +65,7 @@ void GridAxis::find_settings(const TomlReader& table, const Preset& pair) {
 
 void GridAxis::settle(const Preset& pair) {
     if (!is_setting()) return;
-    auto all = *this;  // as even_value() has them
+    auto all = *this;  // so that even_value() applies to them
     const auto* method = find_method(pair.a.integrator);
     is_adaptive_ = method && method->adaptive;
     if (is_adaptive_) {
@@ -83,9 +83,9 @@ void GridAxis::settle(const Preset& pair) {
         if (is_adaptive_ && number < least && !numbers_.empty()) continue;
         numbers_.push_back(number);
         if (is_adaptive_) continue;
-        // whole steps to a sample, whole samples to the duration
+        // whole steps per sample, whole samples in the duration
         const double steps = pair.duration_s.value() / static_cast<double>(number);
-        constexpr double slack = 1e-9;  // of decimals
+        constexpr double slack = 1e-9;  // for rounding of decimals
         const long each = std::max(1L, static_cast<long>(std::ceil(steps / samples - slack)));
         const auto rate = quotient({std::max(1L, std::lround(steps / static_cast<double>(each))), 1}, pair.duration_s);
         steps_.emplace_back(*rate, *quotient({1, each}, *rate));
@@ -95,7 +95,7 @@ void GridAxis::settle(const Preset& pair) {
 }
 
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
-    const bool is_all = key == "system";  // each value a table of some of its keys
+    const bool is_all = key == "system";  // each value is a table with some of the keys
     if (!is_all && key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
     if (!is_all && !key.starts_with("system.") && !key.starts_with("a.") && !key.starts_with("b."))
         throw table.fault("key", "must begin with \"system.\", \"a.\" or \"b.\"; it is \"{}\"", key);
@@ -115,7 +115,7 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
         else if (const auto slash = text.find('/'); key == "system.integrator" && slash != std::string::npos)
             keys = fmt::format("a.integrator = {0}{2}\nb.integrator = {2}{1}\n", text.substr(0, slash),
                                text.substr(slash + 1), text[0]);
-        else if (key.starts_with("system."))  // the sides have the last word
+        else if (key.starts_with("system."))  // the sides override [system]
             keys = fmt::format("a.{0} = {1}\nb.{0} = {1}\n", key.substr(7), text);
         levels.push_back(parse_document({"", origin, keys, ""}, {}));
     }
@@ -126,7 +126,7 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
     if (release_ == releases.end()) {
         release_ = nullptr;
         const auto& number = number_.emplace(table, "key", key == "links" ? "system.links" : key, pair);
-        table.require_drawable("key", number.label);  // an entry's name may have other letters
+        table.require_drawable("key", number.label);  // the name of an entry may contain letters that cannot be drawn
         if (!number.element && number.inside.find('.') == std::string::npos)
             require_last_word(reader, table, number.path);
         label = number.label;
@@ -138,7 +138,7 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
         return;
     }
     require_in(table, "key", pair);
-    constexpr double most_degrees = 1e6;  // as of [system] angle_deg
+    constexpr double most_degrees = 1e6;  // as for [system] angle_deg
     label = release_->label;
     bounds_ = release_->is_ratio ? positive : from_to(-most_degrees, most_degrees);
     is_of_one_side = false;
@@ -188,7 +188,7 @@ std::size_t GridAxis::even_steps(const TomlReader& table) const {
     if (!(steps < most_steps))
         throw table.fault("to", "must be at most {} steps from \"from\"; it is {}", most_steps, text_of(to));
     const long whole = std::lround(static_cast<double>(steps));
-    constexpr double slack = 1e-12;  // of decimals that are no whole number of steps by rounding alone
+    constexpr double slack = 1e-12;  // a decimal may miss a whole number of steps only by rounding
     if (std::abs(static_cast<double>(steps - Quad(static_cast<double>(whole)))) > slack)
         throw table.fault("step", "must divide the way from {} to {}; it is {}", text_of(from), text_of(to),
                           text_of(step));
@@ -212,7 +212,7 @@ std::string GridAxis::words(std::size_t i) const {
     if (!levels.empty()) return unquoted(values->texts[i]);
     const auto comma = label.rfind(", ");
     auto what = label.substr(0, comma);
-    // a symbol stands for its words: "θ₁" of "release angle θ₁"
+    // the symbol stands for the words before it: "θ₁" for "release angle θ₁"
     const auto last = what.substr(what.rfind(' ') + 1);
     if (std::any_of(last.begin(), last.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
         what = last;

@@ -11,58 +11,58 @@
 
 namespace doppel {
 
-/// An axis of a grid: [grid.x], [grid.y], [grid.color] or [grid.panel]. Without a key there is no such axis, and its one value
-/// changes nothing.
+/// An axis of a grid: [grid.x], [grid.y], [grid.color] or [grid.panel]. Without a key the axis does not exist; its
+/// single value changes nothing.
 struct GridAxis {
-    std::string key;                   // what the pairs differ in
-    std::optional<TomlValues> values;  // in place of what follows
-    std::vector<std::string> labels;   // of the values, in their order
+    std::string key;                   // varied along this axis
+    std::optional<TomlValues> values;  // listed values; otherwise a range, as follows
+    std::vector<std::string> labels;   // for the values, in their order
     Quad from = 0, to = 180, step = 1;
-    Quad tolerance_from = parse_quad("1e-13"), tolerance_to = 1;  // of a setting, where the method takes one
+    Quad tolerance_from = parse_quad("1e-13"), tolerance_to = 1;  // for key "setting" and adaptive methods
     std::optional<int> tolerance_points;
     Spacing spacing = Spacing::linear;
     std::optional<int> points;
 
-    // made of them
+    // derived from the keys above
     std::size_t count = 1;
-    std::string label;                 // of a chart's axis, with the unit
-    bool are_cells = false;            // each value is the middle of a cell of a map
-    bool is_of_method = false;         // a step, a tolerance or an accuracy
-    bool keeps_method = true;          // pairs that differ in it have one method and as many links
-    bool is_of_one_side = true;        // the two of a pair cannot differ by it
-    std::optional<std::size_t> angle;  // the link, from 0, whose release it is
-    std::vector<TomlDocument> levels;  // where it is of text: what each value puts on top of the preset's tables
+    std::string label;                 // of the chart's axis, including the unit
+    bool are_cells = false;            // each value is the centre of a cell of a map
+    bool is_of_method = false;         // a step size, a tolerance or an accuracy
+    bool keeps_method = true;          // all values have the same method and number of links
+    bool is_of_one_side = true;        // the sides of a pair cannot differ in it
+    std::optional<std::size_t> angle;  // if the key is a release angle: its link, from 0
+    std::vector<TomlDocument> levels;  // for textual values: the tables that each puts on top of the preset
 
     bool is_there() const { return !key.empty(); }
-    /// How finely to step: the step, or the tolerance of an adaptive method.
+    /// The accuracy setting of the method: its step size, or the tolerance of an adaptive method.
     bool is_setting() const { return key == "setting"; }
     template <class Visit>
     void fields(Visit& visit, std::string_view help);
 
-    /// `table` = that of the axis. Throws Error (exit 2) where the pair has no such key, or cannot take a value.
+    /// `table` = that of the axis. Throws Error (exit 2) if the pair has no such key, or cannot take a value.
     void find(FigureReader& reader, const TomlReader& table, const Preset& pair);
 
-    /// Of a setting, the values for the methods of this pair: steps that divide its duration, or tolerances that its
-    /// precision can keep.
+    /// For key "setting": chooses the values for the methods of this pair. Step sizes divide its duration; tolerances
+    /// are within its precision.
     void settle(const Preset& pair);
 
     const Quad& value(std::size_t i) const { return numbers_[i]; }
-    /// Of the table.
+    /// Columns of the table.
     std::vector<std::string> columns() const;
     /// "θ₁ = 30°", "rk4"
     std::string words(std::size_t i) const;
     void write(std::size_t i, Csv& table) const;
-    /// Puts value i in place, of side b `difference` more. Nothing where it is of text.
+    /// Sets value i; side b gets `difference` more. Nothing happens for textual values.
     void put(Preset& pair, std::size_t i, const Quad& difference = 0) const;
-    /// The same of both sides, whichever it belongs to.
+    /// The same for both sides, whichever the key belongs to.
     void put_both(Preset& pair) const;
     PlotAxis plot_axis() const;
     CellRange cells() const { return {static_cast<double>(from), static_cast<double>(to), int(count), spacing}; }
-    /// What two of a pair are called that are so much apart: "pair 0.003° apart"; empty for 0.
+    /// The text for a pair with this difference: "pair 0.003° apart"; empty for 0.
     std::string apart(const Quad& difference) const;
-    /// Throws Error (exit 2), of the table's key `of`, where a pair has no such key.
+    /// Throws Error (exit 2) at the table's key `of` if a pair has no such key.
     void require_in(const TomlReader& table, std::string_view of, const Preset& pair) const;
-    /// The same where the number is out of range.
+    /// The same if the number is out of range.
     void require(const TomlReader& table, std::string_view of, const Quad& number) const;
 
 private:
@@ -74,20 +74,20 @@ private:
     Quad even_value(std::size_t i) const;
     std::size_t even_steps(const TomlReader& table) const;
 
-    /// What sweeps and maps vary in a release.
+    /// A release parameter that curves and maps can vary.
     struct ReleaseParameter {
         std::string_view name, label;
-        std::size_t links;  // that it takes, at least
+        std::size_t links;  // least number of links
         void (*set)(SideSpec&, const Quad&);
         bool is_ratio;  // > 0
     };
     static const std::array<ReleaseParameter, 4> releases;
     const ReleaseParameter* release_ = nullptr;
     std::optional<NumericKey> number_;
-    std::vector<Quad> numbers_;  // all values
+    std::vector<Quad> numbers_;  // all values, if they are numbers
     Bounds bounds_;
-    bool is_adaptive_ = false;                          // of a setting
-    std::vector<std::pair<Rational, Rational>> steps_;  // of a setting: samples a second, and the step, s
+    bool is_adaptive_ = false;                          // for key "setting"
+    std::vector<std::pair<Rational, Rational>> steps_;  // for key "setting": samples per second, and the step size, s
 };
 
 template <class Visit>

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
-// The plots and captions of a grid.
+// Plots and captions of a grid.
 
 namespace doppel {
 namespace {
 
-/// Whether some of the line lies inside the axes of the map.
+/// Whether any part of the line lies inside the axes of the map.
 bool shows(const Plot& plot, const Curve& line) {
     for (std::size_t i = 0; i < line.x.size(); ++i)
         if (line.x[i] > *plot.x.low && line.x[i] < *plot.x.high && line.y[i] > *plot.y.low && line.y[i] < *plot.y.high)
@@ -46,7 +46,7 @@ void Grid::draw(std::span<const TrialNumbers> numbers, Figure& figure) const {
                                               grouped(options_.stroboscope.transient_periods)));
 }
 
-/// The curves of one panel and colour: of the quantity, and of the one at the right.
+/// The curves of one panel and colour: of the quantity, and of that on the right axis.
 void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const {
     std::size_t column = words().drawn;
     for (const auto& measurement : groups_[group].measurements) {
@@ -94,7 +94,7 @@ Curve Grid::curve(std::span<const TrialNumbers> numbers, std::size_t group, std:
     return made;
 }
 
-/// Where a curve has no point because both of its pair rest.
+/// States where a curve has no point because both pendulums rest.
 std::string Grid::rest_words() const {
     if (is_map() || right_ || words().drawn > 0 || !is_of_distance(quantity_)) return "";
     std::vector<std::string> places;
@@ -105,7 +105,7 @@ std::string Grid::rest_words() const {
 }
 
 void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& figure) const {
-    constexpr double steepest = 15;  // a slope beyond is that of a method without an order of its own
+    constexpr double steepest = 15;  // a larger slope belongs to a method without a fixed order
     std::vector<std::string> slopes, least;
     for (std::size_t p = 0; p < panel_.count; ++p) {
         double nearest = NAN;
@@ -159,7 +159,7 @@ HeatMap Grid::heat_map(std::span<const TrialNumbers> numbers, std::size_t group)
     return map;
 }
 
-/// What all panels have in common: one scale of colours, and words for cells without a number; then the captions.
+/// Sets the common parts of all panels: one colour scale, and the label of cells without a number; then the captions.
 void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const {
     HeatMap all = look_;
     for (const auto& plot : figure.panels)
@@ -167,7 +167,7 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
     if (std::none_of(all.values.begin(), all.values.end(), [](float cell) { return std::isnan(cell); }))
         all.none_label = "";
     const auto spec = measurements().front().flips_in_lanes();
-    long broken = 0;  // flips; where there is none the number is infinite
+    long broken = 0;  // flips: infinite if there is none
     if (spec) for_each_cell([&](const Cell& cell) { broken += std::isnan(at(numbers, cell)[0]); });
     if (broken > 0) all.none_label += ", or failed";
     const auto scale = MapScale(all).axis;
@@ -188,7 +188,7 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
                         "are those without a flip.",
                         broken));
     if (quantity_ != Quantity::stability) return;
-    // as many columns as leave methods of either sort rows of their own
+    // a number of columns that gives each type of method its own rows
     constexpr std::size_t many = 6, few = 3;
     const auto stepped = std::count_if(groups_.begin(), groups_.end(), [](const Group& group) {
         return group.x.is_setting() && !find_method(group.pair.a.integrator)->adaptive;

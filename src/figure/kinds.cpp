@@ -79,7 +79,7 @@ bool released_alike(const SideSpec& a, const SideSpec& b) {
 
 bool are_one(const Scene& scene) {
     auto b = scene.preset.b;
-    b.model = scene.preset.a.model;  // what was made of them is compared
+    b.model = scene.preset.a.model;  // compares the resulting scenes
     return scene.a.motion.model == scene.b.motion.model && differing_keys(scene.preset.a, b).empty();
 }
 

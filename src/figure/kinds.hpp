@@ -15,7 +15,7 @@
 
 namespace doppel {
 
-/// Reads the table that is a kind's own, and keeps what it read as TOML, defaults included: reader(field, member).
+/// Reads the tables of one kind of figure, and keeps what it read as TOML including defaults: reader(field, member).
 class SettingsReader : public TomlReader {
 public:
     explicit SettingsReader(TomlReader table) : TomlReader(std::move(table)) {}
@@ -29,7 +29,7 @@ public:
             writer_.add(field.key, toml_text(into.text()));
     }
 
-    /// The keys of [NAME.key], and no others.
+    /// Reads the keys of [NAME.key].
     template <class Visit>
     void table(std::string_view key, const Visit& visit) {
         SettingsReader inside(inner(read_table(key), fmt::format("[{}.{}]", bare_name(), key)));
@@ -38,7 +38,7 @@ public:
         if (!inside.writer_.text().empty()) tables_ += text;
     }
 
-    /// "[table]" and its keys, then the tables inside it. Throws as TomlReader::finish() does.
+    /// Returns "[table]" and its keys, then the inner tables. Throws as TomlReader::finish() does.
     std::string finish() const {
         TomlReader::finish();
         return fmt::format("\n[{}]\n{}{}", bare_name(), writer_.text(), tables_);
@@ -49,68 +49,68 @@ private:
     std::string tables_;
 };
 
-/// A preset being read: each kind of figure takes the tables that are its own.
+/// A preset being read: each kind of figure reads its own tables.
 struct FigureReader {
     std::string name;  // of the preset
     const TomlDocument& document;
-    TomlReader &top, &scene, &chart;  // of [chart], a kind may take keys of its own
+    TomlReader &top, &scene, &chart;  // a kind may read further keys of [chart]
     std::span<const ExternalMethod> external_methods = {};
     const std::atomic<bool>& stop = never_stopped;
 
-    /// The kind's own table, all of its fields read.
+    /// Reads all fields of the kind's own table.
     template <class Kind>
     SettingsReader settings(Kind& kind) {
         SettingsReader table(document.table(top, Kind::table_key));
         kind.fields(table);
         return table;
     }
-    /// The pair that [scene], [system], [a] and [b] describe, with `more` levels on top (scene/preset_fields.hpp).
+    /// The pair described by [scene], [system], [a] and [b], with `more` levels on top (scene/preset_fields.hpp).
     Preset pair(const std::vector<TomlReader*>& more = {});
-    /// The keys of such a pair, without looking at what they say together.
+    /// Reads the keys of such a pair, without checking them together.
     Preset read_pair(const std::vector<TomlReader*>& more = {});
     /// The tables of [[key]].
     std::vector<TomlReader> entries(std::string_view key);
-    /// The chain that [system] describes, where the figure itself knows how to step it; `physical`: with links that have
-    /// mass, friction and drives.
+    /// The chain that [system] describes, for figures that integrate it themselves. `physical`: links with mass,
+    /// friction and drives are allowed.
     SideSpec release(bool physical = false);
 };
 
-/// Whether the method can step the model.
+/// Whether the method supports the model.
 inline bool serves(const MethodEntry& method, Model model) {
     return model == Model::angles ? method.angles : model == Model::constraints ? method.constraints : method.mechanism;
 }
 
-/// Throws Error (exit 2) where no method has that name, one of `methods`.
+/// The method of that name; throws Error (exit 2) if there is none. The name is one of the key `methods`.
 const MethodEntry& method_named(const TomlReader& table, const std::string& name);
 
-/// The film of that name or path, `scene` of the table. Throws Error (exit 2).
+/// The film preset of that name or path, given by the table's key `scene`. Throws Error (exit 2).
 Preset film_named(const std::string& name, const TomlReader& table);
 
-/// As lines of a comment in TOML: what numbers depend on and no key says, such as what is in a film's file.
+/// The text as TOML comments: data that the numbers depend on and no key contains, such as a film's file.
 std::string commented(std::string_view text);
 
-/// Throws Error (exit 2) where one of the names of a key is there twice.
+/// Throws Error (exit 2) if a key lists a name twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
-/// Whether both sides are released alike: then their distance at the start is 0.
+/// Whether both sides have the same release, so that their initial distance is 0.
 bool released_alike(const SideSpec& a, const SideSpec& b);
 
-/// Whether both sides are one system, released and integrated alike: they move identically.
+/// Whether both sides are the same system with the same release and integration: they move identically.
 bool are_one(const Scene& scene);
 
 /// An entry of the list of kinds.
 struct FigureKind {
-    enum class System { none, release, pair };  // what moves
-    std::string_view name;                      // of [scene] kind
+    enum class System { none, release, pair };  // how the preset describes the system
+    std::string_view name;                      // in [scene]
     System system;
     std::shared_ptr<const Experiment> (*read)(FigureReader&);
-    void (*read_keys)(FigureReader&, System);  // each by itself, so that all their faults are found
-    std::vector<FieldTable> (*tables)();       // its own, with their defaults
+    void (*read_keys)(FigureReader&, System);  // each key by itself, so that all errors are found
+    std::vector<FieldTable> (*tables)();       // the kind's own, with their defaults
 };
 
-/// A kind is a class that is made of a FigureReader. If it has keys of its own, `table_key` names their table, and
-/// fields(visit) visits each with its member, as the lists of scene/preset_fields.hpp do; other_table() lists further
-/// ones, and read_others() reads them.
+/// A kind is a class constructed from a FigureReader. If it has keys of its own, `table_key` is the name of their
+/// table, and fields(visit) visits each with its member, as in scene/preset_fields.hpp. other_table() lists further
+/// keys, and read_others() reads them.
 template <class Kind>
 void read_keys_of(FigureReader& reader, FigureKind::System system) {
     if (system == FigureKind::System::pair) reader.read_pair();
@@ -136,10 +136,10 @@ constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
             }};
 }
 
-/// All of them; the list stands in figure/kinds.cpp and its names in scene/preset_fields.hpp.
+/// The list is in figure/kinds.cpp, the names are in scene/preset_fields.hpp.
 std::span<const FigureKind> figure_kinds();
 
-// One file each.
+// Each is defined in a file of its own.
 extern const FigureKind grid_kind, series_kind, section_kind, work_precision_kind;
 
 }  // namespace doppel

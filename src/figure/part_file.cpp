@@ -19,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view mark = "doppel trials";  // the kind of file
-constexpr int format = 2;                           // of its lines; 1 had no checksums
+constexpr int format = 2;                           // of the lines; format 1 had no checksums
 constexpr std::size_t longest_header = 1 << 16, longest_line = std::size_t{1} << 32;
 constexpr std::size_t most_trials = 100'000'000;
 constexpr std::size_t checksum_digits = 16, name_digits = 12;
 
-/// Reads a file line by line: a regular one, and no link.
+/// Reads a regular file line by line; follows no link.
 class LineReader {
 public:
     explicit LineReader(const fs::path& path) : path_(path) {
@@ -34,8 +34,8 @@ public:
         file_ = open_file(path);
     }
 
-    /// The next line, without its end. False after the last; what has no end, because its writer was killed, or is
-    /// longer than `most` bytes, is none; `line` then holds its beginning. Throws Error (exit 4).
+    /// Reads the next line, without its end. Returns false after the last line, and for an incomplete line (its writer
+    /// was killed) or one longer than `most` bytes; `line` then contains its beginning. Throws Error (exit 4).
     bool next(std::string& line, std::size_t most) {
         line.clear();
         for (int c = 0; (c = getc_unlocked(file_.get())) != EOF && line.size() <= most;) {
@@ -68,12 +68,12 @@ Json json_of(const PartHeader& header) {
             {"of", header.of}};
 }
 
-/// Of a line, in the file with this header.
+/// The checksum of a line in the file with this header.
 std::string checksum(const std::string& header, std::string_view line) {
     return sha256_of_text(fmt::format("{}\n{}", header, line)).substr(0, checksum_digits);
 }
 
-/// "TRIAL,a,b,c;CHECKSUM" → its numbers; false where the line is none.
+/// Parses "TRIAL,a,b,c;CHECKSUM"; returns false if the line is invalid.
 bool read_line(std::string_view line, const std::string& header, PartFile::Trial& trial) {
     if (line.size() <= checksum_digits) return false;
     const auto text = line.substr(0, line.size() - checksum_digits - 1);
@@ -91,7 +91,7 @@ bool read_line(std::string_view line, const std::string& header, PartFile::Trial
     return true;
 }
 
-/// A whole number from 1 to `most`. Throws what the library does where it is none.
+/// A whole number from 1 to `most`; otherwise throws as the JSON library does.
 std::size_t count(const Json& json, const char* key, std::size_t most) {
     const auto& value = json.at(key);
     if (!value.is_number_unsigned() || value.get<std::size_t>() < 1 || value.get<std::size_t>() > most)
@@ -148,7 +148,7 @@ void check_header(const fs::path& path, const PartHeader& found, const PartHeade
         refuse("preset, or other --set", short_hash(found.preset), short_hash(wanted.preset));
 }
 
-/// Throws where parts are missing; names the first of them.
+/// Throws if parts are missing; names the first one.
 void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
     constexpr std::size_t most_named = 5;
     const auto missing = static_cast<std::size_t>(std::count(parts.begin(), parts.end(), fs::path()));
@@ -160,7 +160,7 @@ void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) 
                     missing > most_named ? fmt::format(" … {} in all", missing) : "");
 }
 
-/// "PATH.part", and none there: one that is, is of a run that was killed.
+/// The path "PATH.part". A file there is removed: it belongs to a run that was killed.
 fs::path fresh_part(fs::path path) {
     path += ".part";
     fs::remove(path);
@@ -247,7 +247,7 @@ KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, con
                         folder.string(), figure.name);
     const auto wanted = header_of(figure);
     KnownTrials all(wanted.trials);
-    std::vector<fs::path> parts;  // by their numbers; empty where not seen yet
+    std::vector<fs::path> parts;  // by part number; empty if not seen yet
     for (const auto& path : files) {
         throw_if_set(stop);
         auto part = read_part_file(path);

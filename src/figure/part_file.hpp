@@ -10,32 +10,32 @@
 
 namespace doppel {
 
-/// The most parts that a figure is shared out to.
+/// The largest number of parts that a figure can be split into.
 inline constexpr int most_parts = 100'000;
 
-/// What a file of trials' numbers belongs to. Files go together where all of it agrees.
+/// Identifies the run that a file of results belongs to. Files belong together if all members agree.
 struct PartHeader {
     std::string figure, version, revision;
-    std::string preset;  // SHA-256 of all that the numbers depend on
+    std::string preset;  // SHA-256 of all settings that the numbers depend on
     std::size_t trials = 0;
-    int shard = 1, of = 1;  // which part, from 1, of how many
+    int shard = 1, of = 1;  // number of the part, from 1, and number of parts
 
     friend bool operator==(const PartHeader&, const PartHeader&) = default;
-    /// The trials of this part, first … last − 1: the parts are equal but for one trial.
+    /// The trials of this part, first … last − 1. The sizes of parts differ by at most one trial.
     std::size_t first() const { return trials * static_cast<std::size_t>(shard - 1) / static_cast<std::size_t>(of); }
     std::size_t last() const { return trials * static_cast<std::size_t>(shard) / static_cast<std::size_t>(of); }
 };
 
 PartHeader header_of(const FigurePreset& figure, int shard = 1, int of = 1);
 
-/// "fig8.3-of-8.shard": the file of a part's numbers, for a merge.
+/// "fig8.3-of-8.shard": the file with the results of a part, for a merge.
 std::string shard_name(const PartHeader& header);
-/// "fig8.3-of-8.c0ffee123456.resume": the file from which an interrupted run resumes; other headers have other names.
+/// "fig8.3-of-8.c0ffee123456.resume": the file from which an interrupted run resumes; its name depends on the header.
 std::string resume_name(const PartHeader& header);
-/// The files in the folder that are named like it but are of other presets or versions.
+/// Files in the folder with such names, but of other presets or versions.
 std::vector<std::filesystem::path> other_resumes(const std::filesystem::path& folder, const PartHeader& header);
 
-/// The trials whose numbers are known; others are empty.
+/// The numbers of each trial; empty if they are unknown.
 using KnownTrials = std::vector<TrialNumbers>;
 
 struct PartFile {
@@ -44,28 +44,28 @@ struct PartFile {
         TrialNumbers numbers;
     };
     PartHeader header;
-    std::vector<Trial> trials;     // a line each, up to the first that is damaged
-    std::size_t damaged_line = 0;  // that line, the header being 1: not as it was written; 0 = none
+    std::vector<Trial> trials;     // one for each line, up to the first damaged one
+    std::size_t damaged_line = 0;  // number of the damaged line, the header being 1; 0 = none
 
-    /// Moves the numbers to where they belong. A trial whose numbers cannot be its own (Experiment::fits) is a damaged
-    /// line. `into` has room for all trials of the experiment, whose file this is.
+    /// Moves the numbers to their trials. A trial with invalid numbers (Experiment::fits) counts as a damaged line.
+    /// `into` must have the size of all trials.
     void take(const Experiment& experiment, KnownTrials& into);
 };
 
-/// Reads a file that PartWriter wrote; a last line without an end (the writer was killed) is left out. Every number is
-/// the one that was written, to the bit: each line has a checksum. Throws Error (exit 4) where it cannot be read or is
-/// something else than such a file.
+/// Reads a file that PartWriter wrote. An incomplete last line (the writer was killed) is left out. Each line has a
+/// checksum, so that every number is the one that was written. Throws Error (exit 4) if the file cannot be read or is
+/// something else.
 PartFile read_part_file(const std::filesystem::path& path);
 
-/// Writes trials as they are done, so that a run can go on from there: a line of JSON, then a line a trial, "TRIAL,
+/// Writes trials when they are done, so that a run can be resumed: a line of JSON, then for each trial a line "TRIAL,
 /// NUMBERS;CHECKSUM". Throws Error (exit 4).
 class PartWriter {
 public:
-    /// Begins the file with what is known; one that is there is replaced when that is written.
+    /// Begins the file with the known trials. An older file is replaced once these are written.
     PartWriter(const std::filesystem::path& path, const PartHeader& header, const KnownTrials& known);
 
     void add(std::size_t trial, const TrialNumbers& numbers);
-    /// All so far can be read by others.
+    /// Makes all trials up to now readable for others.
     void flush() { file_.flush(); }
     void close() { file_.close(); }
 
@@ -74,10 +74,9 @@ private:
     std::string header_;
 };
 
-/// The numbers of a figure from its shards in `folder`, each of which must be there once, whole and of this figure.
-/// Throws Error: exit 75 where parts are missing, exit 2 where they are there twice or belong to something else, exit 4
-/// where one cannot be
-/// read or is damaged, exit 130 soon after `stop` is set.
+/// Merges the results of a figure's shards in `folder`. Each must exist once, complete and of this figure. Throws
+/// Error: exit 75 if shards are missing, exit 2 if there are duplicates or shards of other figures, exit 4 if one is
+/// unreadable or damaged, exit 130 soon after `stop` is set.
 KnownTrials merged_parts(const FigurePreset& figure, const std::filesystem::path& folder,
                          const std::atomic<bool>& stop);
 

@@ -66,7 +66,7 @@ constexpr std::string_view series_introduction = R"(# Presets: keys of series, s
 After reading this page you can look up the keys of these kinds of figures, beside [those of all figures](presets-figures.md).
 )";
 
-/// The keys outside all tables.
+/// The keys outside of tables.
 template <class Visit>
 void top_fields(Visit& visit, FigurePreset& figure) {
     visit(title_field, figure.title);
@@ -81,7 +81,7 @@ void top_fields(Visit& visit, FigurePreset& figure) {
     visit({.key = "captions", .help = "below the picture", .is_drawn = true}, figure.captions);
 }
 
-/// [system] of figures that step a chain themselves.
+/// [system] of figures that integrate a chain themselves.
 FieldTable release_table() {
     SideSpec side;
     FieldTable release{"[system]"};
@@ -90,7 +90,7 @@ FieldTable release_table() {
     return release;
 }
 
-/// What moves, in docs/presets.md.
+/// The description of the system in docs/presets.md.
 std::string what_moves(FigureKind::System system) {
     using System = FigureKind::System;
     if (system == System::none) return "";
@@ -103,8 +103,8 @@ std::string what_moves(FigureKind::System system) {
     return fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(keys, "`, `"));
 }
 
-/// Reads the keys alone where `faults` are given, and throws all that they have by themselves; else the figure, with what
-/// keys say together.
+/// With `faults`, reads each key by itself and throws all errors found. Otherwise reads the figure and checks keys
+/// together.
 FigurePreset read_once(const PresetText& source, const TomlDocument& document, Faults* faults,
                        std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
     FigurePreset figure;
@@ -114,7 +114,8 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, F
     top_fields(top, figure);
     auto scene = document.table(top, "scene");
     figure.kind = read_kind(scene);
-    if (faults && faults->concern("scene")) faults->throw_if_any();  // which tables there may be is not known
+    if (faults && faults->concern("scene"))
+        faults->throw_if_any();  // without the kind it is unknown which tables are allowed
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
@@ -194,7 +195,7 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
     const auto figures = figure_tables();
     all = {named(figures[0], "")};
     std::erase_if(pair[0].fields,
-                  [](const ListedField& field) { return field.key.ends_with("_columns"); });  // of films
+                  [](const ListedField& field) { return field.key.ends_with("_columns"); });  // only for films
     for (const auto& figure : figure_kinds()) {
         if (figure.name != kind) continue;
         if (figure.system == FigureKind::System::pair)

@@ -92,8 +92,8 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
     return {};
 }
 
-/// CPU time of a step of explicit Euler in double, ns, in angles and in constraints: the least of some rounds in turn, so
-/// that other load on the machine does not count.
+/// CPU time per step of explicit Euler in double, ns, with angles and with constraints. It is the minimum over some
+/// rounds in turn, so that other load on the machine does not matter.
 TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
     constexpr int rounds = 12;
     std::vector<std::unique_ptr<Motion>> motions;
@@ -110,7 +110,7 @@ TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
     return least;
 }
 
-/// The mean step, s, the greatest distance of the two, and how many steps they took; no distance where one failed.
+/// The mean step size, s, the largest distance of the pair, and the number of steps; no distance if a side failed.
 TrialNumbers distance_and_steps(const Preset& pair, const std::atomic<bool>& stop) {
     const auto scene = make_scene(pair, stop);
     PairRun run(scene);
@@ -124,7 +124,7 @@ TrialNumbers distance_and_steps(const Preset& pair, const std::atomic<bool>& sto
     return {2 * pair.duration_s.value() / steps, most, steps};
 }
 
-/// How all pairs are integrated in lanes, where they can be: plain chains in double by the methods of Batch.
+/// How pairs can be integrated in lanes, if they can be: plain chains in double by the methods of Batch.
 std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
     const auto serves = [](const Side& side) {
         const auto& motion = side.motion;
@@ -137,13 +137,13 @@ std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
     return PairBatchSpec{a, b, scene.samples};
 }
 
-/// A quantity of distances, from those at all samples in their order.
+/// A quantity computed from the distances at all samples in order.
 class DistanceWatch {
 public:
     explicit DistanceWatch(Quantity quantity) : quantity_(quantity) {}
     void add(double time, double distance) {
         last_ = distance;
-        if (!(distance <= greatest_)) greatest_ = distance;  // NaN stays
+        if (!(distance <= greatest_)) greatest_ = distance;  // keeps NaN
         if (quantity_ == Quantity::divergence) mean_.add(distance);
         if (quantity_ == Quantity::parting_time) parting_.add(time, distance);
     }
@@ -161,11 +161,10 @@ private:
     double last_ = NAN, greatest_ = 0;
 };
 
-/// The first flip of any link, or the period of the one link, from the samples of a motion; between two of them an angle
-/// is a cubic.
+/// Finds the first flip of any link, or the period of a single link, from samples. Between samples angles are cubic.
 class FlipWatch {
 public:
-    /// The time of a flip, if one flips by then.
+    /// Adds a sample. Returns the time of the first flip, if one has occurred.
     std::optional<double> add(double time, const Bobs<double>& bobs) {
         double first = never;
         for (std::size_t i = 0; i < bobs.size() && before_.size() == bobs.size(); ++i)
@@ -175,14 +174,14 @@ public:
         keep(time, bobs);
         return first < never ? std::optional(first) : std::nullopt;
     }
-    /// Takes note of the times at which the link passes the downward vertical to the right.
+    /// Records when the link passes the downward vertical to the right.
     void add_swing(double time, const Bobs<double>& bobs) {
         const double passed = before_.empty() ? never : rise(time, before_[0], bobs[0], 1, 0);
         if (passed < never && passes_++ == 0) first_pass_s_ = passed;
         if (passed < never) last_pass_s_ = passed;
         keep(time, bobs);
     }
-    /// The mean over all whole periods; NaN where there is none.
+    /// The mean period; NaN if no period is complete.
     double period() const { return passes_ < 2 ? NAN : (last_pass_s_ - first_pass_s_) / (passes_ - 1); }
 
 private:
@@ -190,7 +189,7 @@ private:
         before_ = bobs;
         before_s_ = time;
     }
-    /// When the angle times `sense` rises through `level`.
+    /// The time at which the angle times `sense` rises through `level`.
     double rise(double time, const Bob<double>& from, const Bob<double>& to, double sense, double level) const {
         const double h = time - before_s_, p = sense * from.theta - level, v = sense * from.omega;
         const double q = sense * to.theta - level, w = sense * to.omega;
@@ -198,7 +197,7 @@ private:
         if (rises.empty()) return never;
         const double second = (3 * (q - p) / h - 2 * v - w) / h, third = (v + w - 2 * (q - p) / h) / (h * h);
         struct Beyond {
-            double value, rate;  // rad beyond the level, rad/s
+            double value, rate;  // rad beyond the level; rad/s
         };
         return before_s_ + root(rises.front(), [&](double t) {
                    return Beyond{p + t * (v + t * (second + t * third)), v + t * (2 * second + t * 3 * third)};
@@ -231,7 +230,7 @@ void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_si
     const auto start = [](const Scene& scene) -> double {
         try {
             return PairRun(scene).next(false).distance;
-        } catch (const RunFailure&) {  // told when it is run
+        } catch (const RunFailure&) {  // reported when the pair is run
             return NAN;
         }
     };
@@ -329,7 +328,7 @@ std::size_t Measurement::together(bool shared) const {
     if (flips_in_lanes_) return 256;
     if (quantity_ == Quantity::stability) return 128;
     if (!run_) return 1;
-    // a pendulum that two neighbours share is integrated once
+    // neighbours share a pendulum, which is integrated once
     const bool is_shared = shared || !is_of_distance(quantity_);
     return pendulums_per_block() / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
 }
@@ -361,7 +360,7 @@ void Measurement::append_flips(const PairAt& pair, std::span<TrialNumbers> into,
     for (std::size_t i = 0; i < into.size(); ++i) {
         const auto& side = pair(i).a;
         auto& chain = chains.emplace_back(chain_of(side).cast<double>());
-        // as the cells of a map stand, in double: mirror images have exactly opposite angles
+        // as in cells of a map, in double: mirror images have exactly opposite angles
         for (std::size_t k = 0; k < side.links(); ++k) chain.angle[k] = radians(static_cast<double>(side.angle_deg[k]));
     }
     std::vector<double> times(into.size());
@@ -392,7 +391,7 @@ void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> in
         const double now = energy(a, pairs[i].a.gravity);
         if (n == 0) start[i] = now;
         const double error = std::abs(now - start[i]);
-        if (!(error <= worst[i])) worst[i] = error;  // NaN stays
+        if (!(error <= worst[i])) worst[i] = error;  // keeps NaN
     };
     step_pairs(pairs, *run_, watch, stop);
     for (std::size_t i = 0; i < into.size(); ++i) {
@@ -401,7 +400,7 @@ void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> in
     }
 }
 
-/// By the sample loop of the films: any model, method and precision.
+/// Runs a pair with the sample loop of films: any model, method and precision.
 double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) const {
     const auto scene = make_scene(pair, stop);
     try {
@@ -433,7 +432,7 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
     }
 }
 
-/// As greatest_energy_errors() finds them, those of one setting at a time.
+/// Computes energy errors as greatest_energy_errors(), one group of equal settings at a time.
 void Measurement::append_energies(const PairAt& pair, std::span<TrialNumbers> into,
                                   const std::atomic<bool>& stop) const {
     auto motion = motion_;

@@ -17,7 +17,7 @@
 
 namespace doppel {
 
-/// What a grid finds of each pair.
+/// The quantities that a grid can compute for each pair.
 enum class Quantity {
     divergence,
     exponent,
@@ -39,33 +39,33 @@ inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>(
      "deviation", "period", "stroboscopic", "step_cost", "stability", "convergence"});
 inline constexpr std::string_view quantity_help = "what is computed for each pair; docs/figures.md explains each";
 
-/// Whether it compares the two of a pair by their distances.
+/// Whether it compares the two pendulums by their distance.
 constexpr bool is_of_distance(Quantity quantity) {
     return quantity == Quantity::divergence || quantity == Quantity::distance_at_end ||
            quantity == Quantity::greatest_distance || quantity == Quantity::parting_time ||
            quantity == Quantity::convergence;
 }
 
-/// What figures say of a quantity.
+/// The texts of a quantity in figures.
 struct QuantityWords {
-    std::string label;                     // of an axis, with the unit
-    std::vector<std::string> columns;      // of the table, one a number
-    std::vector<std::string> curves = {};  // the names of the numbers where each is a curve of its own
+    std::string label;                     // of an axis, including the unit
+    std::vector<std::string> columns;      // of the table, one for each number
+    std::vector<std::string> curves = {};  // names of the numbers, if each is a curve
     bool logarithmic = false;
-    std::string none = "run failed";  // what it means where there is none
+    std::string none = "run failed";  // label of cells without a number
     bool none_is_bad = none == "run failed";
-    bool is_of_side_a = false;     // alone: what sets the two apart does not matter
-    std::string method = {};       // by which it is found, where not by the preset's
-    std::string short_label = {};  // of a curve beside that of another quantity
+    bool is_of_side_a = false;     // depends on side a alone; the difference of the pair does not matter
+    std::string method = {};       // by which it is found, if not by the preset's
+    std::string short_label = {};  // beside a curve of another quantity
     std::string last_column = {};  // of one more number, after those of all quantities
-    std::size_t rows = 1;          // of the table to a pair, each with numbers of its own
-    std::string counted = {};      // the column that counts them
+    std::size_t rows = 1;          // rows of the table per pair, each with its own numbers
+    std::string counted = {};      // the column that numbers these rows
     long first_row = 0;
-    std::size_t drawn = 0;            // which of the numbers is drawn; where not the first, over the first
-    std::optional<Range> range = {};  // of the colours of a map
+    std::size_t drawn = 0;            // index of the drawn number; if it is not 0, it is drawn over number 0
+    std::optional<Range> range = {};  // of the colour scale of a map
 };
 
-/// Whether any of the numbers is one, and one above 0.
+/// Whether there is any number, and any number above 0.
 struct Drawn {
     bool any = false, above_0 = false;
     void add(double number) {
@@ -73,57 +73,54 @@ struct Drawn {
         above_0 |= std::isfinite(number) && number > 0;
     }
 };
-/// That the pair is run for: "20", "0.5".
+/// The duration of the pair in words: "20", "0.5".
 std::string seconds_text(const Preset& pair);
-/// Why a picture of them has nothing in it; nothing where it has. `pairs` = how many there are,
-/// each over so many seconds.
+/// Why a picture would be empty; otherwise nothing. `pairs` = their number.
 std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
                                          const std::string& pairs, const std::string& seconds);
 
-/// Throws Error (exit 2), of the table's `difference` or `quantity`, where a quantity that compares the two of a pair has
-/// nothing to compare in the first and the last pair: they are one in all pairs, or `difference` is lost in rounding in
-/// one of them, or `divergence` has no first distance.
+/// Throws Error (exit 2) at the table's `difference` or `quantity` if the quantity compares two pendulums that are the
+/// same: in all pairs, or because `difference` is lost in rounding in the first or last pair, or because `divergence`
+/// starts at distance 0.
 void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
                    const std::array<Scene, 2>& ends);
 
-/// Counts the regular releases of a curve, and takes equilibria out of it: their exponent is not that of a motion.
+/// Counts the regular releases of a curve, and removes equilibria: their exponent is not that of a motion.
 std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit);
 
-/// How quantities are found, where keys of [grid] say.
+/// Options for quantities, set by keys of [grid].
 struct QuantityOptions {
     double exponent_duration_s = ExponentSpec{}.duration_s;
     std::optional<double> flip_tolerance;  // rad/s
     StroboscopeSpec stroboscope;
 };
 
-/// Pair i of some, until the next is asked for.
+/// Returns pair i; it stays valid until the next call.
 using PairAt = std::function<const Preset&(std::size_t i)>;
 
-/// Finds one quantity of pairs. Where all can be integrated side by side, in lanes: the mean, distances and energies of
-/// chains of two or three links in double by Euler or RK4; flips of two links by Taylor series whatever the integrator.
-/// The rest one by one.
-///
-/// The numbers of a pair: the quantity; of an exponent its uncertainty too; of a stroboscope angle and rate, row by
-/// row. NaN where the motion failed, or the two never diverge; infinite where there is no flip.
+/// Computes one quantity of pairs. If possible, pairs are integrated in SIMD lanes: the mean, distances and energies of
+/// chains of two or three links in double by Euler or RK4; flips of two links by Taylor series, whatever the
+/// integrator. Other pairs are integrated one by one. The numbers of a pair: the quantity; for an exponent also its
+/// uncertainty; for a stroboscope angle and rate, row by row. NaN if the motion failed or the pair never diverges;
+/// infinite if there is no flip.
 class Measurement {
 public:
-    /// Of pairs like `pair`; `alike` = they have one method and as many links. Throws Error (exit 2), of the table's
-    /// `key`, where such pairs have no such quantity.
+    /// For pairs like `pair`; `alike` = they have one method and number of links. Throws Error (exit 2) at the table's
+    /// `key` if the quantity is not defined for them.
     Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair, bool alike,
                 const QuantityOptions& options);
 
-    /// How flips are found in lanes; nothing where they are not.
+    /// How flips are found in lanes, if they are.
     std::optional<FlipSpec> flips_in_lanes() const { return flips_in_lanes_ ? std::optional(flip_) : std::nullopt; }
 
     const QuantityWords& words() const { return words_; }
     Quantity quantity() const { return quantity_; }
     std::size_t numbers() const { return words_.columns.size() * words_.rows + (words_.last_column.empty() ? 0 : 1); }
-    /// How many pairs are best found at once, of which each next has one of its two in common with the last where
-    /// `shared`.
+    /// The best number of pairs per call. `shared`: consecutive pairs have one pendulum in common.
     std::size_t together(bool shared) const;
-    /// numbers() more for each pair. Throws Error (exit 130) soon after `stop` is set.
+    /// Appends numbers() results for each pair. Throws Error (exit 130) soon after `stop` is set.
     void append(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
-    /// Whether they can be those of one pair.
+    /// Whether the numbers are valid for one pair.
     bool fits(std::span<const double> numbers) const;
 
 private:

@@ -55,8 +55,8 @@ Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
 
 namespace {
 
-/// Throws Error (exit 2) where the trials of `header` are so many cells of maps that memory, or the disk of `folder`,
-/// does not hold them. Nothing of other figures.
+/// Throws Error (exit 2) if the map cells of the trials in `header` exceed the memory, or the disk space of `folder`.
+/// Other figures need no check.
 void require_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
     const auto map = figure.experiment->map();
     if (!map) return;
@@ -67,7 +67,7 @@ void require_room(const FigurePreset& figure, const PartHeader& header, bool til
         return bad_input("{}: {} × {} cells take {} of {}, and there are {}; take fewer", figure.name,
                          grouped(map->columns), grouped(map->rows), bytes_text(needed), what, bytes_text(there));
     };
-    // the numbers of all trials, and where a picture is drawn twice a float; of tiles their pixels
+    // the numbers of all trials, and two floats for each drawn cell; for tiles also their pixels
     const double memory = cells * (8 * numbers + 8 + (tiles ? 6 : 0)),
                  owned = static_cast<double>(this_machine().memory);
     if (memory > 0.8 * owned) throw refuse("memory", memory, owned);
@@ -77,19 +77,20 @@ void require_room(const FigurePreset& figure, const PartHeader& header, bool til
     if (!unknown && table > free) throw refuse("disk", table, free);
 }
 
-/// Of the run, for the manifest.
+/// Times of the run for the manifest.
 struct FigureRecord {
     int jobs = 1;
-    double compute_wall_s = 0, compute_cpu_s = 0;  // other figures may have been computed meanwhile
-    double draw_cpu_s = 0;                         // picture and table
+    double compute_wall_s = 0, compute_cpu_s = 0;  // may include time in which other figures were computed
+    double draw_cpu_s = 0;                         // for picture and table
 };
 
-/// `tiles` = of a pyramid, else null.
+/// `tiles` = the description of a pyramid, otherwise null.
 void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
                     const FigureRecord& record, const Json& tiles) {
     Json findings = Json::object();
     for (const auto& finding : figure.experiment->findings(trials))
-        std::visit([&](const auto& value) { findings[finding.key] = value; }, finding.value);  // not a number: null
+        std::visit([&](const auto& value) { findings[finding.key] = value; },
+                   finding.value);  // not a finite number: null
 
     Json manifest = {
         {"doppel", program_json()},
@@ -113,7 +114,7 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
     doppel::write_manifest(parts, figure.name + (tiles.is_null() ? ".json" : ".tiles.json"), std::move(manifest));
 }
 
-/// Draws and writes figures whose numbers are known.
+/// Draws and writes figures whose trials are complete.
 class FigureWriter {
 public:
     FigureWriter(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
@@ -174,16 +175,16 @@ PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) 
     return options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
 }
 
-/// That of figure k alone.
+/// The report for figure k.
 ComputationReport report_of(const FigureReport& report, std::size_t k) {
     return {[&report, k](const FigureProgress& p) { report.progress(k, p); },
             [&report, k](const std::string& s) { report.note(k, s); }};
 }
 
-/// The computation of every figure, and the threads at work on them.
+/// The computations of all figures, and the threads that do them.
 class Scheduler {
 public:
-    /// `files` of each figure: where the record of its trials goes.
+    /// `files` of each figure: the place of the record of its trials.
     Scheduler(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
               const std::vector<std::unique_ptr<Transaction>>& files, const std::atomic<bool>& stop,
               const FigureReport& report)
@@ -209,8 +210,8 @@ public:
         finished_.abandon();
     }
 
-    /// The next figure whose numbers are complete; nothing after the last.
-    /// Rethrows what stopped the threads.
+    /// Waits for the next figure whose trials are complete; returns nothing after the last. Rethrows the error that
+    /// stopped the threads.
     std::optional<std::size_t> next() {
         auto figure = finished_.pop();
         if (!figure && fault_) std::rethrow_exception(fault_);
@@ -220,7 +221,7 @@ public:
     Computation& computation(std::size_t figure) { return *computations_[figure]; }
 
 private:
-    using Group = std::pair<std::size_t, std::size_t>;  // figure, group of it
+    using Group = std::pair<std::size_t, std::size_t>;  // number of the figure, and of its group
 
     void run(int jobs) {
         try {
@@ -244,7 +245,7 @@ private:
     Queue<std::size_t> finished_{100'000};
     std::exception_ptr fault_;
     std::atomic<bool> closing_ = false;
-    std::jthread thread_;  // last: joined before the rest goes
+    std::jthread thread_;  // declared last: joined before the other members are destroyed
 };
 
 }  // namespace
@@ -264,7 +265,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         }
         return;
     }
-    std::vector<std::unique_ptr<Transaction>> files;  // now, so that faults are reported early
+    std::vector<std::unique_ptr<Transaction>> files;  // opened first, so that errors are reported early
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) {
         files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, "figure", options.replacing));
@@ -286,7 +287,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
             else
                 result = writer.write(figures[*k], computation.take_all(), record, *files[*k]);
         } catch (const Error& fault) {
-            // the same command would find no more to draw
+            // running the same command again could not draw more
             if (fault.code() == ExitCode::method_failed) {
                 fs::remove(computation.record());
                 throw;

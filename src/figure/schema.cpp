@@ -5,7 +5,7 @@
 namespace doppel {
 namespace {
 
-/// "a whole number of samples. Unit: s. Range: > 0. Default: 30."
+/// For example "a whole number of samples. Unit: s. Range: > 0. Default: 30."
 std::string description_of(const ListedField& field) {
     auto text = fmt::format("{}.", field.help);
     if (!field.unit.empty()) text += fmt::format(" Unit: {}.", field.unit);
@@ -40,13 +40,13 @@ Json needed_keys(const FieldTable& table) {
     return keys;
 }
 
-/// "rod" of "[[system.constraint]] kind = "rod"".
+/// "rod" from "[[system.constraint]] kind = "rod"".
 std::string part_kind(const FieldTable& table) {
     const auto quote = table.name.find('"');
     return table.name.substr(quote + 1, table.name.rfind('"') - quote - 1);
 }
 
-/// An object with these keys, and nothing said of their values.
+/// An object with these keys of any type.
 Json with_keys(const FieldTable& table) {
     Json keys = Json::object();
     for (const auto& field : table.fields) keys[std::string(field.key)] = Json::object();
@@ -54,8 +54,8 @@ Json with_keys(const FieldTable& table) {
     return {{"properties", std::move(keys)}, {"additionalProperties", false}};
 }
 
-/// An entry of [[system.constraint]] or [[system.force]]: what its keys take, then which keys each kind has. An entry
-/// with the name of an earlier one may say less: it changes it.
+/// An entry of [[system.constraint]] or [[system.force]]: the types of its keys, then the keys of each kind. An entry
+/// with the name of an earlier one changes that one, and may have fewer keys.
 Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, bool may_change) {
     Json properties = Json::object(), names = Json::array(), kinds = Json::array();
     for (const auto& table : film) {
@@ -82,7 +82,7 @@ Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, boo
             {"anyOf", std::move(kinds)}};
 }
 
-/// [system], or [a] and [b], which change what stands there.
+/// [system], or [a] and [b], which change [system].
 Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
     auto table = film[2];
     if (may_change) table.append(side_text_table());
@@ -97,7 +97,7 @@ Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
     return schema;
 }
 
-/// [[curve]]: its keys, and sides on top of those of the preset.
+/// [[curve]]: its keys, and sides on top of the preset's.
 Json entries_schema(const FieldTable& table) {
     auto entry = table_schema(table);
     entry["required"] = needed_keys(table);
@@ -109,8 +109,8 @@ bool is_of_entries(const FieldTable& table) {
     return table.name.starts_with("[[");
 }
 
-/// Which tables, and which keys of those that differ from kind to kind, a preset of this kind may have. What they hold
-/// is not said again.
+/// The tables that a preset of this kind may have, and the keys of tables that differ between kinds. The types of keys
+/// are described elsewhere.
 Json kind_schema(std::string_view kind) {
     Json tables = Json::object();
     for (const auto& table : tables_of(kind)) {
@@ -150,7 +150,7 @@ std::string preset_schema() {
                 properties.update(schema["properties"]);
             else if (auto& known = properties[std::string(table.key())]; known.is_null())
                 known = schema;
-            else  // what another kind knows of the same table: of [chart] and [system] some know more
+            else  // the keys of another kind for the same table: those of [chart] and [system] differ
                 for (const auto& [key, value] : schema["properties"].items())
                     if (!known["properties"].contains(key)) known["properties"][key] = value;
         }

@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// What an orbit's numbers begin with: its largest exponent, 1/s, and how many crossings follow.
+/// The first numbers of an orbit: its largest exponent, 1/s, and the number of crossings that follow.
 struct OrbitRow {
     double exponent, uncertainty, crossings;
 
@@ -29,8 +29,8 @@ std::vector<CrossingRow> crossings_of(const TrialNumbers& orbit) {
     return rows_of<CrossingRow>(std::span(orbit).subspan(numbers_in<OrbitRow>));
 }
 
-/// Poincaré sections of the double pendulum: where orbits of one energy pierce θ1 = 0, a panel an energy. Regular orbits
-/// are those whose largest exponent cannot be told from 0.
+/// Poincaré sections of a double pendulum at θ1 = 0, one panel for each energy. Orbits whose largest exponent cannot be
+/// distinguished from 0 are regular.
 class Section final : public Experiment {
 public:
     static constexpr std::string_view table_key = "section";
@@ -131,7 +131,7 @@ private:
         return numbers;
     }
 
-    /// The orbits of one energy.
+    /// The panel of one energy.
     Plot plot_of(std::size_t panel, std::span<const TrialNumbers> orbits_of_panel) const {
         Plot plot{.title = fmt::format("E = {:.4g} J", energies_[panel])};
         plot.note = fmt::format("{} of {} regular", regular_ones(orbits_of_panel), orbits());
@@ -159,9 +159,9 @@ private:
     SideSpec release_;
     SectionSpec spec_;
     double exponent_duration_s_ = 10000;
-    std::vector<double> energies_{9.8, 49, 98};  // above hanging at rest, J
+    std::vector<double> energies_{9.8, 49, 98};  // above the hanging equilibrium, J
     int orbits_ = 24;
-    std::vector<std::vector<Pendulum<double>>> releases_;  // by energy
+    std::vector<std::vector<Pendulum<double>>> releases_;  // for each energy
 };
 
 }  // namespace

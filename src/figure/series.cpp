@@ -13,7 +13,7 @@
 namespace doppel {
 namespace {
 
-/// One pair, and what of it is shown.
+/// One pair and its shown column.
 struct PairCurve {
     std::string column, label;
     std::optional<std::string> film_column;
@@ -32,7 +32,7 @@ bool is_of_both(std::string_view film_column) {
     return film_column == "distance" || film_column == "log_ratio";
 }
 
-/// A number of the table of a film (film/pair_table.hpp), by its column; NaN where it is empty.
+/// The value of a film's table column (film/pair_table.hpp); NaN if it is empty.
 double film_value(const PairState& state, double start_distance, const std::string& column) {
     if (column == "distance") return state.distance;
     if (column == "log_ratio") return log_ratio(state.distance, start_distance).value_or(NAN);
@@ -55,7 +55,7 @@ double film_value(const PairState& state, double start_distance, const std::stri
     return seen.bobs[std::stoul(std::string(name.substr(digits))) - 1].*member->second;
 }
 
-/// "θ₁, rad", "energy, J": what columns of either side have in common.
+/// "θ₁, rad", "energy, J": the label of a column, without the side.
 std::string column_words(const std::string& column) {
     if (column == "distance") return "distance in state space, d";
     if (column == "log_ratio") return "ln(d/d₀)";
@@ -75,8 +75,8 @@ std::string column_words(const std::string& column) {
     return unit.empty() ? name : fmt::format("{}, {}", name, unit);
 }
 
-/// A quantity of one or more pairs over time. Every pair may be run once more at a finer tolerance, to see how long
-/// both agree.
+/// A quantity of one or more pairs over time. Every pair may be run again at a finer tolerance, to find how long both
+/// agree.
 class PairSeries final : public Experiment {
 public:
     PairSeries(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
@@ -88,7 +88,7 @@ public:
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
             if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
-            if (!entry.has("label")) entry.require_drawable("column", curve.column);  // it serves as label
+            if (!entry.has("label")) entry.require_drawable("column", curve.column);  // the column is used as label
             if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
                 throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
             if (!curve.film_column) curve.film_column = shown;
@@ -98,7 +98,7 @@ public:
         bool differ = false;
         for (auto& curve : curves_) {
             curve.pair.energy_columns = true;
-            const auto scene = make_scene(curve.pair);  // reports faults now
+            const auto scene = make_scene(curve.pair);  // reports errors now
             samples_ = scene.samples;
             const auto known = columns_of(scene);
             if (std::ranges::count(known, *curve.film_column) == 0)
@@ -207,7 +207,7 @@ private:
         return values;
     }
 
-    /// What the curves show.
+    /// The description of the curves.
     std::string shown_words() const {
         std::vector<std::string> all;
         bool of_a = true, of_b = true;
@@ -226,14 +226,14 @@ private:
                static_cast<double>(rate.numerator);
     }
 
-    /// The curves, then the same with the tolerance to check them by.
+    /// First the curves, then the same pairs at the finer tolerance.
     Preset pair_of(std::size_t trial) const {
         auto pair = curves_[trial % curves_.size()].pair;
         if (trial >= curves_.size()) pair.a.tolerance = pair.b.tolerance = check_tolerance_;
         return pair;
     }
 
-    /// The time until which both tolerances give the same curve within 1 %, s.
+    /// The time up to which both tolerances agree within 1 %, s.
     double agree_until(std::span<const TrialNumbers> numbers, std::size_t curve) const {
         constexpr double allowed = 0.01;
         const auto &one = numbers[curve], &other = numbers[curve + curves_.size()];

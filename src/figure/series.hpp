@@ -9,7 +9,8 @@
 
 namespace doppel {
 
-/// What a series shows over time: the distance of pairs; all exponents of one motion; errors of one motion by each method.
+/// The quantities of a series: the distance of pairs, as such or as ln(d/d0); all exponents of one motion; the errors
+/// of one motion by each method.
 enum class SeriesQuantity { distance, log_ratio, exponents, errors };
 template <>
 inline constexpr auto names_of<SeriesQuantity> = std::to_array<std::string_view>({"distance", "log_ratio", "exponents",
@@ -81,7 +82,7 @@ struct SeriesKeys {
     }
 };
 
-// Of one motion. `resolved` = [series] with all its keys.
+// For one motion. `resolved` = [series] with all its keys.
 std::shared_ptr<const Experiment> make_spectrum(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys,
                                                 const std::string& resolved);
 std::shared_ptr<const Experiment> make_drift(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys,

@@ -8,7 +8,7 @@
 namespace doppel {
 namespace {
 
-/// All Lyapunov exponents of one motion, as their estimates settle.
+/// Convergence of the estimates of all Lyapunov exponents of one motion.
 class Spectrum final : public Experiment {
 public:
     Spectrum(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
@@ -102,7 +102,7 @@ private:
         }
         return numbers;
     }
-    /// As many numbers to a sample: its time, then the exponents.
+    /// The numbers of each sample: its time, then the exponents.
     std::vector<SpectrumSample> samples_of(std::span<const TrialNumbers> numbers) const {
         std::vector<SpectrumSample> samples;
         for (auto at = numbers[0].begin(); at != numbers[0].end();) {

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// How many rates there are that are more than 1e-4 rad/s from the next.
+/// The number of distinct rates: those more than 1e-4 rad/s from the next.
 std::size_t distinct_rates(const TrialNumbers& motion) {
     constexpr double apart = 1e-4;
     std::vector<double> rates;
@@ -21,7 +21,7 @@ std::size_t distinct_rates(const TrialNumbers& motion) {
     return count;
 }
 
-/// The frequency of what drives a side, Hz; nothing where nothing does, or several differ.
+/// The drive frequency of a side, Hz; nothing without a drive, or with several frequencies.
 std::optional<Rational> drive_of(const SideSpec& side) {
     std::vector<Quad> all;
     if (side.physical.pivot.amplitude_m != 0) all.push_back(side.physical.pivot.frequency_hz);
@@ -46,7 +46,7 @@ void require_drive(const TomlReader& table, std::string_view key, const Strobosc
 TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const std::atomic<bool>& stop) {
     auto motion_spec = scene.a.motion;
     motion_spec.sample_interval = *quotient({1, 1}, *drive_of(scene.preset.a));
-    if (!scene.a.method.adaptive)  // steps that fall on the periods
+    if (!scene.a.method.adaptive)  // steps that fit the drive period
         motion_spec.steps_per_sample =
             std::max(1L, std::lround(motion_spec.sample_interval.value() / scene.a.step.value()));
     TrialNumbers numbers;

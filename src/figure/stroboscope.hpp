@@ -9,7 +9,7 @@
 
 namespace doppel {
 
-/// Of a driven pendulum, at each period of its drive.
+/// Samples a driven pendulum at each drive period.
 struct StroboscopeSpec {
     int link = 1;  // from 1
     int transient_periods = 200, periods = 100;
@@ -17,15 +17,15 @@ struct StroboscopeSpec {
     std::size_t numbers() const { return 2 * static_cast<std::size_t>(periods); }
 };
 
-/// Throws Error (exit 2), of the table's `key` or `link`, where one frequency of at most 18 digits drives not the side, or
-/// it has no such link.
+/// Throws Error (exit 2) at the table's `key` or `link` if the side has not exactly one drive frequency, of at most 18
+/// digits, or has no such link.
 void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side);
 
-/// Angle, rad from −π to π, and rate, rad/s, of the link of side a at the end of each period but the transient ones; NaN
-/// from where the motion failed. Throws Error (exit 130) soon after `stop` is set.
+/// Angle, rad in −π…π, and rate, rad/s, of the link of side a at the end of each period except the transient ones. NaN
+/// from the failure of the motion on. Throws Error (exit 130) soon after `stop` is set.
 TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const std::atomic<bool>& stop);
 
-/// How many of the motions repeat after one, two or four periods, or have more than 16 rates.
+/// How many motions repeat after one, two or four periods, or have more than 16 distinct rates.
 std::vector<Finding> period_findings(std::span<const TrialNumbers> motions);
 
 }  // namespace doppel

@@ -10,9 +10,9 @@
 namespace doppel {
 namespace {
 
-constexpr std::size_t most_named = 4;  // links of which each is named
+constexpr std::size_t most_named = 4;  // shorter chains have each link named
 
-/// "1", or "1, 2, 0.5" where they differ; of many the least and the greatest.
+/// "1", or "1, 2, 0.5" if they differ; for long lists the minimum and maximum.
 std::string numbers_words(const std::vector<double>& numbers) {
     const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
     if (*least == *most) return fmt::format("{}", *least);
@@ -26,7 +26,7 @@ std::vector<double> doubles(const std::vector<Quad>& numbers) {
     return all;
 }
 
-/// Of many equal ones the first; of many others none.
+/// The numbers to name: the first of many equal ones, none of many different ones.
 std::vector<Quad> named(const std::vector<Quad>& numbers) {
     if (numbers.size() <= most_named) return numbers;
     const bool are_one = std::count(numbers.begin(), numbers.end(), numbers.front()) == std::ssize(numbers);
@@ -38,7 +38,7 @@ std::string number_words(std::size_t number) {
     return number < words.size() ? words[number] : grouped(static_cast<long>(number));
 }
 
-/// To three digits.
+/// Rounded to three digits.
 std::string short_text(const Quad& number) {
     return fmt::format("{:.3g}", static_cast<double>(number));
 }
@@ -65,7 +65,7 @@ std::string model_words(const Scene& scene, const Varied& varied) {
     return words;
 }
 
-/// The angles that both sides are released at: "90°/90°", or those that are named, "θ₂ = θ₃ = 0".
+/// The common release angles of both sides: "90°/90°", or the constant ones, "θ₂ = θ₃ = 0".
 std::string release_words(const Scene& scene, const Varied& varied) {
     constexpr std::size_t most = 3;
     const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
@@ -88,7 +88,8 @@ std::string release_words(const Scene& scene, const Varied& varied) {
     return named;
 }
 
-/// What a link has besides its mass, as numbers where they are few: "torque of 0.5 Hz, joint friction 0.459 N m s".
+/// The properties of links besides mass and length, with their values if these are few: "torque of 0.5 Hz, joint
+/// friction 0.459 N m s".
 std::string drive_words(const SideSpec& side, const Varied& varied) {
     const auto& physical = side.physical;
     if (physical.is_none()) return "";
@@ -111,7 +112,7 @@ std::string rate_words(const SideSpec& a, const SideSpec& b) {
     return fmt::format("ω = {} °/s", slashed(rates));
 }
 
-/// What both sides have in common of how they are integrated.
+/// The common integrator and settings of both sides.
 std::string method_words(const Scene& scene, const Varied& varied) {
     std::vector<std::string> words;
     const bool has_one_method = !is_varied(varied, ".integrator"), has_one_step = !varied.step && has_one_method;

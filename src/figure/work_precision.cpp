@@ -15,16 +15,16 @@
 namespace doppel {
 namespace {
 
-/// Accuracies, rad, for which the cheapest method is named.
+/// Errors, rad, for which the cheapest method is named.
 constexpr std::array accuracies{1e-3, 1e-6, 1e-9, 1e-12};
 
-/// The numbers of a problem's own trial.
+/// The numbers of a problem's reference trial.
 struct ProblemRow {
     double sensitivity, disagreement;
 };
 
-/// Error against cost of every method on a few problems. The trials: the reference solution of each problem, then all
-/// step-size studies, and all of them again for each repeat, so that other load on the machine affects all alike.
+/// Error against cost of every method on a few problems. Trials: the reference solution of each problem, then all
+/// step-size studies, repeated in turn, so that other load on the machine affects all equally.
 class WorkPrecision final : public Experiment {
 public:
     static constexpr std::string_view table_key = "work_precision";
@@ -175,7 +175,7 @@ public:
     }
 
 private:
-    using Studies = std::vector<std::vector<StepStudy>>;  // of each problem
+    using Studies = std::vector<std::vector<StepStudy>>;  // for each problem
 
     std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_libraries() const {
@@ -212,7 +212,7 @@ private:
         return numbers;
     }
 
-    /// Computed when it is first asked for, by any thread.
+    /// Computed on first use, by any thread.
     const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const {
         auto& shared = references_[problem];
         const auto& motion = problems_.all[problem].motion;
@@ -220,7 +220,7 @@ private:
         return shared.reference;
     }
 
-    /// Of each problem, those of other libraries last.
+    /// For each problem; those of other libraries come last.
     Studies merged_studies(std::span<const TrialNumbers> numbers) const {
         Studies all(problems_.all.size());
         for (std::size_t i = 0; i < ladders_.size(); ++i) {
@@ -248,7 +248,7 @@ private:
         if (best.study) all.push_back({key + "peer_ratio", external.cost / best.cost});
     }
 
-    /// The five best; of other libraries with Doppel's best before them.
+    /// The five best methods; if other libraries are shown, preceded by Doppel's best one.
     std::vector<std::string> names_in_colour(const Studies& studies) const {
         auto names = ranked(studies, cost_, accuracies, false);
         if (!has_libraries()) {
@@ -296,18 +296,18 @@ private:
     Cost cost_ = Cost::time;
     NamedCurves names_ = NamedCurves::best;
     std::optional<std::string> scene_;
-    Preset film_;  // of the scene
+    Preset film_;  // of the key `scene`
     std::vector<std::string> problem_names_, model_names_, methods_;
     WorkProblems problems_;
     struct SharedReference {
         std::once_flag once;
         Reference reference;
     };
-    std::unique_ptr<SharedReference[]> references_;  // of each problem
+    std::unique_ptr<SharedReference[]> references_;  // for each problem
     int repeats_ = 5, most_evaluations_ = 300'000;
     double least_error_ = 1e-16;
     std::vector<Solver> solvers_;
-    std::vector<std::pair<std::size_t, Solver>> ladders_;  // the problem of each, and its solver
+    std::vector<std::pair<std::size_t, Solver>> ladders_;  // the problem and the solver of each study
 };
 
 }  // namespace

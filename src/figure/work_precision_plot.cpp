@@ -14,7 +14,7 @@ using namespace std::string_view_literals;
 
 constexpr double rounding = 0x1p-53;
 
-/// Methods of a family share a hue of the palette; of two, the second is dashed.
+/// Methods of a family share a hue; the second of two is dashed.
 struct Look {
     int hue = 0;
     bool dashed = false;
@@ -34,18 +34,18 @@ Look look_of(std::string_view method) {
     return {};
 }
 
-/// The errors shown.
+/// The shown range of errors.
 ErrorRange range_of(const WorkDiagram& diagram) {
     constexpr double at_floor = 10;
     return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, most_error_shown};
 }
 
-/// An error may be 0 by luck, which a logarithmic axis has no place for.
+/// An error may be exactly 0, which a logarithmic axis cannot show.
 double shown(double error) {
     return std::max(error, rounding / 4);
 }
 
-/// In colour with its name, or faint.
+/// In colour with its name, or pale.
 Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
     const auto& [model, method, external] = study.solver;
     const auto rank = std::find(diagram.named.begin(), diagram.named.end(), study.solver.name());
@@ -71,7 +71,7 @@ Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
     return curve;
 }
 
-/// The spread of times of a curve of the hierarchy, as pale bars.
+/// The range of measured times of a curve, as pale bars.
 Curve spread_bars(const StepStudy& study, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
     constexpr double shows = 0.05, most = 0.9;
@@ -94,7 +94,7 @@ Curve front_curve(const WorkDiagram& diagram) {
     return curve;
 }
 
-/// The point of the published study.
+/// The result of the published study.
 void add_study(const WorkDiagram& diagram, Plot& plot) {
     for (const auto& study : diagram.studies) {
         if (!study.solver.is_study()) continue;
@@ -108,7 +108,7 @@ void add_study(const WorkDiagram& diagram, Plot& plot) {
     }
 }
 
-/// The limits of the axes: from the least useful accuracy down to the floors, where errors come near them.
+/// The limits of the axes: from the largest useful error down to the error floors, if errors come near them.
 void fit(const WorkDiagram& diagram, Plot& plot) {
     constexpr double of_use = 0.03, near = 100;
     double least = most_error_shown, cheapest = std::numeric_limits<double>::infinity();
@@ -119,7 +119,7 @@ void fit(const WorkDiagram& diagram, Plot& plot) {
         }
     if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
     plot.y.low = least / 4;
-    plot.y.high = 20 * most_error_shown;  // room for the study's label
+    plot.y.high = 20 * most_error_shown;  // leaves space for the study's label
     if (!(least < near * diagram.floor)) return;
     const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// A standard problem: unit masses and lengths, from rest.
+/// A standard problem: unit masses and lengths, released at rest.
 struct StandardProblem {
     std::vector<int> angle_deg;
     int seconds;
@@ -27,7 +27,7 @@ std::string title_words(const std::string& name, const SideSpec& side, const Rat
                        seconds);
 }
 
-/// The release of a chain or mechanism as a problem. Throws Error (exit 2) where the system is faulty.
+/// A chain or mechanism as a problem. Throws Error (exit 2) if the system is invalid.
 WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational& duration) {
     if (spec.physical.has_coulomb())
         throw bad_input("{}: methods are compared on smooth motions; joints with joint_coulomb_N_m stick", name);
@@ -62,7 +62,7 @@ WorkProblem standard_problem(const std::string& name, const StandardProblem& sta
     return make_problem(name, side, {standard.seconds, 1});
 }
 
-/// What moves, in the words of a subtitle.
+/// The system in the words of a subtitle.
 std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
     constexpr std::string_view computed = "double precision, one core";
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
@@ -75,7 +75,7 @@ std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
                        links_words(chain.length, chain.mass, chain.gravity), besides, computed);
 }
 
-/// What the standard problems are of: "double and triple pendulums".
+/// The systems of the standard problems: "double and triple pendulums".
 std::string pendulums_words(const std::vector<WorkProblem>& problems) {
     const auto of = [&](std::size_t links) {
         return std::count_if(problems.begin(), problems.end(),
@@ -101,14 +101,15 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
         const auto number = std::find(names_of_all.begin(), names_of_all.end(), name) - names_of_all.begin();
         problems.all.push_back(standard_problem(name, all_standard.at(static_cast<std::size_t>(number))));
     }
-    const auto chain = problems.all.front().motion.chain->cast<double>();  // one for all but its links
+    const auto chain =
+        problems.all.front().motion.chain->cast<double>();  // the same for all problems except the number of links
     problems.subtitle =
         fmt::format("{} released at rest, {}; double precision, one core", pendulums_words(problems.all),
                     links_words(chain.length, chain.mass, chain.gravity));
     return problems;
 }
 
-/// What the film says stands beside its name, so that two films of one name are told apart.
+/// The film's settings follow its name, so that two films of the same name can be distinguished.
 WorkProblems problem_of(Preset film) {
     WorkProblems problems;
     problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
