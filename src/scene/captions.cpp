@@ -14,11 +14,11 @@
 namespace doppel {
 namespace {
 
-/// One thing that can be said of a side; the same place in both sides' lists is about the same thing.
+/// A statement about a side. The statements at the same index for both sides are about the same property.
 struct Statement {
     std::string text;
     bool is_start_angle = false;
-    std::string plain = text;  // without symbols
+    std::string plain = text;  // in plain wording, without symbols
 };
 
 std::string step_words(const Rational& step) {
@@ -33,8 +33,8 @@ std::string model_words(const Side& side) {
     return words;
 }
 
-/// A quantity of all links, in both sides' lists of the same length: link by link in short chains; in long ones what
-/// the links have in common, or the links in which the sides differ.
+/// States a quantity of all links, given for both sides with the same length. Short chains: link by link. Long chains:
+/// the common value of the links, or the links in which the sides differ.
 void say_links(std::string_view symbol, const std::vector<Quad>& values, const std::vector<Quad>& others,
                std::string_view unit, bool angle, std::vector<Statement>& all) {
     constexpr std::size_t most_listed = 3;
@@ -58,7 +58,7 @@ void say_links(std::string_view symbol, const std::vector<Quad>& values, const s
                            fmt::format("{}{}", text_of(values[i]), unit)});
 }
 
-/// 0.001 → "1 mm"
+/// For example 0.001 → "1 mm".
 std::string length_words(double metres) {
     if (metres >= 0.1) return fmt::format("{:.6g} m", metres);
     if (metres >= 1e-4) return fmt::format("{:.6g} mm", 1000 * metres);
@@ -74,7 +74,7 @@ std::string offset_words(const QuadPair& from, const QuadPair& to) {
     return fmt::format("{}", fmt::join(parts, " and "));
 }
 
-/// "bob pushed at 1 mm/s", where the other side's does not move.
+/// "bob pushed at 1 mm/s", if the other side's velocity is zero.
 std::string speed_words(const QuadPair& velocity, const QuadPair& other) {
     const auto speed = [](const QuadPair& v) {
         return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]));
@@ -84,10 +84,10 @@ std::string speed_words(const QuadPair& velocity, const QuadPair& other) {
     return fmt::format("with ({}, {}) m/s", text_of(velocity[0]), text_of(velocity[1]));
 }
 
-/// What sets the particles of one side apart from those of side a, or of the other where this one is side a. Particles
-/// that are moved alike are named together.
+/// How the particles of a side differ from those of side a, or, for side a, from the other side's. Particles with the
+/// same displacement are named together.
 void say_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<Statement>& all) {
-    std::vector<std::pair<std::string, std::string>> moved;  // how, who
+    std::vector<std::pair<std::string, std::string>> moved;  // displacement; names of the particles
     for (std::size_t i = 0; i < std::min(a.particles.size(), b.particles.size()); ++i) {
         const auto &one = a.particles[i], &other = b.particles[i];
         const auto &self = of_b ? other : one, &twin = of_b ? one : other;
@@ -106,7 +106,7 @@ void say_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<
     for (const auto& [how, who] : moved) all.push_back({who + " " + (of_b ? how : "in place")});
 }
 
-/// What drives it, where the other side is driven in another way.
+/// The drive, if the other side's is different.
 void say_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<Statement>& all) {
     if (one.pivot != other.pivot)
         all.push_back({one.pivot.amplitude_m == 0 ? "pivot at rest"
@@ -119,12 +119,12 @@ void say_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<
     all.push_back({motors.empty() ? "no motor" : fmt::format("motor {}", fmt::join(motors, " and "))});
 }
 
-/// How finely a side is integrated, as far as its preset says it.
+/// The step size, tolerance or accuracy, if the preset sets it.
 std::string control_words(const Side& side) {
     return side.choice ? fmt::format("accuracy {:g} rad", side.choice->accuracy) : step_control_text(side);
 }
 
-/// Of side b, or of side a.
+/// For side b, or for side a.
 std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDifference>& differences, bool of_b) {
     const auto &spec = of_b ? scene.preset.b : scene.preset.a, &other = of_b ? scene.preset.a : scene.preset.b;
     const auto& side = of_b ? scene.b : scene.a;
@@ -152,7 +152,7 @@ std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDiffe
         all.push_back({"no droplet"});
     }
     all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
-    // what an accuracy alone has chosen sets no sides apart
+    // settings that follow from an accuracy alone are not stated as a difference
     const bool chosen = scene.a.choice && scene.b.choice;
     const bool any_model = spec.model == ModelChoice::automatic && other.model == ModelChoice::automatic;
     all.push_back({chosen && any_model ? "" : model_words(side)});
@@ -168,13 +168,13 @@ std::string track_words(const Side& side, const TrackSpec& spec) {
     return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), roughly(rate));
 }
 
-/// Of a measured pendulum or its simulation.
+/// For a measured pendulum or its simulation.
 SideCaptions captions_of_track(const Side& side, const TrackSpec& track) {
     if (side.replay) return {"measured", track_words(side, track)};
     return {"computed", fmt::format("{}, {}", side.method.title, control_words(side))};
 }
 
-/// Of several, or of one.
+/// The system, in the plural or singular.
 std::string system_words(const SideSpec& side, std::string_view plural = "s") {
     if (!side.particles.empty()) {
         const auto masses = side.particles.size();
@@ -187,7 +187,7 @@ std::string joined(const std::vector<std::string>& parts) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Of a side that differs in kind: what it is, and its start.
+/// For a side of another type than the other one: the system and its start.
 SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>& all) {
     std::vector<std::string> start;
     for (const auto& statement : all)
@@ -195,7 +195,7 @@ SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>
     return {system_words(spec, ""), joined(start)};
 }
 
-/// Of side b, or of side a: what differs from the other side.
+/// For side b or side a: the difference from the other side.
 SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
                             const std::vector<KeyDifference>& differences, bool of_b, bool has_label, Wording wording) {
     std::vector<std::string> differs, start;
@@ -206,12 +206,12 @@ SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
         else if (own[i].is_start_angle && wording == Wording::exact)
             start.push_back(own[i].text);
     }
-    // what no statement is about
+    // differences that no statement covers
     if (differs.empty())
         for (const auto& difference : differences) differs.push_back(difference.words(of_b));
     const bool says_nothing = differs.empty();
     if (says_nothing) differs.push_back(of_b ? "b, the same" : "a");
-    // a heading holds two statements; more go to the note
+    // a heading contains two statements; the others go to the note
     constexpr std::size_t most = 2, most_noted = 4;
     start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(most, differs.size())), differs.end());
     if (start.size() > most_noted) {
@@ -219,7 +219,7 @@ SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
         start.back() = "…";
     }
     differs.resize(std::min(most, differs.size()));
-    // under a label of its own the note says what differs from the other side, too
+    // with a label set by the preset, the note also states the difference
     if (has_label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
     return {joined(differs), joined(start)};
 }

@@ -13,7 +13,7 @@ constexpr std::string_view working = std::is_same_v<Scalar, Quad> ? "quad" : "do
 template <class Scalar>
 constexpr std::string_view remedy = std::is_same_v<Scalar, Quad> ? "" : ". Set precision = \"quad\"";
 
-/// The pull of every droplet on the first particle, m/s².
+/// Throws if the droplet's attraction of the first particle is lost in the rounding of gravity, m/s².
 void check_droplets(const Scene& scene, const Side& side) {
     if (!side.motion.parts) return;
     const auto parts = side.motion.parts->cast<double>();
@@ -32,13 +32,13 @@ void check_droplets(const Scene& scene, const Side& side) {
     }
 }
 
-/// What a number is multiplied by before it is computed with: angles are in radians there, frequencies in rad/s.
+/// The factor applied before computing: angles become radians, frequencies rad/s.
 Quad factor_of(std::string_view unit) {
     if (unit.starts_with("deg")) return pi_of<Quad>() / 180;
     return unit == "Hz" ? 2 * pi_of<Quad>() : Quad(1);
 }
 
-/// Throws where a number of both sides differs and is the same in `Scalar`.
+/// Throws if a number differs between the sides and is rounded to the same value in `Scalar`.
 template <class Scalar>
 void check_numbers(const Scene& scene, const std::vector<KeyDifference>& differences) {
     for (const auto& [a, b] : differences) {
@@ -56,7 +56,7 @@ void check_numbers(const Scene& scene, const std::vector<KeyDifference>& differe
     }
 }
 
-/// What moves on a side and its start, in the precision that it is computed with.
+/// The system of a side and its initial state, in `Scalar`.
 template <class Scalar>
 struct System {
     std::optional<Pendulum<Scalar>> chain;
@@ -84,8 +84,8 @@ bool are_same(const Scene& scene) {
     return System<Scalar>(scene.a.motion) == System<Scalar>(scene.b.motion);
 }
 
-/// Throws where the sides' keys differ and their systems do not, in `Scalar` alone: what differs in quad neither, as a
-/// length that is also that of the start, is no loss.
+/// Throws if the sides' keys differ and their systems differ in quad, but not in `Scalar`. A key may have no effect
+/// even in quad, such as a length equal to the initial distance.
 template <class Scalar>
 void check_systems(const Scene& scene, const std::vector<KeyDifference>& differences) {
     if (scene.a.motion.model != scene.b.motion.model || !are_same<Scalar>(scene)) return;

@@ -37,7 +37,7 @@ bool Faults::may_follow(const Entry& fault) const {
     });
 }
 
-/// Whether both may be due to one wrong key: the same sentence, or two keys that do not go with a third.
+/// Whether one wrong key may cause both: the same message, or two keys that conflict with the same third key.
 bool Faults::may_be_one(const Entry& fault, const Entry& other) {
     if (fault.message == other.message) return true;
     if (!fault.beside || !other.beside || !meet(fault.group, other.group)) return false;

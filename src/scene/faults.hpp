@@ -14,16 +14,15 @@
 
 namespace doppel {
 
-/// Where a fault stands among others: by line and column of the file, then those of no line, then those of the command
-/// line by their number.
+/// Sort key of an error: line and column in the file, then errors without a line, then command line options by number.
 struct FaultPlace {
     static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max() / 2;
     std::size_t line = no_line, column = 0;
     auto operator<=>(const FaultPlace&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 takes it for 0
 };
 
-/// What is wrong with a key (exit 2). One that is right or wrong by what others say may be wrong because they are: it is a
-/// fault `beside` the one other key, which is in the same table; beside "", any of the group.
+/// An error in a key (exit 2). If the key is only wrong together with another key of the same table, that key is
+/// `beside`; it may be the wrong one. An empty `beside` stands for any key of the group.
 class TomlFault : public Error {
 public:
     TomlFault(const std::string& message, FaultPlace place, std::optional<std::string> beside = {})
@@ -31,7 +30,7 @@ public:
 
     FaultPlace place() const { return place_; }
     const std::optional<std::string>& beside() const { return beside_; }
-    /// The same fault as one of several keys.
+    /// The same error, caused together with other keys.
     TomlFault with(std::string keys) const { return {what(), place_, std::move(keys)}; }
 
 private:
@@ -39,14 +38,15 @@ private:
     std::optional<std::string> beside_;
 };
 
-/// The faults of a preset, to be reported together. Each belongs to a group of tables that is read as one; that of the
-/// keys outside of tables, "", is part of all groups. A fault of several keys counts only where the other keys have no
-/// fault of their own, and of those that do not go with the same key the first that was found: that key may be wrong.
+/// Collects the errors of a preset to report them together. Each belongs to a group of tables that are checked
+/// together. Keys outside of tables, group "", belong to all groups. An error of several keys is dropped if one of the
+/// other keys has an error itself. Of errors with the same other key, only the first is kept, because that key may be
+/// wrong.
 class Faults {
 public:
     explicit Faults(const std::vector<Override>& overrides);
 
-    /// The place of what this option of the command line gave.
+    /// The place of a value that this command line option gave.
     FaultPlace of_option(const std::string& origin) const;
     struct Entry {
         std::string message;
@@ -56,7 +56,8 @@ public:
     };
     void add(Entry fault) { faults_.push_back(std::move(fault)); }
     bool concern(std::string_view group) const;
-    /// Throws an Error (exit 2) of all that count, each once, in the order of their places; nothing where there is none.
+    /// Throws one Error (exit 2) with all remaining errors, without duplicates, sorted by place. Returns if there is
+    /// none.
     void throw_if_any() const;
 
 private:

@@ -30,7 +30,7 @@ void FieldTable::key(const Field& field, const KeyMember& by_default) {
 }
 
 void FieldTable::table(std::string_view key, const std::function<void(KeyVisitor&)>& list) {
-    // of "[system], [a], [b]" the first
+    // "[system], [a], [b]": the first one
     list(tables.emplace_back(fmt::format("[{}.{}]", name.substr(1, name.find(']') - 1), key)));
 }
 
@@ -60,12 +60,12 @@ std::string ListedField::takes() const {
 
 std::string ListedField::example() const {
     if (const auto value = default_value(); !value.empty()) return value;
-    const auto first = by_default.substr(0, by_default.find_first_of("; "));  // of "1e-12; in quad 1e-28"
+    const auto first = by_default.substr(0, by_default.find_first_of("; "));  // from "1e-12; in quad 1e-28"
     const bool is_number = !first.empty() && first.find_first_not_of("0123456789.e-/") == std::string::npos;
     if (is_number) return first.find('/') == std::string::npos ? first : fmt::format("\"{}\"", first);
     if (!choices.empty())
         return fmt::format("{}\"{}\"{}", type.is_list ? "[" : "", choices.front(), type.is_list ? "]" : "");
-    if (unit == "cm") return "8.6";  // a column of a journal
+    if (unit == "cm") return "8.6";  // width of a journal's column
     const auto example = bounds.is_open ? type.positive_example : type.example;
     return example.empty() ? fmt::format("{}", bounds.low) : std::string(example);
 }

@@ -11,71 +11,71 @@ namespace doppel {
 
 struct ListedField;
 
-/// What a key takes, by the type of its member.
+/// The description of a key's type.
 struct ValueType {
     std::string_view words;                       // Markdown
-    Json (*schema)(const ListedField&);           // of its values: JSON schema (Draft 4)
-    std::string_view example = {};                // TOML, of a key without a default; of whole numbers the least
-    std::string_view positive_example = example;  // of numbers > 0
-    bool is_list = false;                         // of text
+    Json (*schema)(const ListedField&);           // of its values, JSON schema (Draft 4)
+    std::string_view example = {};                // TOML, for a key without default; for whole numbers the least one
+    std::string_view positive_example = example;  // for numbers > 0
+    bool is_list = false;                         // a list of texts
 };
 ValueType value_type(const KeyMember& member);
 
-/// Of a key without a default.
+/// Shown as the default of a required key.
 inline constexpr std::string_view must_be_given = "must be given";
 
-/// A key with all that a list of fields says of it: its bounds are the widest where the table's are.
+/// A key with all properties from its list of fields. In "widest" tables its bounds are the widest ones.
 struct ListedField : Field {
     ValueType type;
     std::string by_default;            // Markdown
-    std::vector<std::string> choices;  // of text, or of a list's elements
+    std::vector<std::string> choices;  // of a text, or of a list's elements
 
     bool is_needed() const { return by_default == must_be_given; }
-    /// The range of a number: "> 0", "0 (none) to 100"; empty where there is none.
+    /// The range of a number: "> 0", "0 (none) to 100"; empty if there is none.
     std::string range_text() const;
-    /// What it takes, in words, with its range: Markdown.
+    /// Type and range in words, Markdown.
     std::string takes() const;
-    /// The default as TOML; empty where it is none or only words.
+    /// The default as TOML; empty if there is none, or only a description.
     std::string default_value() const;
-    /// The default, or another value that it takes: TOML.
+    /// The default, or another valid value, as TOML.
     std::string example() const;
 };
 
-/// JSON schema of a list of `least` to `most` items; 0 = of any number.
+/// JSON schema of a list of `least` to `most` items; 0 = any number.
 Json list_schema(Json items, std::size_t least, std::size_t most);
 
-/// Markdown without its marks of code.
+/// Markdown without code marks.
 std::string plain_words(std::string text);
 
-/// A table of presets, "[scene]", and its keys: what a list of fields says, as data. table(field, default) takes a key.
+/// A table of presets, "[scene]", and its keys, as data from a list of fields. table(field, default) adds a key.
 struct FieldTable : KeyVisitor {
-    std::string name, text;  // `text` stands above the keys in docs/presets.md
+    std::string name, text;  // `text` is shown above the keys in docs/presets.md
     std::vector<ListedField> fields;
-    std::vector<FieldTable> tables;  // inside this one
-    bool is_widest = false;          // with all numbers that keys take, whatever others say
+    std::vector<FieldTable> tables;  // inner tables
+    bool is_widest = false;          // with the widest bounds of all keys
 
     explicit FieldTable(std::string table_name = {}, std::string text_above = {})
         : name(std::move(table_name)), text(std::move(text_above)) {}
 
     void key(const Field& field, const KeyMember& by_default) override;
     void table(std::string_view key, const std::function<void(KeyVisitor&)>& list) override;
-    /// Takes the keys and tables of `other`, too.
+    /// Adds the keys and tables of `other`.
     void append(const FieldTable& other);
 
-    /// "system" of "[system]", "colors" of "[video.colors]".
+    /// "system" for "[system]", "colors" for "[video.colors]".
     std::string_view key() const;
-    /// A section of docs/presets.md, with those of the tables inside.
+    /// A section of docs/presets.md, including the inner tables.
     std::string markdown() const;
 };
 
-/// The keys that [a] and [b] of a film have besides those of [system].
+/// The keys that [a] and [b] of a film have in addition to those of [system].
 FieldTable side_text_table();
 
-/// Name of the table of motors.
+/// Name of the table of joint torques.
 inline constexpr std::string_view torque_table = "[[system.torque]]";
 
-/// All tables of a film's preset: the keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of
-/// constraints and of forces; motors; side_text_table(); [video].
+/// All tables of a film's preset: keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of
+/// constraints and forces; torques; side_text_table(); [video].
 std::vector<FieldTable> film_tables();
 
 }  // namespace doppel

@@ -10,9 +10,9 @@
 namespace doppel {
 namespace {
 
-constexpr double off = 0.5;  // rad: a run with this error is useless
+constexpr double off = 0.5;  // rad: a run with this error has diverged
 
-/// How far some runs get: the sample at which each is off, and the greatest and least error of those that are not.
+/// Results of some runs: the samples at which they diverge, and the largest and smallest error of the others.
 struct Ends {
     std::vector<long> lost;
     double least_error = off, greatest_error = 0;
@@ -38,7 +38,7 @@ Ends ends_of_fine_runs(const Side& side, const ReferenceTrajectory& reference, l
     return ends;
 }
 
-/// A chain of point masses with no parts but its own.
+/// A chain of point masses without other parts.
 bool is_plain_chain(const MotionSpec& motion) {
     if (motion.physical) return false;
     if (!motion.chain || !motion.parts) return motion.chain.has_value();
@@ -47,11 +47,12 @@ bool is_plain_chain(const MotionSpec& motion) {
 
 Forecast::Kind kind_of(const Pendulum<double>& pendulum, const Exponent& exponent) {
     if (exponent.is_of_equilibrium()) return exponent.value > 0 ? Forecast::Kind::unstable : Forecast::Kind::regular;
-    // one link keeps its energy, which leaves it no choice, however slowly its exponent vanishes near the upright
+    // a single link is regular, because it keeps its energy, even if its exponent decreases slowly near the upright
+    // position
     return pendulum.links() == 1 || is_regular(exponent) ? Forecast::Kind::regular : Forecast::Kind::chaotic;
 }
 
-/// Beyond the end, errors go on growing by the exponent, whose mean over a time t varies like 1/√t.
+/// After the end, errors grow further by the exponent, whose mean over a time t varies like 1/√t.
 std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, const Forecast& seen) {
     std::optional<Forecast::Limit> limit;
     if (!ends.lost.empty()) {

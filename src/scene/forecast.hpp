@@ -8,37 +8,35 @@
 
 namespace doppel {
 
-/// What can be known of a side's motion before it is run. Errors are those of angles, rad, the largest of all; of what
-/// hangs in no chain, of places in units of its size.
+/// The expected accuracy of a side, without running the scene. Errors are the largest of all angles, rad; for
+/// mechanisms, of positions in units of the system's size.
 struct Forecast {
-    /// For how long runs of this precision can be right, within half a rad, s. About: no bound.
+    /// The predictability limit of this precision: the time at which any run has an error of half a radian, s. An
+    /// estimate, not a bound.
     struct Limit {
-        double from, to;  // of several runs; or what the exponent, and how it varies, makes of their errors at the end
+        double from,
+            to;  // from several runs; or extrapolated from their final errors with the exponent and its variation
     };
 
-    enum class Kind {
-        regular,
-        chaotic,
-        unstable
-    };  // unstable: released at an equilibrium that errors grow from; no chaos
+    enum class Kind { regular, chaotic, unstable };  // unstable: released at an unstable equilibrium; not chaotic
 
     double error;                      // at `error_s`
-    double error_s;                    // the end, or where the run is off by half a rad
-    std::optional<Exponent> exponent;  // of a chain that is not too long
-    Kind kind = Kind::regular;         // where there is an exponent
-    std::optional<Limit> limit;        // may lie beyond the end
+    double error_s;                    // the end, or the time at which the error reaches half a radian
+    std::optional<Exponent> exponent;  // for chains that are not too long
+    Kind kind = Kind::regular;         // if there is an exponent
+    std::optional<Limit> limit;        // may be after the end
 };
 
-/// By the run beside the reference (analysis/reference_trajectory.hpp), and runs by Taylor series as fine as the precision
-/// allows, each of which rounds in its own way.
-/// Errors  exit 130 soon after `stop` is set; exit 3 where the method fails at once.
+/// From a run compared with the reference (analysis/reference_trajectory.hpp), and from runs by Taylor series at the
+/// finest settings of the precision, each with different rounding. Throws Error: exit 130 soon after `stop` is set;
+/// exit 3 if the method fails in the first step.
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop);
 
-/// "error above half a rad from 11 s on".
+/// For example "error above half a rad from 11 s on".
 std::string error_words(const Side& side, double from_s);
 
-/// Such words of a side whose run is off at a sample up to `last`, or whose accuracy does not hold so far; nothing where
-/// neither is. Errors as forecast_of().
+/// Such words if the side's run diverges before sample `last`, or its accuracy is not kept up to there; otherwise
+/// nothing. Throws as forecast_of().
 std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -8,7 +8,7 @@
 namespace doppel {
 namespace {
 
-/// What a decimal rate means to those who make video: 23.976 is 24000/1001, 29.97 is 30000/1001.
+/// The exact rate behind a rounded decimal: 23.976 is 24000/1001, 29.97 is 30000/1001.
 Rational exact_rate(const Rational& fps) {
     for (const long whole : {24, 30, 48, 60, 120})
         for (const long digits : {100, 1000})
@@ -17,7 +17,7 @@ Rational exact_rate(const Rational& fps) {
     return fps;
 }
 
-/// Times must rise, from 0 s on.
+/// Times must increase, from 0 s on.
 void check_changes(const Preset& preset, const TomlReader& video) {
     const auto& changes = preset.video.speed.changes;
     const double end = preset.duration_s.value();
@@ -29,18 +29,18 @@ void check_changes(const Preset& preset, const TomlReader& video) {
                               changes[i].at_s.value(), changes[i - 1].at_s.value());
 }
 
-/// How far a change of speed is at the share u of its time: 3u² − 2u³, integrated from 0.
+/// The progress of a change of speed at the fraction u of its time: the integral of 3u² − 2u³.
 double eased(double u) {
     return u * u * u * (1 - u / 2);
 }
 
-/// How long before its time a change begins, s.
+/// Duration of a change before its nominal time, s.
 double ease_before(const VideoSpec& video, std::size_t change) {
     const auto& changes = video.speed.changes;
     return std::min(video.speed_ease_s, changes[change].at_s.value() - changes[change - 1].at_s.value());
 }
 
-/// The frames of a film that takes so many of the time from one to the next: the last one shows the end.
+/// The number of frames for so many frame intervals; the last frame shows the end.
 long frames_in(double times) {
     constexpr double rounding = 1e-6;
     return std::lround(std::ceil(times - rounding)) + 1;
@@ -98,7 +98,7 @@ FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples) 
     const auto& video = preset.video;
     FrameTimes frames{.last = {samples}};
     if (!video.speed.changes_over_time()) {
-        frames.stride = *quotient(*product(preset.sample_hz, video.speed.constant), fps);  // check_frames() saw to it
+        frames.stride = *quotient(*product(preset.sample_hz, video.speed.constant), fps);  // checked by check_frames()
         frames.count = frames_in(static_cast<double>(samples) / frames.stride.value());
         return frames;
     }
@@ -107,7 +107,7 @@ FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples) 
     double time = 0;
     for (long k = 0; k + 1 < frames.count; ++k) {
         const double wanted = static_cast<double>(k) / fps.value();
-        double high = end;  // halved down to the last digit
+        double high = end;  // bisected to the last digit
         for (double middle = (time + high) / 2; middle > time && middle < high; middle = (time + high) / 2)
             (film_time(video, middle) <= wanted ? time : high) = middle;
         frames.changing.push_back(moment_at(time * preset.sample_hz.value()));
@@ -118,9 +118,9 @@ FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples) 
 void check_frames(Preset& preset, const TomlReader& video) {
     auto& spec = preset.video;
     if (spec.speed.changes_over_time()) check_changes(preset, video);
-    const auto sampled = product(preset.sample_hz, spec.speed.constant);  // samples a second of film
+    const auto sampled = product(preset.sample_hz, spec.speed.constant);  // samples per second of film
     if (spec.fps) spec.fps = exact_rate(*spec.fps);
-    constexpr double usual_gif_fps = 30;  // at most; one of so many samples, as few as that allows
+    constexpr double usual_gif_fps = 30;  // upper limit; the rate is a fraction of `sampled`
     if (!spec.fps && sampled && spec.format == FilmFormat::gif)
         spec.fps = quotient(*sampled, {std::max(1L, std::lround(std::ceil(sampled->value() / usual_gif_fps))), 1});
     if (!spec.fps && spec.speed.changes_over_time()) spec.fps = preset.sample_hz;
@@ -136,7 +136,7 @@ void check_frames(Preset& preset, const TomlReader& video) {
     if (frames > most_frames)
         throw video.fault("speed", "makes a film of {:.3g} frames; at most {} are possible", frames, most_frames);
     const auto stride = sampled ? quotient(*sampled, *fps) : std::nullopt;
-    if (!stride || static_cast<double>(stride->numerator) * (frames + 1) > 2e18)  // of 64 bits
+    if (!stride || static_cast<double>(stride->numerator) * (frames + 1) > 2e18)  // range of 64-bit integers
         throw video.fault("speed", "and fps must have simpler ratios to scene.sample_hz; it is {}",
                           spec.speed.constant.text());
     if (spec.poster_s && spec.poster_s->value() > end)

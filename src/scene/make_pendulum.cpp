@@ -20,7 +20,7 @@ PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
     const Quad degree = pi_of<Quad>() / 180, turn = 2 * pi_of<Quad>();
     auto made = doppel::physical(chain_of(spec));
     for (std::size_t i = 0; i < made.chain.links(); ++i) {
-        // the body and the rod as one, about their common centre
+        // body and rod as one rigid body, about their common centre of mass
         const auto &body = spec.mass_kg[i], &rod = from.rod_mass_kg[i], &length = spec.length_m[i];
         const Quad at = from.center_m.empty() ? length : from.center_m[i], middle = length / 2;
         const Quad center = (body * at + rod * middle) / (body + rod);

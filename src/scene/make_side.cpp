@@ -12,7 +12,7 @@ namespace doppel {
 
 namespace {
 
-/// The smallest model that serves, and why.
+/// The smallest suitable model, and the reason.
 std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEntry& method) {
     if (spec.model != ModelChoice::automatic) return {value_named<Model>(name_of(spec.model)), "the preset selects it"};
     if (!spec.particles.empty())
@@ -30,7 +30,7 @@ std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEnt
                                        spec.links() == 1 ? "one link" : fmt::format("{} links", spec.links()))};
 }
 
-/// What of each link's mass is at its end, kg: that of a body is along it.
+/// The mass at the end of each link for drawing, kg; a rigid body has less than its whole mass there.
 std::vector<double> end_masses(const SideSpec& spec) {
     const auto& physical = spec.physical;
     const bool is_physical = !physical.is_none(), has_centers = !physical.center_m.empty();
@@ -42,7 +42,7 @@ std::vector<double> end_masses(const SideSpec& spec) {
     return masses;
 }
 
-/// What pictures and errors are measured by, in double.
+/// Sets the quantities by which pictures and errors are scaled, in double.
 void measure(const SideSpec& spec, Side& side) {
     if (side.motion.chain) {
         const auto chain = side.motion.chain->cast<double>();
@@ -58,7 +58,7 @@ void measure(const SideSpec& spec, Side& side) {
         side.energy_unit = physical.potential_range();
         side.has_work = !physical.conserves_energy();
         side.pivot_reach = std::hypot(physical.pivot.x, physical.pivot.y);
-        constexpr float heavy = 3.2f;  // a body is drawn as broad as that
+        constexpr float heavy = 3.2f;  // width of a rod with mass
         double mass = 0;
         for (const double of_link : physical.chain.mass) mass += of_link;
         side.lowest_potential = -mass * side.gravity * std::abs(physical.pivot.y);
@@ -72,7 +72,7 @@ void measure(const SideSpec& spec, Side& side) {
     side.lines = lines_of(parts);
     side.has_energy_error = parts.conserves_energy();
     if (side.has_angles) return;
-    // no chain: its energies are those of falling as far as it is large, and those of its start
+    // a mechanism: the energy of falling by its size, and that of its start
     side.reach = size_of(parts);
     for (const auto& force : parts.forces)
         if (const auto* gravity = std::get_if<Gravity<double>>(&force)) side.gravity = gravity->g;
@@ -89,7 +89,7 @@ void measure(const SideSpec& spec, Side& side) {
     if (!(side.energy_unit > 0)) side.energy_unit = 1;
 }
 
-/// A track, and the pendulum that it is taken for.
+/// A measured track, and the pendulum that it is assumed to show.
 Side make_measured_side(const SideSpec& spec, const Rational& sample_hz) {
     Side side;
     side.why = "a measured track; no method integrates it";
@@ -135,7 +135,7 @@ Place<Quad> place(const QuadPair& xy) {
     return {xy[0], xy[1]};
 }
 
-/// What parts call the particles, and where those are at the start.
+/// The names of the particles, and their initial positions.
 class ParticleNames {
 public:
     ParticleNames(std::vector<std::string> names, const Assembly<Quad>& assembly)
@@ -143,7 +143,7 @@ public:
         for (std::size_t i = 0; i < names_.size(); ++i) indices_.emplace(names_[i], i);
     }
 
-    /// Of the particle that an entry, `what`, names.
+    /// The number of the particle that an entry, `what`, names.
     std::size_t index(const std::string& what, const std::string& name) const {
         if (const auto found = indices_.find(name); found != indices_.end()) return found->second;
         const auto meant = nearest(name, std::vector<std::string_view>(names_.begin(), names_.end()));
@@ -166,11 +166,11 @@ public:
 
 private:
     std::vector<std::string> names_;
-    std::map<std::string, std::size_t> indices_;  // by name
+    std::map<std::string, std::size_t> indices_;  // for each name
     const Assembly<Quad>& assembly_;
 };
 
-/// A constraint or a force of what a preset says of it.
+/// Builds a constraint or a force from its preset entry.
 class PartBuilder {
 public:
     PartBuilder(const ParticleNames& by_name, const PartSpec& part)
@@ -201,7 +201,7 @@ public:
     }
 
 private:
-    /// From a particle to whatever is at the other end; a fixed end goes second.
+    /// The two ends; a fixed end comes second.
     std::pair<std::size_t, End<Quad>> ends() const {
         auto from = by_name_.end(what_, *part_.from), to = by_name_.end(what_, *part_.to);
         if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);

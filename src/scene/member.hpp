@@ -10,13 +10,13 @@
 
 namespace doppel {
 
-/// A member that is one of an enumeration: its names, the one that it has, and how to give it another.
+/// A member of enumeration type: its names, the current one, and a function to set another.
 struct ChosenName {
     std::span<const std::string_view> names;
     std::string_view name;
     void* member;
     void (*set)(void* member,
-                std::size_t name);  // a pointer, not a std::function: KeyMember stays trivial, and cheap to compile
+                std::size_t name);  // a function pointer keeps KeyMember trivial and cheap to compile
 
     void choose(std::size_t k) const { set(member, k); }
 };
@@ -24,8 +24,8 @@ struct ChosenName {
 template <class... T>
 using PointerToAny = std::variant<ChosenName, T*..., std::optional<T>*...>;
 
-/// The member that a key stands for. How its values are read (toml_values.cpp), written (resolved.cpp) and described
-/// (value_types.cpp) goes by its type.
+/// A pointer to the member that belongs to a key. Its type decides how values are read (toml_values.cpp), written
+/// (resolved.cpp) and described (value_types.cpp).
 using KeyMember = PointerToAny<bool, int, double, Quad, Rational, std::string, std::vector<double>, std::vector<Quad>,
                                std::vector<std::string>, QuadPair, EndSpec, Size, std::array<int, 2>, Range, Panels,
                                Speed, Members, ChosenText, TomlValues, Color, std::array<Color, 2>>;
@@ -39,8 +39,8 @@ KeyMember member_of(T& member) {
         return &member;
 }
 
-/// What goes through a list of keys: visit(field, member) for each, visit.table(name, list) for a table inside. Those that
-/// do not read leave the members as they are.
+/// Visits a list of keys: visit(field, member) for each, visit.table(name, list) for an inner table. Visitors that do
+/// not read leave the members unchanged.
 class KeyVisitor {
 public:
     virtual ~KeyVisitor() = default;

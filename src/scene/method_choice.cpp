@@ -12,15 +12,15 @@
 namespace doppel {
 namespace {
 
-constexpr double margin = 0.8;   // of an accuracy: the greatest error at the samples
-constexpr double enough = 0.5;   // rad, of an error: nothing is known beyond
-constexpr double nearly = 0.97;  // of the horizon of the finest setting, where rounding ends all of them early
+constexpr double margin = 0.8;   // allowed error at the samples, relative to the accuracy
+constexpr double enough = 0.5;   // rad; errors above this have no meaning
+constexpr double nearly = 0.97;  // of the longest horizon, if round-off limits all settings
 
 bool in_quad(const SideSpec& spec) {
     return spec.precision == Precision::in_quad;
 }
 
-/// √(l/g) of the mean link, s; of what knows no gravity, a sixtieth of the run.
+/// √(l/g) for the mean link length, s; without gravity, a sixtieth of the run.
 double time_unit_of(const SideSpec& spec, double duration) {
     if (spec.gravity_m_per_s2 == 0) return duration / 60;
     double length = 1;
@@ -31,7 +31,7 @@ double time_unit_of(const SideSpec& spec, double duration) {
     return std::sqrt(length / static_cast<double>(spec.gravity_m_per_s2));
 }
 
-/// Below it no error can be known, rad.
+/// The smallest error that can be measured, rad.
 double least_error(const SideSpec& spec) {
     return 2 * pi *
            (in_quad(spec) ? static_cast<double>(std::numeric_limits<Quad>::epsilon())
@@ -44,7 +44,7 @@ std::string tolerance_at(int level) {
     return fmt::format("{}e{}", level % 2 == 0 ? 1 : 3, first_decade - (level + 1) / 2);
 }
 
-/// The loosest that is `most` or less.
+/// The loosest level with a tolerance of at most `most`.
 int level_of_tolerance(double most) {
     int level = 0;
     while (static_cast<double>(parse_quad(tolerance_at(level))) > most * (1 + 1e-9)) ++level;
@@ -56,7 +56,7 @@ long steps_at(int level) {
     return level == 0 ? 1 : level % 2 == 1 ? 1L << (level + 1) / 2 : 3L << (level / 2 - 1);
 }
 
-/// The fewest that are `least` or more. Throws Error (exit 2) where those are too many to count.
+/// The smallest level with at least `least` steps per sample. Throws Error (exit 2) if there would be too many.
 int level_of_steps(double least) {
     constexpr double most = 0x1p40;
     if (!(least <= most)) throw bad_input("accuracy would need {:.2g} steps a sample; such a run never ends", least);
@@ -65,7 +65,7 @@ int level_of_steps(double least) {
     return level;
 }
 
-/// Whether two sides differ in no more than what moves.
+/// Whether two sides get the same choice: they differ only in the system.
 bool choose_together(const SideSpec& a, const SideSpec& b) {
     return a.accuracy == b.accuracy && a.model == b.model && a.precision == b.precision && a.stabilise == b.stabilise &&
            a.stabilise_rate_per_s == b.stabilise_rate_per_s;
@@ -73,7 +73,7 @@ bool choose_together(const SideSpec& a, const SideSpec& b) {
 
 }  // namespace
 
-// The rule, and the few costs that it takes; tests/scene/choice_study_test.cpp measures what it is worth.
+// The rule, and the few costs it uses; tests/scene/choice_study_test.cpp measures its quality.
 
 std::span<const std::string_view> methods_for(const MotionSpec& motion) {
     static constexpr std::array<std::string_view, 1> series{"taylor"};
@@ -81,14 +81,15 @@ std::span<const std::string_view> methods_for(const MotionSpec& motion) {
     const bool is_ideal = motion.model == Model::angles && !motion.physical;
     if (is_ideal || motion.precision == Precision::in_quad) return series;
     const bool has_events = motion.physical && !motion.physical->friction.coulomb.empty();
-    // steps of adams miss events; series by a tape are worth it where the right-hand side solves for constraints
+    // Adams methods miss events between steps; the taped Taylor series is only worthwhile where the right-hand side
+    // solves for constraints
     return std::span(all).first(has_events ? 2 : motion.model == Model::mechanism ? 4 : 3);
 }
 
 double work_of(const MotionSpec& motion, const Effort& effort, long samples) {
-    // of two and three masses, on one core of an AMD EPYC: an evaluation 95 to 180 ns
-    constexpr double on_rods = 0.35, of_order = 4.5;  // 45 ns, and 365 to 960 for an order of a series by a tape
-    const double interpolation = motion.method == "dop853"   ? 1.3  // 190 ns; 75; 300
+    // for two and three masses on one core of an AMD EPYC: one evaluation takes 95 to 180 ns
+    constexpr double on_rods = 0.35, of_order = 4.5;  // 45 ns; 365 to 960 ns for one order of a taped series
+    const double interpolation = motion.method == "dop853"   ? 1.3  // 190 ns; 75 ns; 300 ns
                                  : motion.method == "dopri5" ? 0.5
                                  : motion.method == "taylor" ? 2
                                                              : 0;
@@ -107,9 +108,9 @@ StepLevels::StepLevels(std::string_view method_name, const SideSpec& spec, const
         finest = level_of_tolerance(in_quad(spec) ? 1e-30 : 1e-14);
         start = std::min(level_of_tolerance(accuracy / 1000), finest);
     } else {
-        const double step = 0.08 * std::pow(accuracy, 0.14) * time_unit;  // of adams
+        const double step = 0.08 * std::pow(accuracy, 0.14) * time_unit;  // for adams
         start = level_of_steps(1 / (sample_hz.value() * step));
-        finest = start + 12;  // 64 times as many
+        finest = start + 12;  // 64 times as many steps
     }
 }
 
@@ -125,7 +126,8 @@ Side StepLevels::side(SideSpec spec, const Rational& sample_hz, int level) const
 
 namespace {
 
-/// The loosest level that does, level by level from the start; a finer one only while those before are worth their work.
+/// The loosest level that passes, searched level by level from the start. Finer levels are only tried while the work is
+/// worthwhile.
 template <class Does, class IsWorth>
 std::optional<int> loosest(const StepLevels& method, const Does& does, const IsWorth& is_worth) {
     int level = method.start;
@@ -164,13 +166,13 @@ MethodChooser::Asking MethodChooser::asking(char name, const SideSpec& spec, std
     for (const auto& method : methods_for(any.motion)) own.push_back(levels(method));
     if (methods.empty()) {
         methods = std::move(own);
-    } else {  // those that both sides have
+    } else {  // methods that both sides can use
         std::erase_if(methods, [&](StepLevels& method) {
             const auto same = std::ranges::find(own, method.method, &StepLevels::method);
             if (same != own.end()) method.finest = std::max(method.finest, same->finest);
             return same == own.end();
         });
-        if (methods.empty()) methods = {levels("dop853")};  // which steps every model
+        if (methods.empty()) methods = {levels("dop853")};  // supports every model
     }
     return {.names = std::string(1, name),
             .spec = spec,
@@ -231,7 +233,7 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
                               [&](Asking& side, long goal) { return horizon(side, method, level) >= goal; });
         };
         if (std::ranges::none_of(methods, [&](const auto& method) { return does(method, method.start); })) {
-            // nearly as far as the method that gets furthest
+            // nearly as long as the method that remains accurate longest
             const auto& best = *std::ranges::max_element(methods, {}, [&](const StepLevels& method) {
                 return std::accumulate(sides.begin(), sides.end(), 0L, [&](long sum, Asking& side) {
                     return sum + horizon(side, method, method.finest);
@@ -257,7 +259,7 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
             int level;
             double work;
         };
-        std::vector<Found> found;  // the least work first
+        std::vector<Found> found;  // sorted by work
         for (const auto& method : methods) {
             const auto level = loosest(
                 method, [&](int at) { return does(method, at); },
@@ -290,7 +292,7 @@ void step_all_alike(Preset& pair, const Preset& first, const std::atomic<bool>& 
     const std::array sides{&pair.a, &pair.b};
     const auto asks = [](const SideSpec* side) { return side->accuracy && side->track.is_none(); };
     if (std::ranges::none_of(sides, asks)) return;
-    // ideal chains of two or three links in angles keep that for a swing in double
+    // ideal chains of two or three links in angles always reach this accuracy for one swing in double
     const auto surely_keeps = [&](const SideSpec* side) {
         return !asks(side) || (*side->accuracy >= Quad(1e-13) && side->physical.is_none() && !side->is_mechanism() &&
                                side->stabilise == Stabilise::none && side->links() <= 3 &&

@@ -15,50 +15,49 @@
 
 namespace doppel {
 
-/// The methods that may step a motion whose side requires an accuracy; of several, runs find the one that takes the least work.
+/// The candidate methods for a motion whose side requires an accuracy; trial runs find the one with the least work.
 std::span<const std::string_view> methods_for(const MotionSpec& motion);
 
-/// About what a run of so many samples has taken of CPU time, in evaluations of the right-hand side of a mechanism of as
-/// many masses.
+/// Approximate CPU time of a run, in evaluations of the right-hand side of a mechanism with as many masses.
 double work_of(const MotionSpec& motion, const Effort& effort, long samples);
 
-/// The settings of a method in levels, each finer than the one before, 0 the loosest: tolerances of 1 or 3 times a power of
-/// ten, or 1, 2, 3, 4, 6, 8, 12 … steps a sample.
+/// The settings of a method as levels from 0, the loosest, to finer ones: tolerances of 1 or 3 times a power of ten, or
+/// 1, 2, 3, 4, 6, 8, 12 … steps per sample.
 struct StepLevels {
     std::string_view method;
-    int start, finest;  // where a search begins; what the precision allows, or of steps 64 times as many as at `start`
+    int start,
+        finest;  // first level to try; finest level: the limit of the precision, or 64 times the steps of `start`
 
-    /// `time_unit` = √(l/g) or the like, s. Throws Error (exit 2) where the steps would be too many to count.
+    /// `time_unit` = √(l/g) or similar, s. Throws Error (exit 2) if there would be too many steps.
     StepLevels(std::string_view method_name, const SideSpec& spec, const Rational& sample_hz, double time_unit);
 
     Side side(SideSpec spec, const Rational& sample_hz, int level) const;
 };
 
-/// Chooses method and step control of the sides that require an accuracy. Sides that differ in no more than what moves
-/// have one choice. The references that errors are measured by, and the runs beside them, are computed once, for any
-/// number of choices.
+/// Chooses method and step control for the sides that require an accuracy. Sides that only differ in the system get the
+/// same choice. The reference trajectories and trial runs are computed once, for any number of choices.
 class MethodChooser {
 public:
-    /// Errors  exit 2 where a system is faulty, exit 130 soon after `stop` is set.
+    /// Throws Error: exit 2 if a system is invalid, exit 130 soon after `stop` is set.
     MethodChooser(const Preset& preset, const std::atomic<bool>& stop);
 
-    /// The sides that require an accuracy, for `factor` times theirs: by the method that takes the least work, at the loosest
-    /// setting whose error stays below eight tenths of it (rad) to the end; or, where no setting's does, nearly as long as
-    /// that of the finest. A finer accuracy never takes less work.
-    /// Errors  exit 2 where the accuracy would not even hold for one swing, with what is within reach; exit 130.
+    /// The sides that require an accuracy, for `factor` times this accuracy. The method is the one with the least work,
+    /// at the loosest setting whose error stays below 0.8 times the accuracy (rad) to the end. If no setting achieves
+    /// this, it must hold nearly as long as with the finest setting. A finer accuracy never gets less work. Throws
+    /// Error: exit 2 if the accuracy cannot even be kept for one swing, with the accuracy that can; exit 130.
     std::array<std::optional<Side>, 2> choose(double factor, const std::atomic<bool>& stop);
 
 private:
-    /// A side that requires an accuracy, or both that are the same.
+    /// A side that requires an accuracy, or both sides if they are equal.
     struct Asking {
         std::string names;  // "a", "b", "ab"
         SideSpec spec;
         double accuracy;     // rad
-        long swing_samples;  // of one swing, or of the whole run
+        long swing_samples;  // samples of one swing, or of the whole run
         std::shared_ptr<const ReferenceTrajectory> reference;
-        std::map<std::pair<std::string_view, int>, ErrorHistory> tried;  // by method and level
+        std::map<std::pair<std::string_view, int>, ErrorHistory> tried;  // for each method and level
     };
-    /// Those that have one choice.
+    /// Sides with a common choice.
     struct Group {
         std::vector<Asking> sides;
         std::vector<StepLevels> methods;
@@ -75,9 +74,9 @@ private:
     std::vector<Group> groups_;
 };
 
-/// In place of a choice for each pair of a sweep: steps the sides that require an accuracy by one method as exactly as the
-/// precision allows, which takes less time than to find out how exact a pair must be.
-/// Errors  exit 2 where the `first` pair of the sweep cannot keep its accuracy for one swing, exit 130 soon after `stop` is set.
+/// Instead of choosing for each pair of a sweep, integrates the sides that require an accuracy by one method, as
+/// accurately as the precision allows. This takes less time than finding the setting for each pair. Throws Error: exit
+/// 2 if the `first` pair of the sweep cannot keep its accuracy for one swing, exit 130 soon after `stop` is set.
 void step_all_alike(Preset& pair, const Preset& first, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -12,7 +12,8 @@
 namespace doppel {
 namespace {
 
-/// "force.spring.stiffness_N_per_m": the table's key, the entry's name and the entry's key; or the last alone.
+/// "force.spring.stiffness_N_per_m": the key of the table, the name of the entry, and the entry's key; or only the last
+/// one.
 struct Place {
     std::string_view table, entry, key;
 
@@ -25,7 +26,7 @@ struct Place {
     }
 };
 
-/// A number of a side: real ones, of an array or a single one; a whole one; or a step.
+/// A number of a side: one or all elements of an array, a single number, a whole number, or the step size.
 struct FoundNumber {
     std::optional<Field> field = {};
     std::span<Quad> values = {};
@@ -34,7 +35,7 @@ struct FoundNumber {
     std::vector<std::string_view> names = {};  // of all numbers in its table
 };
 
-/// The number of the entry that is meant: by its name, or else the only one of that kind; 0 = the side itself, or its pivot.
+/// The index of the entry with this name, or of the only entry of this kind; 0 = the side itself, or its pivot.
 int entry_meant(SideSpec& side, const Place& place) {
     if (place.table.empty() || place.table == "pivot") return 0;
     std::vector<int> of_kind;
@@ -46,7 +47,7 @@ int entry_meant(SideSpec& side, const Place& place) {
     return of_kind.size() == 1 ? of_kind.front() : -1;
 }
 
-/// `put_whole` = in place of a whole one: lists of fields go on by it.
+/// `put_whole` replaces a whole number before its dependent keys are listed.
 FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> put_whole = {}) {
     FoundNumber found;
     const int entry = entry_meant(side, place);
@@ -67,7 +68,7 @@ FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> p
     return found;
 }
 
-/// All numbers of a chain and of what it has besides, an array as one.
+/// All numbers of a chain, array by array.
 std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
     std::vector<std::span<Quad>> all;
     for_each_key(side, [&](const SideEntry&, const Field&, const KeyMember& any) {
@@ -89,7 +90,7 @@ std::string label_of(const NumericKey& key, const Field& field) {
     return unit.empty() ? words : fmt::format("{}, {}", words, unit);
 }
 
-/// "system.mass_kg[1]": takes the sides and the element off it.
+/// Splits "system.mass_kg[1]" into sides, key and element.
 void split(const TomlReader& table, std::string_view key, NumericKey& into) {
     std::string_view rest = into.path;
     using Sides = NumericKey::Sides;
@@ -98,7 +99,7 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
             into.sides = sides;
             into.inside = rest.substr(std::string_view(name).size());
         }
-    if (into.inside.empty())  // no key of a side at all
+    if (into.inside.empty())  // not a key of a side
         throw table.fault(key,
                           "must be a numeric key such as \"system.gravity_m_per_s2\" or \"b.mass_kg[1]\", or "
                           "\"theta1_deg\", \"theta2_deg\", \"mass_ratio\" or \"length_ratio\"; it is \"{}\"",
@@ -107,7 +108,7 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
         throw table.fault(key, "must end like \"mass_kg[1]\" where it is one of several; it is \"{}\"", into.path);
 }
 
-/// Checks the number against one side, and takes what its field says.
+/// Checks the number for one side, and copies the properties of its field.
 void find_in(SideSpec side, const TomlReader& table, std::string_view key, NumericKey& number) {
     const Place place(number.inside);
     const auto found = find_number(side, place);
@@ -155,7 +156,7 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
         std::fill(found.values.begin(), found.values.end(), value);
     }
     if (!number.is_whole) return;
-    // links of one kind stay so
+    // equal links stay equal
     const auto are_one = [](std::span<const Quad> all) {
         return !all.empty() && std::ranges::all_of(all, [&](const Quad& x) { return x == all[0]; });
     };

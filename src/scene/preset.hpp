@@ -17,8 +17,8 @@
 
 namespace doppel {
 
-/// Where neither preset nor command line says how finely to step.
-inline constexpr Rational default_step{1, 30000};  // s, the study's
+/// The step size if neither preset nor command line gives one.
+inline constexpr Rational default_step{1, 30000};  // s, from Kao's study
 inline const Quad usual_tolerance = parse_quad("1e-12"), usual_quad_tolerance = parse_quad("1e-28");
 
 enum class ModelChoice { automatic, angles, constraints, mechanism };
@@ -32,7 +32,7 @@ inline constexpr auto names_of<Precision> = std::to_array<std::string_view>({"do
 template <>
 inline constexpr auto names_of<Stabilise> = std::to_array<std::string_view>({"none", "baumgarte", "projection"});
 
-/// What stands where a picture has words of its own: these, others, or none.
+/// A text of pictures: automatic, set by the preset, or none.
 struct ChosenText {
     bool shown = true;
     std::optional<std::vector<std::string>> own;  // paragraphs
@@ -40,51 +40,51 @@ struct ChosenText {
 
 using QuadPair = std::array<Quad, 2>;  // x and y
 
-/// Values that any key may take, each as TOML writes it: `90`, `"rk4"`, `[90, 0]`.
+/// Values of any key, each as TOML: `90`, `"rk4"`, `[90, 0]`.
 struct TomlValues {
     std::vector<std::string> texts;
 };
 
-/// An end of a rod or a spring: the name of a particle, or a fixed place, m.
+/// An end of a rod or a spring: the name of a particle, or a fixed position, m.
 using EndSpec = std::variant<std::string, QuadPair>;
 
-/// [[system.particle]]: a point mass and how it is released.
+/// [[system.particle]]: a point mass and its initial state.
 struct ParticleSpec {
     std::string name;
     Quad mass_kg = 1;
     QuadPair position_m{}, velocity_m_per_s{};
 };
 
-/// What [[system.constraint]] and [[system.force]] hold: constraints first, then forces.
+/// The kinds of [[system.constraint]] and [[system.force]]: constraints first, then forces.
 enum class PartKind { anchor, rod, slot_line, slot_circle, spring, attraction, droplet };
 template <>
 inline constexpr auto names_of<PartKind> = std::to_array<std::string_view>({"anchor", "rod", "slot-line", "slot-circle",
                                                                             "spring", "attraction", "droplet"});
 inline constexpr std::size_t constraint_kinds = 4;
 
-/// A constraint or a force. Which keys it has is a matter of its kind (part_fields()); lengths and places that are not
-/// given are those of the start.
+/// A constraint or a force. Its kind decides which keys it has (part_fields()). Lengths and positions that are not
+/// given are those at the start.
 struct PartSpec {
     std::string name = {};
     PartKind kind = PartKind::anchor;
-    std::string particle = {};                  // of an anchor and of slots
-    std::optional<EndSpec> from = {}, to = {};  // of rods, springs and attractions
-    std::optional<QuadPair> position_m = {};    // of an anchor; a point of a line; the centre of a circle; of a droplet
-    QuadPair direction{1, 0};                   // of a slot-line
-    std::optional<Quad> length_m = {}, radius_m = {};  // of a rod, of a spring at rest; of a slot-circle
+    std::string particle = {};                  // for an anchor and slots
+    std::optional<EndSpec> from = {}, to = {};  // for rods, springs and attractions
+    std::optional<QuadPair> position_m = {};    // of an anchor; point of a line; centre of a circle; of a droplet
+    QuadPair direction{1, 0};                   // for a slot-line
+    std::optional<Quad> length_m = {}, radius_m = {};  // for a rod, or a spring at rest; for a slot-circle
     Quad stiffness_N_per_m = 1, damping_N_s_per_m = 0, mass_kg = 1;
     std::optional<Quad> constant_m3_per_kg_s2 = {};  // G
 };
 
-/// [system.pivot]: a pivot that moves to and fro, at amplitude · cos(2π · frequency · t + phase).
+/// [system.pivot]: an oscillating pivot, amplitude · cos(2π · frequency · t + phase).
 struct PivotSpec {
-    Quad direction_deg = 90;  // from the x axis: 90 = up
+    Quad direction_deg = 90;  // from the x axis: 90 = upwards
     Quad amplitude_m = 0, frequency_hz = 1, phase_deg = 0;
 
     friend bool operator==(const PivotSpec&, const PivotSpec&) = default;
 };
 
-/// [[system.torque]]: a motor at a joint, amplitude · cos(2π · frequency · t + phase).
+/// [[system.torque]]: a driving torque at a joint, amplitude · cos(2π · frequency · t + phase).
 struct TorqueSpec {
     std::string name;
     int joint = 1;  // 1 = at the pivot
@@ -95,17 +95,17 @@ struct TorqueSpec {
 
 bool is_zero(const std::vector<Quad>& numbers);
 
-/// What a real chain has that an ideal one lacks: links with mass, friction, a drive. One number a link.
+/// Properties of a rigid-body chain: links with mass, friction, a drive. One number per link.
 struct PhysicalSpec {
     std::vector<Quad> rod_mass_kg{0, 0}, inertia_kg_m2{0, 0};
-    std::vector<Quad> center_m;  // none: at the ends
+    std::vector<Quad> center_m;  // empty: at the ends
     std::vector<Quad> joint_viscous_N_m_s{0, 0}, joint_coulomb_N_m{0, 0};
     std::vector<Quad> arm_drag_linear_N_m_s{0, 0}, arm_drag_quadratic_N_m_s2{0, 0}, air_drag_quadratic_N_m_s2{0, 0};
     std::vector<Quad> drag_linear_N_s_per_m{0, 0}, drag_quadratic_N_s2_per_m2{0, 0};
     PivotSpec pivot;
     std::vector<TorqueSpec> torques;
 
-    /// With a number a link, all but center_m.
+    /// The lists with one number per link, except center_m.
     static constexpr std::array<std::vector<Quad> PhysicalSpec::*, 9> lists{&PhysicalSpec::rod_mass_kg,
                                                                             &PhysicalSpec::inertia_kg_m2,
                                                                             &PhysicalSpec::joint_viscous_N_m_s,
@@ -118,27 +118,27 @@ struct PhysicalSpec {
 
     friend bool operator==(const PhysicalSpec&, const PhysicalSpec&) = default;
 
-    /// Whether any of it is there.
+    /// Whether no property is given.
     bool is_none() const;
     bool has_coulomb() const;
 };
 
-/// Whether such chains differ in numbers alone.
+/// Whether such chains only differ in numbers.
 bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other);
 
-/// [a.track]: a measured swing, which the side shows in place of a simulation.
+/// [a.track]: a measured motion, shown instead of a simulation.
 struct TrackSpec {
-    std::string file;                    // as it was found; empty: none
-    std::optional<Quad> start_s;         // on the file's clock; none: the first sample
-    std::vector<Quad> offset_deg{0, 0};  // of the encoders: what they show at rest
-    std::shared_ptr<const Track> track;  // what the file holds
+    std::string file;                    // as found; empty: none
+    std::optional<Quad> start_s;         // time in the file; if not given, that of the first sample
+    std::vector<Quad> offset_deg{0, 0};  // of the encoders: their reading at rest
+    std::shared_ptr<const Track> track;  // contents of the file
     std::string sha256;                  // of the file
 
     bool is_none() const { return file.empty(); }
 };
 
-/// One side of the pair, as [system] with [a] or [b] on top describes it. Numbers are those written, to 34 digits;
-/// angles stay in degrees.
+/// One side of the pair, from [system] with [a] or [b] on top. Numbers have the written digits, up to 34; angles are in
+/// degrees.
 struct SideSpec {
     std::vector<Quad> mass_kg{1, 1};
     std::vector<Quad> length_m{1, 1};
@@ -148,125 +148,126 @@ struct SideSpec {
     ModelChoice model = ModelChoice::automatic;
     std::string integrator = "euler";
     bool integrator_from_command_line = false;
-    std::optional<Rational> step_s;  // of methods with a fixed step
-    std::optional<Quad> tolerance;   // of adaptive methods
-    std::optional<Quad> accuracy;    // rad; in place of integrator, step and tolerance (scene/method_choice.hpp)
+    std::optional<Rational> step_s;  // for methods with a fixed step
+    std::optional<Quad> tolerance;   // for adaptive methods
+    std::optional<Quad> accuracy;    // rad; instead of integrator, step size and tolerance (scene/method_choice.hpp)
     bool accuracy_from_command_line = false;
     Precision precision = Precision::in_double;
     Stabilise stabilise = Stabilise::none;
     Quad stabilise_rate_per_s = 10;  // Baumgarte's α = β
     PhysicalSpec physical;
     TrackSpec track;
-    std::vector<ParticleSpec> particles;  // in place of a chain
+    std::vector<ParticleSpec> particles;  // instead of a chain
     std::vector<PartSpec> constraints, forces;
-    std::optional<std::string> label, note;  // in place of what pictures say of the side by themselves
+    std::optional<std::string> label, note;  // replace the automatic texts of the side
 
-    /// How finely to step where nothing was given, too.
+    /// The step size, or the default.
     Rational step() const { return step_s.value_or(default_step); }
     Quad allowed_error() const {
         return tolerance.value_or(precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);
     }
 
     std::size_t links() const { return mass_kg.size(); }
-    /// Where their number changes, all are released level, at rest.
+    /// If the number changes, all links are released horizontally, at rest.
     void set_links(std::size_t links);
-    /// Whether it takes more than a chain under gravity.
+    /// Whether the system is more than a chain under gravity.
     bool is_mechanism() const { return !particles.empty() || !constraints.empty() || !forces.empty(); }
 };
 
-/// A scene as a preset file describes it: read, complete and checked, nothing computed yet.
+/// A scene described by a preset file: read, completed and checked, not yet computed.
 struct Preset {
-    std::string name;                     // of the file, without folder and ending
-    std::string title;                    // the name where it is not given
-    std::optional<std::string> subtitle;  // in place of what the scene says of itself
+    std::string name;                     // of the file, without folder and extension
+    std::string title;                    // the name if not given
+    std::optional<std::string> subtitle;  // replaces the automatic subtitle
     Rational duration_s{30, 1};
     Rational sample_hz{120, 1};
-    bool energy_columns = false;  // of the table: kinetic and potential energies
-    bool member_columns = false;  // of the table: an ensemble's members
+    bool energy_columns = false;  // table has kinetic and potential energies
+    bool member_columns = false;  // table has the members of an ensemble
     SideSpec a, b;
     VideoSpec video;
 };
 
-/// Whether the sides differ in kind, chains of unlike length or a chain beside a mechanism: then only what hangs last can
-/// be compared.
+/// Whether the sides are of different types: chains of different length, or a chain and a mechanism. Then only their
+/// last masses can be compared.
 bool differ_in_kind(const SideSpec& a, const SideSpec& b);
 
-/// A value from the command line that goes on top of a preset: "system.step_s" = "\"1/1000\"", given by `origin`.
+/// A value from the command line that replaces one of the preset: "system.step_s" = "\"1/1000\"", from option `origin`.
 struct Override {
-    std::string key;     // table.key
+    std::string key;     // "table.key"
     std::string value;   // TOML
-    std::string origin;  // what errors name: "--set system.step_s"
+    std::string origin;  // shown in errors: "--set system.step_s"
 };
 
-/// Where a preset's text comes from and what it says.
+/// The text of a preset and its source.
 struct PresetText {
     std::string name;  // "butterfly"
-    std::string path;  // "presets/butterfly.toml": what errors name
+    std::string path;  // "presets/butterfly.toml": shown in errors
     std::string text;
-    std::string call;  // what finds it again: a name or a path
+    std::string call;  // name or path for find_preset()
 };
 
-/// Bytes of a preset's name. File systems take 255 of a file's; the rest is for endings, of which
-/// ".100000-of-100000.HASH.resume.part" would be the longest.
+/// Longest name of a preset, bytes. File systems allow 255 for a file; the rest is for suffixes, the longest being
+/// ".100000-of-100000.HASH.resume.part".
 inline constexpr std::size_t longest_preset_name = 255 - 64;
 
-/// What becomes the name of a folder and the start of those of its files. Throws Error (exit 2) where that leads out of
-/// the folder, is too long, not UTF-8, or holds a control character; `path` = where the name is from.
+/// Checks a name that becomes that of a folder and the prefix of its files. Throws Error (exit 2) if it leads out of
+/// the folder, is too long, not UTF-8, or contains a control character; `path` = the source of the name.
 void check_preset_name(const std::string& path, const std::string& name);
 
-/// Finds a preset: a path (anything with a slash or ending in .toml), or a name in presets/ or presets/figures/ here,
-/// or built into the program. A path may be that of a pipe where `stop` is given, which ends the waiting for it. Throws
-/// Error: exit 2 that names the nearest preset, or says what is in place of the file or wrong with its name; exit 4
-/// where it cannot be read; exit 130 soon after `stop` is set.
+/// Finds a preset: a path (with a slash or ending in .toml), a name in presets/ or presets/figures/ of the current
+/// folder, or a built-in name. A pipe is read if `stop` is given, which ends the waiting. Throws Error: exit 2 naming
+/// the nearest preset, or what is wrong with the file or its name; exit 4 if it cannot be read; exit 130 soon after
+/// `stop` is set.
 PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>* stop = nullptr);
 
-/// The path of a file that a preset names: beside the preset, or from here; from the command line always from here.
+/// The path of a file named in a preset: relative to the preset, or else to the current folder; from the command line
+/// always the latter.
 std::string path_beside(const std::string& preset_path, const std::string& given, bool from_command_line);
 
-/// All presets that are built in, by name.
+/// All built-in presets, sorted by name.
 std::vector<PresetText> builtin_presets();
 
-/// `kind` of its [scene]. Errors as read_preset()'s.
+/// The `kind` in [scene]. Throws as read_preset().
 std::string kind_of_preset(const PresetText& source);
-/// Whether a preset is a figure (figure/preset.hpp) and not a film. Errors as read_preset()'s.
+/// Whether the preset is a figure (figure/preset.hpp) and not a film. Throws as read_preset().
 bool is_figure(const PresetText& source);
 
-/// Reads and checks; unknown keys, wrong types and lengths, and values out of range are Errors (exit 2) with place,
-/// value found and what would be right.
+/// Reads and checks a preset. Unknown keys, wrong types or lengths, and values out of range throw Error (exit 2) with
+/// the place, the value and what would be right.
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides = {});
 
-/// The key=value of --set. Throws Error (exit 2) where it is not of that form.
+/// Parses the key=value of --set. Throws Error (exit 2) if it has another form.
 Override parse_set(const std::string& argument);
 
 struct TomlDocument;
 class TomlReader;
 
-// Readers of the tables that films and figures share. Each leaves alone what the table does not say, and throws Error
+// Readers of the tables that films and figures share. They change only members whose keys are given, and throw Error
 // (exit 2) as TomlReader does.
 
 /// One of scene_kinds.
 std::string read_kind(TomlReader& scene);
 
-/// [system], [a] or [b]; `has_text` = with side_text_fields().
+/// Reads [system], [a] or [b]; `has_text` = including side_text_fields().
 void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
 
-/// [system] where only a chain and its release matter, and how it is integrated is not for the preset to say; `is_physical`:
-/// with what a real chain has besides.
+/// Reads a [system] of which only the chain and its release matter, not the integration; `is_physical`: including the
+/// properties of rigid-body chains.
 void read_release(TomlReader& table, SideSpec& side, bool is_physical);
 
-/// [system], then [a] and [b] on top, each from level to level: what a later one says goes on top of the earlier. Those
-/// of a film have texts of their own.
+/// Reads [system], then [a] and [b] on top, each level by level: later levels override earlier ones. Sides of a film
+/// have texts of their own.
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset,
                 bool is_film = false);
 
-/// Samples must be at steps, the end at a sample, and the numbers of the clock such that no sum of it leaves 64 bits.
+/// Checks that samples are at steps, that the end is at a sample, and that no sum of times overflows 64 bits.
 void check_clock(const Preset& preset, const TomlReader& scene);
 
-/// Reads the file of a side's track, if it has one. Throws Error, or takes note of the fault, as the reader of its table does.
+/// Reads the file of a side's track, if it has one. Throws Error or records it, as the reader of its table does.
 void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side);
 
-/// Frames must not be too many; 23.976 frames/s and the like become what they mean, 24000/1001. A GIF, and a film whose
-/// speed changes, get a rate where none is named.
+/// Checks the number of frames. Rounded rates become exact ones: 23.976 becomes 24000/1001. A GIF, and a film whose
+/// speed changes, get a rate if none is given.
 void check_frames(Preset& preset, const TomlReader& video);
 
 }  // namespace doppel

@@ -5,8 +5,8 @@
 namespace doppel {
 namespace {
 
-constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL takes, which says so itself
-constexpr double most_hz = 1e6;                     // of a drive: far above what a pendulum follows
+constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL supports, which reports its own limit
+constexpr double most_hz = 1e6;                     // of a drive: far above the response of a pendulum
 
 std::vector<std::string_view> theme_names() {
     std::vector<std::string_view> names;
@@ -48,7 +48,7 @@ void column_fields(KeyVisitor& visit, Preset& preset) {
 
 namespace {
 
-/// A key with one number a link.
+/// A key with one number per link.
 Field of_links(std::string_view key, std::string_view help, std::string_view unit, const Bounds& bounds,
                std::string_view symbol = "", std::string_view caption = "") {
     return {.key = key,

@@ -17,10 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::string_view ending = ".toml";
 
-/// Where presets lie: films, then figures.
+/// Folders of presets: films, then figures.
 constexpr std::array<std::string_view, 2> folders{"presets/", "presets/figures/"};
 
-constexpr std::size_t most_bytes = std::size_t{8} << 20;  // links = 10 000 with every number to 34 digits take 4 MB
+constexpr std::size_t most_bytes = std::size_t{8} << 20;  // 10 000 links with every number to 34 digits take 4 MB
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// The whole-number rates next to `rate` (rounded) that divide `steps_per_second`, for the error that has to name them.
+/// The whole-number rates nearest to `rate` that divide `steps_per_second`, for an error message.
 std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     const auto next = [&](long from, long step) {
         for (long n = from; n > 0 && std::abs(n - from) < 10000; n += step)
@@ -24,7 +24,7 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     return fmt::format("{} or {}", below, above);
 }
 
-/// One pendulum has nothing of a pair.
+/// A single pendulum has no options of a pair.
 void check_single(const Preset& preset, TomlReader& top, const TomlReader& video) {
     if (preset.video.layout != Arrangement::single) return;
     if (top.has("b"))
@@ -37,7 +37,7 @@ void check_single(const Preset& preset, TomlReader& top, const TomlReader& video
                               name_of(strip));
 }
 
-/// A view follows a mass that is there; columns of members are of an ensemble.
+/// A view must follow an existing mass; only ensembles have columns of members.
 void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene) {
     const auto masses = [](const SideSpec& side) {
         return side.particles.empty() ? side.links() : side.particles.size();
@@ -55,7 +55,7 @@ void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene
                           name_of(preset.video.layout));
 }
 
-/// What layouts and strips ask of the system.
+/// What layouts and strips require of the system.
 void check_layout(const Preset& preset, const TomlReader& video) {
     const auto layout = preset.video.layout;
     const auto name = name_of(layout);
@@ -91,7 +91,7 @@ void check_layout(const Preset& preset, const TomlReader& video) {
         throw video.fault("layout", "\"{}\" needs sides that differ only in numbers, not in model or method", name);
 }
 
-/// Samples are compared particle by particle: a particle of one side must be one of the other.
+/// Samples are compared particle by particle, so that a particle of one side must exist on the other.
 void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& table) {
     std::vector<std::string_view> names, others;
     for (const auto& particle : side.particles) names.push_back(particle.name);
@@ -113,7 +113,7 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
         throw table.fault("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
 }
 
-/// What the format cannot have; frames/s once they are known.
+/// Reports what the format does not allow; the frame rate is checked once it is known.
 void check_format(const TomlReader& table, const std::optional<FormatFault>& fault) {
     if (fault) throw table.fault(fault->key, "{}", fault->words);
 }
@@ -128,7 +128,7 @@ void check_layout(const TomlReader& table, const VideoSpec& video) {
         throw table.fault("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
-/// Members of an ensemble leave short trails without light.
+/// By default, members of an ensemble have short trails without glow.
 void read_style(TomlReader& table, VideoSpec& video) {
     const bool is_ensemble = video.layout == Arrangement::ensemble;
     if (is_ensemble) video.trail_s = video.members.releases.empty() ? 0.3 : 1;
@@ -141,7 +141,7 @@ void check_style(const TomlReader& table, const VideoSpec& video) {
                           *video.glow_px);
 }
 
-/// A quarter of the pixels and the least effort, but what the command line says stays.
+/// A quarter of the pixels and the least effort; the command line overrides this.
 void make_preview(TomlReader& table, VideoSpec& video) {
     const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(size_field.bounds.low)); };
     if (!table.from_command_line("size")) video.size = {half(video.size.width), half(video.size.height)};
@@ -169,8 +169,9 @@ void read_video(TomlReader& table, VideoSpec& video) {
     if (is_preview) make_preview(table, video);
 }
 
-/// The font of the film's words, before the words: it decides which letters they may have. Beside the preset, or from
-/// here; from the command line always from here. Whether it is known.
+/// Reads the font of the film's text first, because it decides which letters are allowed. The path is relative to the
+/// preset, or else to the current folder; from the command line always to the latter. Returns whether the font is
+/// known.
 bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) {
     auto table = document.table(top, "video");
     auto fonts = table.inner(table.read_table("fonts"), "[video.fonts]");
@@ -190,8 +191,8 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     return true;
 }
 
-/// The pair of an ensemble whose members are listed is its first and its last. Throws where the file gives a side
-/// other numbers, or a member too many or too few of them.
+/// If members of an ensemble are listed, its pair is the first and the last one. Throws if the file gives a side other
+/// numbers, or lists with too many or too few of them.
 void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
     const auto& members = preset.video.members.releases;
     if (members.empty()) return;
@@ -292,7 +293,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
 
     auto scene = document.table(top, "scene");
     const auto kind = read_kind(scene);
-    if (faults.concern("scene")) faults.throw_if_any();  // which tables there may be is not known
+    if (faults.concern("scene")) faults.throw_if_any();  // without the kind it is unknown which tables are allowed
     if (kind != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     clock_fields(scene, preset);
@@ -301,7 +302,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");
     read_video(video, preset.video);
-    preset.video.text_font = font;  // as it was found
+    preset.video.text_font = font;  // path as found
     top.finish();
     faults.throw_if_any();
     place_members(document, top, video, preset);

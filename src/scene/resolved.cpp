@@ -18,7 +18,7 @@ std::string toml_text(const std::string& text) {
         const auto byte = static_cast<unsigned char>(c);
         if (c == '"' || c == '\\')
             quoted += {'\\', c};
-        else if (byte < 0x20 || byte == 0x7f)  // TOML allows them escaped alone; JSON's writers leave U+007F as it is
+        else if (byte < 0x20 || byte == 0x7f)  // TOML requires these to be escaped; JSON writers leave U+007F
             quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(byte));
         else
             quoted += c;
@@ -120,7 +120,7 @@ std::string entries_toml(const std::string& name, SideSpec& side) {
     return text;
 }
 
-/// [a] or [b] with everything in it.
+/// [a] or [b] with all keys.
 std::string side_toml(const std::string& name, SideSpec side) {
     if (find_method(side.integrator)->adaptive)
         side.tolerance = side.allowed_error();
@@ -182,7 +182,7 @@ std::string resolved_toml(const Preset& preset) {
 
 namespace {
 
-/// A number of more digits than double is written with, 17, is text.
+/// A number with more than the 17 digits of a double becomes text.
 Json json_of(const toml::node& node, const TomlText& text) {
     if (const auto* table = node.as_table()) {
         Json object = Json::object();
@@ -219,7 +219,7 @@ Json program_json() {
 
 Metadata metadata_of(const std::string& title, const std::string& name, const std::string& record) {
     const auto program = fmt::format("Doppel {} ({})", version(), revision());
-    // MP4 keeps the muxer's own name as its encoder: the comment says all of it
+    // MP4 stores the muxer's name as its encoder, so the comment contains all of it
     return {
         {"title", title}, {"comment", fmt::format("{}, preset {}; {}", program, name, record)}, {"encoder", program}};
 }

@@ -12,11 +12,11 @@
 
 namespace doppel {
 
-// Values as TOML writes them.
+// Values as TOML.
 
-/// A basic string, with its quotes.
+/// A basic string, quoted.
 std::string toml_text(const std::string& text);
-/// A number where it is whole, "a/b" where it is not.
+/// A whole number, or "a/b" in quotes.
 std::string toml_ratio(const Rational& value);
 
 std::string toml_value(const Color& color);
@@ -50,10 +50,10 @@ std::string toml_value(const T& value) {
     }
 }
 
-/// That of a key; empty of an optional one that is not given.
+/// The value of a key; empty for an optional key that is not given.
 std::string toml_value(const KeyMember& member);
 
-/// Writes a table key by key: writer(field, member). Keys that do not count, and what is not given, are left out.
+/// Writes a table key by key: writer(field, member). Keys that do not apply or are not given are left out.
 class TomlWriter : public KeyVisitor {
 public:
     /// `name` = that of the table, "video".
@@ -61,7 +61,7 @@ public:
 
     void key(const Field& field, const KeyMember& member) override;
     void add(std::string_view key, const std::string& value) { text_ += fmt::format("{} = {}\n", key, value); }
-    /// The fields of [NAME.key], after all others; nothing where it is empty.
+    /// Writes [NAME.key] after the other fields; nothing if it is empty.
     void table(std::string_view key, const std::function<void(KeyVisitor&)>& fields) override;
 
     std::string text() const { return text_ + tables_; }
@@ -70,35 +70,35 @@ private:
     std::string name_, text_, tables_;
 };
 
-/// The preset as it was understood, every key with its value: TOML that read_preset() reads back to the same scene.
+/// The preset as understood, every key with its value: TOML that read_preset() reads back to the same scene.
 std::string resolved_toml(const Preset& preset);
 
-/// The part that decides the motion: the rest of [scene], then the sides.
+/// The part that decides the motion: [scene] without its first keys, then the sides.
 std::string resolved_pair(const Preset& preset);
-/// [a] and [b] with everything in them, inside the table that `above` names ("curve.").
+/// [a] and [b] with all keys, inside the table `above` ("curve.").
 std::string resolved_sides(const Preset& preset, const std::string& above = "");
 
-/// [system] where only a chain and its release matter.
+/// [system] of which only a chain and its release matter.
 std::string resolved_release(SideSpec side);
 
 /// The same without the release.
 std::string resolved_chain(SideSpec side);
 
-// What the manifests of films and of figures are made of.
+// Parts of the manifests of films and figures.
 
 using Json = nlohmann::ordered_json;
 
-/// Of a document without dates. A number of more than 17 digits, which double has not, is text: "90.0000000000000000001".
+/// Converts a TOML document without dates. A number with more than 17 digits becomes text: "90.0000000000000000001".
 Json json_of_toml(const std::string& toml);
 
 /// Version and revision.
 Json program_json();
 
-/// By which a picture or a film can be traced to how it was made: its title, the preset's name, and where that is written.
+/// Metadata that trace a picture or film to its source: its title, the preset's name, and the name of the manifest.
 Metadata metadata_of(const std::string& title, const std::string& name, const std::string& record);
 
-/// Adds the files of the run, those that are finished, and those of earlier runs that stay, with size and SHA-256; then
-/// writes the manifest as the last of them, "NAME.json". Throws Error (exit 4).
+/// Adds size and SHA-256 of the run's complete files, and of files of earlier runs that stay; then writes the manifest
+/// "NAME.json" as the last file. Throws Error (exit 4).
 void write_manifest(Transaction& parts, const std::string& name, Json manifest);
 
 }  // namespace doppel

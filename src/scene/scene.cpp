@@ -26,13 +26,13 @@ std::optional<double> Scene::horizon() const {
 
 namespace {
 
-/// Throws Error (exit 2) where a side would run for longer than its track.
+/// Throws Error (exit 2) if a side would run longer than its track.
 void check_tracks(const Scene& scene) {
     const auto& preset = scene.preset;
     for (const auto* side : {&scene.a, &scene.b}) {
         if (!side->replay) continue;
         const auto most = longest_duration(*side->replay, preset.sample_hz);
-        const double seconds = most.value();  // as a decimal, where that is all of it
+        const double seconds = most.value();  // as a decimal, if that is exact
         const auto text = rational_from_decimal(seconds) == most ? fmt::format("{}", seconds) : toml_ratio(most);
         if (preset.duration_s.value() > seconds)
             throw bad_input(
@@ -41,8 +41,8 @@ void check_tracks(const Scene& scene) {
     }
 }
 
-/// Frames between samples show the nearest of fixed steps. Throws Error (exit 2) where that is off by more than a
-/// sixteenth of the way from frame to frame: the film would stutter.
+/// With fixed steps, a frame between samples shows the nearest step. Throws Error (exit 2) if its time is wrong by more
+/// than a sixteenth of the frame interval: the film would stutter.
 void check_steps(const Scene& scene) {
     const auto& speed = scene.preset.video.speed;
     const double between_frames = speed.slowest().value() / scene.fps.value();  // s of motion
@@ -59,7 +59,8 @@ void check_steps(const Scene& scene) {
     }
 }
 
-/// The members of an ensemble, integrated as side a is; what no list gives goes from side a to side b in equal steps.
+/// The members of an ensemble, integrated as side a. Numbers that no list gives go from side a to side b in equal
+/// steps.
 std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto &first = scene.preset.a, &last = scene.preset.b;
     std::vector<MotionSpec> members;
@@ -121,7 +122,7 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
 
 namespace {
 
-/// The first number of the observation that is none, in words; nothing where all are finite.
+/// The first number of the observation that is not finite, in words; nothing if all are.
 std::optional<std::string> not_finite(const Observation& seen, bool has_angles) {
     for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
         const auto& bob = seen.bobs[i];

@@ -19,107 +19,106 @@
 
 namespace doppel {
 
-/// A moment of a motion: a share, 0 ≤ share < 1, of the way from a sample to the next.
+/// A time: a fraction, 0 ≤ share < 1, of the interval from a sample to the next.
 struct Moment {
     long sample = 0;
     double share = 0;
 
     friend auto operator<=>(const Moment&, const Moment&) = default;  // NOLINT(modernize-use-nullptr): as in faults.hpp
 };
-/// So many samples from the start; at a sample where it is within 1e-6 of one.
+/// The moment so many samples after the start, rounded to a sample if it is within 1e-6 of one.
 Moment moment_at(double samples);
 
-/// Which moments of the motion the frames of a film show: at one speed frame n is n · stride samples from the start, exactly.
-/// The last frame shows the end of the motion, wherever the one before it is.
+/// The moments that the frames of a film show. At constant speed, frame n is exactly n · stride samples from the start.
+/// The last frame always shows the end of the motion.
 struct FrameTimes {
-    Rational stride{1, 1};         // samples from frame to frame, at one speed
-    std::vector<Moment> changing;  // where the speed changes: each frame's but the last
+    Rational stride{1, 1};         // samples between frames, at constant speed
+    std::vector<Moment> changing;  // if the speed changes: of each frame except the last
     Moment last;
     long count = 0;
 
     Moment at(long frame) const;
-    /// The first frame at that moment or later; count where there is none.
+    /// The first frame at that moment or later; `count` if there is none.
     long first_from(const Moment& moment) const;
 };
 
-/// The frames of a motion of `samples`.
+/// The frames for a motion of `samples`.
 FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples);
 
-/// How long the film takes to show the motion up to `time`, s, where the speed changes: between the end of one speed
-/// and the next the film's seconds a second of motion go over by 3u² − 2u³.
+/// The film time at which the motion reaches `time`, s, if the speed changes. During a change, the slowness (film
+/// seconds per second of motion) is interpolated by 3u² − 2u³.
 double film_time(const VideoSpec& video, double time);
 
-/// The speed that holds, or to which or from which it is nearer, at `time`, s.
+/// The speed at `time`, s; during a change, the nearer of the two.
 Rational speed_at(const VideoSpec& video, double time);
 
-/// What an accuracy that was asked for came to. Errors are in rad, the largest of all angles; of what hangs in no
-/// chain, those of places in units of its size.
+/// The result of a required accuracy. Errors are the largest of all angles, rad; for mechanisms, of positions in units
+/// of the system's size.
 struct MethodChoice {
-    double accuracy;         // asked for
+    double accuracy;         // required
     double estimated_error;  // up to the horizon
-    long horizon;            // the sample up to which the run is that accurate; the last where it is to the end
-    std::shared_ptr<const ReferenceTrajectory> reference;  // by which this is known
-    double work;                                           // to the end, method_choice.hpp
+    long horizon;            // the sample up to which the run is that accurate; the last one if it always is
+    std::shared_ptr<const ReferenceTrajectory> reference;  // from which this is known
+    double work;                                           // for the whole run, method_choice.hpp
 };
 
-/// One thing to draw. A rod and a spring go from end to end; an anchor is at `from`; a straight slot goes from `from`
-/// to `to`; a circular one has its centre at `from`.
+/// A line to draw. A rod or spring goes from end to end; an anchor is at `from`; a straight slot goes from `from` to
+/// `to`; a circular one has its centre at `from`.
 struct MechanismLine {
     enum class Kind { rod, spring, anchor, slot_line, slot_circle };
     Kind kind;
     End<double> from, to;
-    double radius = 0;  // m, of a circular slot
-    float width = 1;    // of a rod, in those of a massless one
+    double radius = 0;  // of a circular slot, m
+    float width = 1;    // of a rod, relative to a massless one
 };
 
-/// What a picture needs besides the particles: the constraints in their order, then the springs in theirs.
+/// Constraints in their order, then springs in theirs, as needed for drawing.
 std::vector<MechanismLine> lines_of(const Assembly<double>& assembly);
-/// Of a chain: rod below rod, from the pivot.
+/// For a chain: its rods, from the pivot on.
 std::vector<MechanismLine> lines_of(const Pendulum<double>& chain);
 
-/// One side with everything chosen.
+/// One side with all choices made.
 struct Side {
     MotionSpec motion;
-    std::optional<Replay> replay;        // of a side that shows a track: what is not simulated
-    std::string why;                     // this model
-    std::optional<MethodChoice> choice;  // where an accuracy was asked for
+    std::optional<Replay> replay;        // for a side that shows a measured track instead of a simulation
+    std::string why;                     // reason for the model
+    std::optional<MethodChoice> choice;  // if an accuracy was required
     MethodEntry method{};
-    Rational step{0, 1};          // s; of methods with a fixed step
-    std::vector<double> mass;     // kg, a bob each
-    bool has_angles = true;       // a chain, whose bobs hang one below the other
+    Rational step{0, 1};          // s; for methods with a fixed step
+    std::vector<double> mass;     // kg, for each bob
+    bool has_angles = true;       // a chain, in which each bob hangs from the previous one
     double gravity = 0;           // m/s²
-    double energy_unit = 0;       // J, what an error of its energy is measured by in pictures (the potential range)
-    double lowest_potential = 0;  // J, of a chain: hanging straight down, its pivot as low as it goes
-    double reach = 0;  // m, from the pivot to the end of the outstretched chain; of a mechanism, its size_of()
+    double energy_unit = 0;       // J, the potential range, by which errors of the energy are scaled in pictures
+    double lowest_potential = 0;  // J, for a chain hanging straight down, with the pivot at its lowest position
+    double reach = 0;  // m, from the pivot to the end of the outstretched chain; for a mechanism, its size_of()
     bool has_energy_error =
-        true;                // all that changes the energy is known (Observation::work): simulated, no damped spring
-    bool has_work = false;   // by friction or drive on a chain
-    double pivot_reach = 0;  // m, how far the pivot moves from the origin
-    std::vector<MechanismLine> lines;  // what is drawn besides the bobs
+        true;  // all changes of energy are known (Observation::work): it is simulated and has no damped spring
+    bool has_work = false;             // friction or drive of a chain
+    double pivot_reach = 0;            // m, largest distance of the pivot from the origin
+    std::vector<MechanismLine> lines;  // drawn in addition to the bobs
 };
 
-/// What of a track is shown. Throws Error (exit 2) where it has no sample at its start.
+/// The shown part of a track. Throws Error (exit 2) if it has no sample at its start.
 Replay replay_of(const TrackSpec& spec);
-/// A whole number of samples, up to the last that it holds, s.
+/// A whole number of samples, at most up to the last measured one, s.
 Rational longest_duration(const Replay& replay, const Rational& sample_hz);
 
-/// The names of the models that a method steps.
+/// The names of the models that a method supports.
 std::vector<std::string_view> models_of(const MethodEntry& method);
 
-/// The chain as written, in radians.
+/// The chain of the preset, in radians.
 Pendulum<Quad> chain_of(const SideSpec& spec);
-/// The same with what a real chain has besides.
+/// The same with the properties of a rigid-body chain.
 PhysicalPendulum<Quad> physical_of(const SideSpec& spec);
 
-/// The particles of a side (those of its chain, "bob1", "bob2" …, where it names none), its constraints and forces, and
-/// gravity. Throws Error (exit 2) where a part names a particle that is not there.
+/// The particles of a side (if it names none, those of its chain: "bob1", "bob2" …), its constraints, forces and
+/// gravity. Throws Error (exit 2) if a part names an unknown particle.
 Assembly<Quad> assembly_of(const SideSpec& spec);
 
-/// A side with its model chosen, the smallest that serves, and everything in exact numbers. Throws Error (exit 2) where
-/// the system is faulty.
+/// A side with the smallest suitable model, all numbers exact. Throws Error (exit 2) if the system is invalid.
 Side make_side(const SideSpec& spec, const Rational& sample_hz);
 
-/// `make()`, whose errors say whose they are: "NAME: side a: …".
+/// Calls make(); its errors get the prefix "NAME: side a: …".
 template <class Make>
 auto for_side(const Preset& preset, char name, const Make& make) {
     try {
@@ -132,45 +131,45 @@ auto for_side(const Preset& preset, char name, const Make& make) {
 
 class MethodChooser;
 
-/// What a preset comes to: the models chosen, the clock in whole numbers.
+/// A scene ready to run: the models are chosen, the clock is in whole numbers.
 struct Scene {
     Preset preset;
     Side a, b;
-    long samples;                            // of the run: 0 … samples, both ends included
-    std::vector<MotionSpec> members;         // of an ensemble: from a to b in equal steps of all numbers, both included
+    long samples;                            // of the run: 0 … samples, inclusive
+    std::vector<MotionSpec> members;         // of an ensemble: from a to b in equal steps of all numbers, inclusive
     Rational fps;                            // frames/s of the video
-    FrameTimes frames;                       // which moments they show
-    std::shared_ptr<MethodChooser> chooser;  // where a side requires an accuracy
+    FrameTimes frames;                       // the moments they show
+    std::shared_ptr<MethodChooser> chooser;  // if a side requires an accuracy
 
     double time(const Moment& moment) const;  // s
     double time(long sample) const { return time(Moment{sample}); }
-    /// Whether side b is none: nothing of it is simulated.
+    /// Whether there is only side a; then side b is not simulated.
     bool is_single() const { return preset.video.layout == Arrangement::single; }
-    /// The sides that it has.
+    /// The letters of its sides.
     std::string_view letters() const { return is_single() ? "a" : "ab"; }
     const Side& side(char letter) const { return letter == 'a' ? a : b; }
-    /// Where a side that was asked for an accuracy keeps it no longer, s; nothing where all do to the end.
+    /// The time at which a side first loses its required accuracy, s; nothing if all keep it to the end.
     std::optional<double> horizon() const;
-    /// By which pictures and manifest measure errors of the energy, J: the larger side's potential range.
+    /// The scale of energy errors in pictures and manifests, J: the larger potential range of the sides.
     double energy_range() const { return std::max(a.energy_unit, b.energy_unit); }
 };
 
-/// Throws Error: exit 2 where a system is faulty, the two sides differ by less than their precision can tell, or an
-/// accuracy is out of reach; exit 130 soon after `stop` is set (choosing by accuracy takes runs of its own).
+/// Throws Error: exit 2 if a system is invalid, the sides differ by less than their precision can represent, or an
+/// accuracy cannot be reached; exit 130 soon after `stop` is set (choosing by accuracy requires trial runs).
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
-/// Throws Error (exit 2) where what sets the sides apart is lost in their precision: a number of any key that differs and
-/// is the same to compute with; all of the system; or the pull of a droplet, beside gravity.
+/// Throws Error (exit 2) if the difference of the sides is lost in their precision: a number of any key, the whole
+/// system, or the attraction of a droplet compared with gravity.
 void check_difference(const Scene& scene);
 
-/// Both sides and how they differ at a sample, or between two.
+/// Both sides and their difference at a sample, or between two.
 struct PairState {
-    long sample = 0;   // the last one that is over
-    double share = 0;  // of the way to the next one
+    long sample = 0;   // the last sample reached
+    double share = 0;  // fraction of the interval to the next one
     Observation a, b;
     std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
     std::optional<double> mean_energy_a, mean_energy_b;    // as SideRun::mean_energy()
-    double distance = 0;                                   // state space, analysis/difference.hpp
+    double distance = 0;                                   // in state space, analysis/difference.hpp
 
     Moment moment() const { return {sample, share}; }
 };
@@ -180,24 +179,24 @@ struct RunFailure : Error {
     RunFailure(const std::string& message, char side_name, long at_sample)
         : Error(ExitCode::method_failed, message), side(side_name), sample(at_sample) {}
     char side;    // 'a' or 'b'
-    long sample;  // the first that is wrong
+    long sample;  // the first wrong one
 };
 
-/// Of a side that is driven, s: the longest of its drives'.
+/// The longest drive period of a side, s; nothing without a drive.
 std::optional<double> drive_period(const SideSpec& spec);
 
-/// The mean of a quantity over the last period, from its values at samples, linear between them.
+/// The mean of a quantity over the last period, from its values at samples, interpolated linearly.
 class PeriodMean {
 public:
-    /// s
+    /// `period`, s.
     explicit PeriodMean(double period) : period_(period) {}
     void add(double time, double value);
-    /// Up to a moment at or after the sample added last; nothing before a period is over.
+    /// The mean up to a time at or after the last sample; nothing before one period is over.
     std::optional<double> at(double time, double value) const;
 
 private:
     struct Point {
-        double time, value, integral;  // s; the quantity; its integral from the first point on
+        double time, value, integral;  // s; the quantity; its integral since the first point
     };
     static Point next(const Point& from, double time, double value) {
         return {time, value, from.integral + (time - from.time) * (from.value + value) / 2};
@@ -206,23 +205,23 @@ private:
     std::deque<Point> points_;
 };
 
-/// Steps one side from sample to sample, and watches it.
+/// Steps one side from sample to sample, and checks it.
 class SideRun {
 public:
     /// `name` = 'a' or 'b', for errors.
     SideRun(const Scene& scene, const Side& side, char name);
 
-    /// Sample 0, then 1, 2, … Throws RunFailure with time and quantity where a number is no longer finite, the energy is
-    /// out of all proportion, a rod is off by its own length, or a step cannot be made; exit 130 soon after `stop` is
-    /// set.
+    /// Returns sample 0, then 1, 2, … Throws RunFailure with time and quantity if a number is not finite, the energy
+    /// error is far too large, the length error of a rod reaches its length, or a step fails; exit 130 soon after
+    /// `stop` is set.
     Observation next(const std::atomic<bool>& stop);
-    /// On to a moment before the next sample, or to that; Motion::advance_within() says what is at it with a fixed step.
+    /// Advances to a moment up to the next sample. With a fixed step, Motion::advance_within() says what that gives.
     /// Throws as next().
     Observation advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
-    /// Relative (analysis/watched_motion.hpp); nothing where damping takes energy, so that no change of it is an error.
+    /// Relative (analysis/watched_motion.hpp); nothing if damping reduces the energy, so that its change is no error.
     std::optional<double> energy_error(const Observation& seen) const;
-    /// J: of a driven side the mean over the drive's last period, once one is over.
+    /// J; for a driven side the mean over the last drive period, once one is over.
     std::optional<double> mean_energy(const Observation& seen) const;
     Effort effort() const { return motion_->effort(); }
 
@@ -235,21 +234,21 @@ private:
     char name_;
     std::unique_ptr<Motion> motion_;
     ErrorScale proportion_;
-    std::optional<PeriodMean> energy_;  // of a driven side
+    std::optional<PeriodMean> energy_;  // for a driven side
     Moment now_{-1};
 };
 
-/// What of a side's masses is compared with the other's: all, or the last one where the sides differ in kind.
+/// The masses of a side that are compared with the other's: all, or the last one if the sides are of different types.
 template <class Scalar>
 Bobs<Scalar> compared_bobs(const Scene& scene, const Bobs<Scalar>& bobs) {
     return differ_in_kind(scene.preset.a, scene.preset.b) ? Bobs<Scalar>{bobs.back()} : bobs;
 }
 
-/// Throws Error where the sides are so far apart that their distance is out of the range of a double; it names the
-/// number that makes it so. Exit 2 at the start, exit 3 later.
+/// Throws Error if the distance of the sides exceeds the range of double, with the number that causes it. Exit 2 at the
+/// start, exit 3 later.
 void check_distance(const Scene& scene, const PairState& state);
 
-/// Steps the pair from sample to sample: large sides at the same time, on two threads.
+/// Steps the pair from sample to sample; large sides in parallel on two threads.
 class PairRun {
 public:
     explicit PairRun(const Scene& scene)
@@ -259,17 +258,17 @@ public:
         if (!scene.is_single()) b_.emplace(scene, scene.b, 'b');
     }
 
-    /// Sample 0, then 1, 2, … Of a single pendulum side b is as side a. Throws as SideRun does.
+    /// Returns sample 0, then 1, 2, … For a single pendulum, side b is a copy of side a. Throws as SideRun does.
     PairState next(const std::atomic<bool>& stop);
     PairState advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_ ? b_->effort() : Effort{}; }
-    /// What other threads than the caller's have spent, s.
+    /// CPU time of other threads than the caller's, s.
     double other_cpu_s() const { return other_cpu_s_; }
 
 private:
-    static constexpr std::size_t large = 256;  // masses; a sample takes longer than to start a thread
+    static constexpr std::size_t large = 256;  // masses, from which on a sample takes longer than starting a thread
 
     void advance_sides(const std::atomic<bool>& stop, PairState& now);
 

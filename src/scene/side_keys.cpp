@@ -17,7 +17,7 @@ std::vector<SideKey> keys_of(SideSpec side) {
     side.step_s = side.step();
     side.tolerance = side.allowed_error();
     std::vector<SideKey> all;
-    std::map<std::string_view, int> counts;  // of entries, by their kinds
+    std::map<std::string_view, int> counts;  // entries of each kind
     int entry = 0;
     std::string place;
     for_each_key(side, [&](const SideEntry& owner, const Field& field, const KeyMember& member) {
@@ -111,7 +111,7 @@ std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b) 
         const auto twin = others.find(Name(key.place, key.key));
         return twin == others.end() ? std::nullopt : std::optional(*twin->second);
     };
-    // where the other side lacks the entry, its keys are not told one by one
+    // if the other side lacks the entry, its keys are not listed one by one
     const auto is_of_entry = [](const SideKey& key, const Index& others) {
         return !key.place.empty() && !key.key.empty() && !others.contains(Name(key.place, ""));
     };
@@ -132,7 +132,7 @@ std::string KeyDifference::words(bool of_b) const {
     if (!self || !self->counts) return fmt::format("no {}", name);
     if (self->numbers.empty()) return fmt::format("{} {}", name, self->text);
     const auto unit = fmt::format("{}{}", known.unit.empty() ? "" : " ", known.unit);
-    // of a long list, the first number in which the sides differ
+    // in longer lists, only the first number in which the sides differ is shown
     constexpr std::size_t most_listed = 3;
     const auto& numbers = self->numbers;
     if (numbers.size() > most_listed && other && other->numbers.size() == numbers.size()) {

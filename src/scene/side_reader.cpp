@@ -12,8 +12,8 @@
 namespace doppel {
 namespace {
 
-/// Whether an accuracy stands in place of integrator, step and tolerance: one from the command line for those of the
-/// preset, or they, from the command line, for its accuracy. Rivals given side by side are an error.
+/// Whether an accuracy replaces integrator, step size and tolerance. An accuracy from the command line replaces those
+/// of the preset, and vice versa. Both in the same place are an error.
 bool read_accuracy(TomlReader& table, SideSpec& side) {
     constexpr std::array<std::string_view, 3> rivals{"integrator", "step_s", "tolerance"};
     const std::string_view* rival = nullptr;
@@ -44,13 +44,13 @@ std::string served(const MethodEntry& method) {
     return fmt::format("{}", fmt::join(models_of(method), " and "));
 }
 
-/// Particles, constraints and forces. An entry with the name of one that is there changes it; others are added.
-/// read(entry, spec, is_new) tells whether the entry says enough to know which keys it may have.
+/// Reads particles, constraints and forces. An entry with the name of an existing one changes it; others are added.
+/// read(entry, spec, is_new) returns whether the entry's kind is known, and so its allowed keys.
 template <class Spec, class Read>
 void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& entries, const Read& read) {
     const auto tables = table.read_tables(key);
     std::set<std::string> given;
-    std::map<std::string, std::size_t> indices;  // of the entries with a name
+    std::map<std::string, std::size_t> indices;  // of named entries
     for (std::size_t i = 0; i < entries.size(); ++i)
         if (!entries[i].name.empty()) indices.emplace(entries[i].name, i);
     for (std::size_t i = 0; i < tables.size(); ++i) {
@@ -76,7 +76,7 @@ bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     return true;
 }
 
-/// The keys of one constraint or force: those of its kind, and no others.
+/// The keys of one constraint or force: those of its kind.
 bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const std::string_view> kinds) {
     const bool has_kind = entry.has("kind");
     if (is_new && !has_kind) {
@@ -86,14 +86,14 @@ bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const s
     std::string name(has_kind ? "" : name_of(part.kind));
     entry({.key = "kind", .names = kinds}, name);
     if (name.empty()) return false;
-    // what it has in common with another kind stays
+    // members common to both kinds are kept
     if (const auto kind = value_named<PartKind>(name); kind != part.kind)
         part = {part.name, kind, part.particle, part.from, part.to, part.position_m};
     part_fields(entry, part);
     return true;
 }
 
-/// A chain, and what a real one has besides.
+/// A chain, with the properties of rigid-body chains.
 void read_physical_chain(TomlReader& table, SideSpec& side) {
     const auto& rods = side.physical.rod_mass_kg;
     const bool has_rods = table.has("rod_mass_kg") || !table.elements_of("rod_mass_kg").empty() ||
@@ -137,7 +137,7 @@ void check_masses(TomlReader& table, const SideSpec& side) {
             throw table.fault("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
 }
 
-/// What a real chain cannot be together with, and what it must have.
+/// What excludes a rigid-body chain, and what it requires.
 void check_physical(TomlReader& table, const SideSpec& side) {
     const auto& physical = side.physical;
     if (physical.is_none()) return;
@@ -159,7 +159,7 @@ void check_physical(TomlReader& table, const SideSpec& side) {
     check_masses(table, side);
 }
 
-/// What the keys say together must be possible.
+/// Checks keys together.
 void check_choices(TomlReader& table, const SideSpec& side) {
     check_physical(table, side);
     if (side.is_mechanism() && side.model != ModelChoice::automatic && side.model != ModelChoice::mechanism)

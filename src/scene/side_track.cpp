@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-/// Reads the file beside the preset, from here, or built in.
+/// Reads the file relative to the preset, to the current folder, or the built-in one.
 void read_file(TrackSpec& spec, const std::string& preset_path, bool from_command_line) {
     const auto path = path_beside(preset_path, spec.file, from_command_line);
     const auto built_in = std::find_if(scene_files().begin(), scene_files().end(),

@@ -17,9 +17,9 @@
 namespace doppel {
 namespace {
 
-constexpr int most_parts = 8;  // of a key; Doppel's own have three at most
+constexpr int most_parts = 8;  // of a key; Doppel's keys have at most three
 
-/// Past the string that begins at `at`, or to where it breaks off.
+/// The position after the string that begins at `at`, or where it is broken off.
 std::size_t past_string(std::string_view text, std::size_t at) {
     const char quote = text[at];
     const std::string triple(3, quote);
@@ -30,7 +30,8 @@ std::size_t past_string(std::string_view text, std::size_t at) {
             ++at;
         } else if (text.substr(at, end.size()) == end) {
             at += end.size();
-            for (int i = 0; i < 2 && has_lines && at < text.size() && text[at] == quote; ++i) ++at;  // its own last two
+            for (int i = 0; i < 2 && has_lines && at < text.size() && text[at] == quote; ++i)
+                ++at;  // up to two quotes at its end belong to it
             return at;
         } else if (!has_lines && text[at] == '\n') {
             return at;
@@ -39,8 +40,8 @@ std::size_t past_string(std::string_view text, std::size_t at) {
     return text.size();
 }
 
-/// Every part of a key makes a table, and taking thousands of them down, one inside the other, would overflow the
-/// stack, whether the rest is TOML or not: so deep keys are found before the text is parsed.
+/// Throws if a key has too many parts. Each part makes a nested table; destroying thousands of nested tables would
+/// overflow the stack. So this is checked before the text is parsed.
 void bound_keys(std::string_view text, const std::string& path) {
     const auto in_key = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == ' ' || c == '\t' ||
@@ -81,7 +82,7 @@ toml::table parse(const std::string& text, const std::string& path, TomlTexts& t
     }
 }
 
-/// `value`, which `change` gives, in a table of its own.
+/// `value`, given by `change`, in a table of its own.
 toml::table parsed_value(const Override& change, const std::string& value, TomlTexts& texts) {
     const auto& text = texts.insert_or_assign(change.origin, TomlText("value = " + value)).first->second.text();
     bound_keys(text, change.origin);
@@ -99,7 +100,7 @@ bool is_toml(const std::string& value) {
     }
 }
 
-/// Text as one types it without quotes: "light", "1/1000", "#ff8800", "fonts/mine.ttf", "system.mass_kg[1]".
+/// Text that may be typed without quotes: "light", "1/1000", "#ff8800", "fonts/mine.ttf", "system.mass_kg[1]".
 bool is_bare_text(std::string_view value) {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (value.empty() || value[0] == '[' || value.find_first_of("\"'{}=,\\\n\r\t") != std::string_view::npos)
@@ -108,12 +109,13 @@ bool is_bare_text(std::string_view value) {
     return is_fraction || !(is_digit(value[0]) || value[0] == '-' || value[0] == '+' || value[0] == '.');
 }
 
-/// The same of the value as it was typed.
+/// The same for the value as typed.
 toml::table given_by(const Override& change, TomlTexts& texts) {
     try {
         return parsed_value(change, change.value, texts);
     } catch (const toml::parse_error& fault) {
-        if (const auto quoted = toml_text(change.value); is_bare_text(change.value) && is_toml(quoted))  // UTF-8
+        if (const auto quoted = toml_text(change.value);
+            is_bare_text(change.value) && is_toml(quoted))  // also checks UTF-8
             return parsed_value(change, quoted, texts);
         const auto list = fmt::format("[{}]", change.value);
         const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
@@ -127,7 +129,7 @@ std::string text_in(const toml::table& table, std::string_view key) {
     return table[key].value_or(std::string());
 }
 
-/// The entry of that name, or else the only one of that kind. An entry of [system] that a side says nothing of gets a
+/// The entry of that name, or the only one of that kind. If a side does not mention an entry of [system], it gets a
 /// table there. `key` = "system.force".
 toml::table& entry_named(const toml::table& root, toml::array& entries, std::string_view key, const std::string& name,
                          const Override& change) {
@@ -154,7 +156,7 @@ toml::table& entry_named(const toml::table& root, toml::array& entries, std::str
         names.empty() ? "give the entry a name in the preset" : fmt::format("there are {}", fmt::join(names, ", ")));
 }
 
-/// Where the key of `change` leads: the innermost table, and `key` ← what is left of it.
+/// Finds the innermost table of the key of `change`; `key` becomes the remaining key.
 toml::table& table_of(toml::table& root, const Override& change, std::string& key) {
     toml::table* table = &root;
     std::string way;
@@ -171,15 +173,16 @@ toml::table& table_of(toml::table& root, const Override& change, std::string& ke
             key = key.substr(inside + 1);
             return entry;
         }
-        if (!table->contains(head)) table->insert(head, toml::parse("", change.origin));  // knows its origin
+        if (!table->contains(head))
+            table->insert(head, toml::parse("", change.origin));  // parsed, so that it has its origin
         table = table->get_as<toml::table>(head);
         if (!table) throw bad_input("{}: \"{}\" is not a table", change.origin, head);
     }
     return *table;
 }
 
-/// Puts the value of `change` into the tables of `root`, in place of what is there; that of an element, "mass_kg[1]", as a
-/// key of its own, for the reader of the list.
+/// Sets the value of `change` in the tables of `root`. An element, "mass_kg[1]", is stored as a key of its own for the
+/// reader of the list.
 void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     std::string key = change.key;
     auto& table = table_of(root, change, key);
@@ -187,7 +190,7 @@ void apply(toml::table& root, const Override& change, TomlTexts& texts) {
     if (auto list = key; !take_element(list, element))
         throw bad_input("{}: an element of a list is written like system.mass_kg[1], the second", change.origin);
     auto given = given_by(change, texts);
-    // moved, not copied: a copy would forget where it comes from
+    // moved: a copy would lose its origin
     std::move(*given.get("value")).visit([&]<class Node>(Node&& node) {
         table.erase(key);
         table.insert(key, std::forward<Node>(node));
@@ -213,7 +216,7 @@ void apply(toml::table& root, const std::vector<Override>& overrides, TomlTexts&
 
 TomlDocument parse_document(const PresetText& source, const std::vector<Override>& overrides) {
     TomlDocument document{.path = source.path, .root = {}, .texts = {}};
-    // no part of the text: the parser would not count it as a column
+    // removed, because the parser does not count it as a column
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     const bool is_marked = source.text.starts_with(byte_order_mark);
     document.root = parse(source.text.substr(is_marked ? byte_order_mark.size() : 0), source.path, document.texts);
@@ -260,7 +263,8 @@ std::string TomlText::literal_at(std::size_t line, std::size_t column) const {
     while (std::tie(now, at) < std::tie(line, column) && offset < text_.size()) {
         const bool ends_line = text_[offset] == '\n';
         do ++offset;
-        while (offset < text_.size() && (static_cast<unsigned char>(text_[offset]) & 0xC0) == 0x80);  // of UTF-8
+        while (offset < text_.size() &&
+               (static_cast<unsigned char>(text_[offset]) & 0xC0) == 0x80);  // continuation bytes of UTF-8
         now += ends_line ? 1 : 0;
         at = ends_line ? 1 : at + 1;
     }

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::string_view command_line = "--";
 
-/// What keeps a text from being drawn; nothing where its fonts have all of its letters.
+/// Why a text cannot be drawn; nothing if its fonts contain all letters.
 std::optional<std::string> not_drawable(std::string_view text, const Typeface& typeface) {
     std::vector<std::string> letters;
-    constexpr std::size_t most = 8;  // that are named
+    constexpr std::size_t most = 8;  // named in the message
     for (auto lacking = typeface.missing_character(text); !lacking.empty() && letters.size() <= most;
          lacking = typeface.missing_character(text)) {
         auto after = lacking;
@@ -38,7 +38,7 @@ std::optional<std::string> not_drawable(std::string_view text, const Typeface& t
         fmt::join(letters, ", "), rest);
 }
 
-/// The tables whose keys mean something beside each other: [video] and those inside; all that describe sides.
+/// The group of tables whose keys are checked together: [video] and inner tables; all tables that describe sides.
 std::string group_of(std::string_view name) {
     name.remove_prefix(std::min(name.find_first_not_of('['), name.size()));
     const auto table = name.substr(0, name.find_first_of(".]"));
@@ -58,7 +58,7 @@ TomlReader::TomlReader(const toml::table* table, std::string name, std::string p
       typeface_(typeface),
       faults_(faults) {}
 
-/// Of the key's name, with the option of the command line that gave it; nothing where the key is absent.
+/// The source of the key's name, with the command line option that gave it; nothing if the key is absent.
 std::optional<toml::source_region> TomlReader::source_of(std::string_view key) const {
     if (!table_) return std::nullopt;
     for (auto&& [name, node] : *table_)
@@ -84,7 +84,7 @@ FaultPlace TomlReader::fault_place(std::string_view key) const {
 
 void TomlReader::note(std::string_view key, const Error& fault) const {
     const auto* known = dynamic_cast<const TomlFault*>(&fault);
-    // a title says nothing of the tables
+    // errors in a title are independent of the tables
     faults_->add({fault.what(), fault_place(key), name_.empty() ? std::string(key) : group_, std::string(key),
                   known ? known->beside() : std::nullopt});
 }
@@ -191,7 +191,7 @@ void TomlReader::check_together(const std::function<void()>& check) const {
     }
 }
 
-/// Whether the file gives a hidden key, and the command line another value of what hides it: then that is no error.
+/// Whether the file gives a key that is hidden because of a command line value: then it is no error.
 bool TomlReader::is_ruled_out(const Field& field) const {
     const auto* node = table_ ? table_->get(field.key) : nullptr;
     return node && !is_typed(*node) && std::any_of(table_->begin(), table_->end(), [&](const auto& entry) {

@@ -18,7 +18,7 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
-/// {1} of key[1]; its text is made for errors alone.
+/// {1} for key[1]; converted to text only for errors.
 using Element = std::initializer_list<std::size_t>;
 
 std::string index_text(Element element) {
@@ -27,7 +27,7 @@ std::string index_text(Element element) {
     return text;
 }
 
-/// Reads a value of a key into a member, by its type.
+/// Reads the value of a key into a member, by the member's type.
 class ValueReader {
 public:
     ValueReader(const TomlReader& table, const Field& field) : table_(table), field_(field) {}
@@ -73,7 +73,7 @@ public:
         } else if (const auto* whole = node.as_integer()) {
             value = reduced(whole->get(), 1);
         } else {
-            // of all digits that are written, or of none
+            // with all written digits
             const Quad decimal = number(node, {}, Quad());
             value = rational_from_decimal(static_cast<double>(decimal));
             const Quad rounding = parse_quad("1e-32") * abs(decimal);
@@ -87,7 +87,7 @@ public:
         into = *value;
     }
 
-    /// 1 to `most`.
+    /// 1 to `most` numbers.
     void read(const toml::node& node, std::vector<double>& into) const {
         if (node.is_number() && is_typed(node)) {
             into.resize(1);
@@ -97,7 +97,7 @@ public:
         read_array(node, std::span(into));
     }
 
-    /// One number for all, or as many as there are already: other keys say how many.
+    /// One number for all, or as many as the member already has: other keys give the count.
     void read(const toml::node& node, std::vector<Quad>& into) const {
         if (node.is_array()) return read_array(node, std::span(into), "links");
         if (!node.is_number())
@@ -125,7 +125,7 @@ public:
         read_whole_pair(node, "whole numbers", into.width, into.height);
     }
 
-    /// Bounds above 0: an axis by powers of ten.
+    /// For bounds > 0, a logarithmic axis.
     void read(const toml::node& node, Range& into) const {
         const auto [low, high] = two_numbers(node);
         if (field_.bounds.is_open && (!(high >= 10 * low) || high / low > 1e60))
@@ -134,7 +134,7 @@ public:
         into = {low, high};
     }
 
-    /// Each of `names`, if there are some.
+    /// Each must be one of `names`, if there are any.
     void read(const toml::node& node, std::vector<std::string>& into) const {
         auto texts = texts_in(node);
         for (const auto& text : texts) {
@@ -154,13 +154,13 @@ public:
         read(node, into.own.emplace());
     }
 
-    /// 1 to `most`.
+    /// 1 to `most` values.
     void read(const toml::node& node, TomlValues& into) const {
         into.texts.clear();
         for (const auto& element : some_of(node, "values")) into.texts.push_back(text_in(element));
     }
 
-    /// One of a list that is there; of its numbers, texts or colours.
+    /// Reads a given list of numbers, texts or colours.
     template <class T>
     void read_element(const toml::node& node, std::size_t element, T& into) const {
         const auto check_size = [&](std::size_t size) {
@@ -207,7 +207,7 @@ public:
         }
     }
 
-    /// The keys of a member of an ensemble, number `k` from 0.
+    /// Reads the keys of member number `k` of an ensemble, from 0.
     void read_release(const toml::table& table, std::size_t k, Release& member) const {
         for (const auto& [key, value] : table) {
             const auto list = std::ranges::find(Release::lists, key.str(), &Release::List::key);
@@ -234,7 +234,7 @@ public:
         if (into.empty()) throw fault("[{}] {} must have numbers, one a link; it is []", k, key);
     }
 
-    /// One speed, or times with speeds.
+    /// Reads one speed, or times with speeds.
     void read(const toml::node& node, Speed& into) const {
         const auto* array = node.as_array();
         into.changes.clear();
@@ -250,7 +250,7 @@ public:
         }
     }
 
-    /// "#rrggbb"
+    /// Reads "#rrggbb".
     void read(const toml::node& node, Color& into) const {
         const auto* text = node.as_string();
         const auto color = text ? parse_color(text->get()) : std::nullopt;
@@ -268,7 +268,7 @@ public:
         }
     }
 
-    /// "pendulums" and the strips, in their order.
+    /// "pendulums" and the strips, in order.
     void read(const toml::node& node, Panels& into) const {
         const auto panels = texts_in(node);
         const auto& names = names_of<StripKind>;
@@ -294,14 +294,14 @@ private:
     TomlFault fault(fmt::format_string<Args...> format, Args&&... args) const {
         return table_.fault(field_.key, format, std::forward<Args>(args)...);
     }
-    /// Of an element of the key's array.
+    /// An error of an element of the key's array.
     template <class... Args>
     TomlFault fault_of(Element element, fmt::format_string<Args...> format, Args&&... args) const {
         return {fmt::format("{}: {}{} {}", table_.place(field_.key), table_.subject(field_.key), index_text(element),
                             fmt::format(format, std::forward<Args>(args)...)),
                 table_.fault_place(field_.key)};
     }
-    /// The fault as one of several keys, where beside others the key would take the number.
+    /// The error together with other keys, if the key would accept the number without them.
     TomlFault faulty_number(double value, const TomlFault& fault) const {
         const auto& widest = field_.otherwise;
         const bool is_possible = widest && value >= widest->low && value <= widest->high;
@@ -317,7 +317,7 @@ private:
         const auto& bounds = field_.bounds;
         const auto& [low, high, is_open, zero, why, is_positive] = bounds;
         if ((is_open ? value > low : value >= low) && value <= high) return;
-        // keys mostly name the unit
+        // keys usually contain the unit
         const auto unit =
             field_.unit.empty() || field_.key.ends_with(field_.unit) ? "" : fmt::format(" {}", field_.unit);
         const auto right = is_positive && !(value > 0) ? "> 0"
@@ -332,21 +332,21 @@ private:
                                      why.empty() ? "it" : "one", toml_value(value)));
     }
 
-    /// Finite.
+    /// A finite number.
     double number(const toml::node& node, Element element, double) const {
         const auto value = node.is_number() ? node.value<double>() : std::nullopt;
         if (!value) throw fault_of(element, "must be a number; {}", found(node));
         if (!std::isfinite(*value)) throw fault_of(element, "must be finite; it is {}", *value);
-        return *value + 0.0;  // −0 is 0
+        return *value + 0.0;  // turns −0 into 0
     }
-    /// To all digits of what is written.
+    /// A number with all written digits.
     Quad number(const toml::node& node, Element element, const Quad&) const {
         const double rounded = number(node, element, 0.0);
         if (const auto* whole = node.as_integer()) return Quad(whole->get());
         const auto literal = literal_of(node, table_.texts());
         if (!literal) return Quad(rounded);
         const Quad value = parse_quad(*literal) + 0;
-        // the literal found must be the number that was read, or its place was mistaken
+        // the literal must equal the number that was read; otherwise its place is wrong
         constexpr double rounding = 1e-15, least = 1e-322;
         if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
             throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", table_.place(field_.key),
@@ -359,7 +359,7 @@ private:
         return value;
     }
 
-    /// `other` = the key that says how many there are.
+    /// `other` = the key that gives the count.
     template <class Number>
     void read_array(const toml::node& node, std::span<Number> into, std::string_view other = "") const {
         const auto& array = *node.as_array();
@@ -454,7 +454,7 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
     };
     try {
         std::visit(read, member);
-        for (const auto& given : elements_of(field.key)) {  // clang 14 captures no structured binding
+        for (const auto& given : elements_of(field.key)) {  // clang 14 cannot capture structured bindings
             auto one = field;
             one.key = given.first;
             const auto put = [&]<class M>(M into) {

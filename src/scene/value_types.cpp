@@ -7,7 +7,7 @@
 namespace doppel {
 namespace {
 
-/// A number of JSON: whole where it is.
+/// A JSON number, as an integer if it is whole.
 Json json_number(double number) {
     constexpr double most = 1e15;
     if (number == std::floor(number) && std::abs(number) < most) return std::llround(number);
@@ -24,7 +24,7 @@ Json within(const Bounds& bounds) {
     return schema;
 }
 
-/// A ratio is not negative, and nothing is divided by 0.
+/// A ratio is not negative, and its denominator is not 0.
 Json ratio_within(Bounds bounds) {
     constexpr std::string_view exponent = R"(([eE]\+?-?[0-9]+)?)", any = R"(([0-9]+\.?[0-9]*|\.[0-9]+))",
                                not_0 = R"(([0-9]*[1-9][0-9]*\.?[0-9]*|[0-9]*\.[0-9]*[1-9][0-9]*))";

@@ -19,21 +19,20 @@
 
 namespace doppel {
 
-/// An axis from `low` to `high`.
+/// The range of an axis from `low` to `high`.
 struct Range {
     double low, high;
 };
 
-/// How the pendulums of a film are placed: each side in a panel, the other as a shadow; both in one panel; many between
-/// the two, fanning out; both beside a panel of their phase space; for a telephone; side a alone.
+/// How the pendulums of a film are arranged: each side in a panel, with the other as a shadow; both in one panel; an
+/// ensemble between the two; both beside a phase portrait; upright for a telephone; only side a.
 enum class Arrangement { side_by_side, overlay, ensemble, phase, portrait, single };
 template <>
 inline constexpr auto names_of<Arrangement> = std::to_array<std::string_view>({"side-by-side", "overlay", "ensemble",
                                                                                "phase", "portrait", "single"});
 
-/// What a strip below the pendulums shows over time.
-/// "energy" is the error of the energy, or total_energy where friction or a drive changes it (make_scene()); "energies" are
-/// kinetic, potential and total.
+/// The quantity of a strip over time. "energy" is the error of the energy; with friction or a drive it becomes
+/// total_energy (make_scene()). "energies" are kinetic, potential and total energy.
 enum class StripKind {
     distance,
     exponent,
@@ -52,17 +51,17 @@ inline constexpr auto names_of<StripKind> = std::to_array<std::string_view>({"di
                                                                              "rod-error", "rod-force", "energies-a",
                                                                              "energies-b", "angles", "rates",
                                                                              "total-energy"});
-/// The keys of their axes.
+/// The keys of the strips' axes.
 inline constexpr std::array<std::string_view, strip_kinds> range_keys{
     "distance_range",   "exponent_range",   "energy_range", "rod_error_range", "rod_force_range",
     "energies_a_range", "energies_b_range", "angles_range", "rates_range",     "total_energy_range"};
-/// Those whose axis goes by powers of ten.
+/// Whether its axis is logarithmic.
 constexpr bool is_logarithmic(StripKind kind) {
     return kind == StripKind::distance || kind == StripKind::energy || kind == StripKind::rod_error;
 }
 
-/// What a phase panel shows: rates over angles as a path, or the points of a Poincaré section (θ1 passing the downward
-/// vertical upwards).
+/// The contents of a phase portrait: rate against angle as a path, or the points of a Poincaré section (θ1 passing the
+/// downward vertical upwards).
 enum class PhaseKind { rate, section };
 template <>
 inline constexpr auto names_of<PhaseKind> = std::to_array<std::string_view>({"rate", "section"});
@@ -74,7 +73,7 @@ inline constexpr auto names_of<PictureFormat> = std::to_array<std::string_view>(
 template <>
 inline constexpr auto names_of<PixelFormat> = pixel_format_names;
 
-/// A member of a group of keys that are alike.
+/// A member of a group of similar keys.
 template <class Group, class Value>
 struct Member {
     std::string_view key;
@@ -82,11 +81,12 @@ struct Member {
     std::string_view help;
 };
 
-/// Widths of what is drawn, px of a 1920×1080 picture. Finer lines than these lose their hue in 4:2:0 video.
+/// Widths of lines, px of a 1920×1080 picture. Finer lines lose their hue in 4:2:0 video.
 struct Widths {
     double trail = 4.4, trace = 2.8;
-    double grid = 1.4, mark = 1.6;   // lines of charts; now, the divergence, limits
-    std::optional<double> rod, bob;  // a rod's width, the radius of the heaviest bob; by the size of the panel
+    double grid = 1.4, mark = 1.6;  // lines of charts; current time, divergence, limits
+    std::optional<double> rod,
+        bob;  // width of a rod, radius of the heaviest bob; if not given, from the size of the panel
 };
 inline constexpr std::array<Member<Widths, double>, 4> width_names{{
     {"trail", &Widths::trail, "the path behind the last bob"},
@@ -95,7 +95,7 @@ inline constexpr std::array<Member<Widths, double>, 4> width_names{{
     {"mark", &Widths::mark, "lines that mark now, the divergence and the predictability limit"},
 }};
 
-/// Sizes of words, px an em in a 1920×1080 picture: at a third of that size they can still be read.
+/// Text sizes, px per em in a 1920×1080 picture; still legible at a third of that size.
 struct FontSizes {
     double title = 42, subtitle = 27, clock = 42, heading = 34, note = 27, strip = 27, axis = 27, card = 84;
 };
@@ -125,21 +125,22 @@ inline constexpr std::array<Member<Theme, Color>, 11> color_names{{
     {"trace", &Theme::trace, "curves of both sides together"},
 }};
 
-/// What a film shows: words around its pendulums ("credit": Doppel's name on the end card), and parts of these ("circle":
-/// what the outstretched chain reaches; "twin": the other side as a shadow). Trails and pivots are always shown.
+/// What a film shows: texts around its pendulums ("credit": Doppel's name on the end card), and parts of the panels
+/// ("circle": the circle that the outstretched chain can reach; "twin": the other side as a shadow). Trails and pivots
+/// are always shown.
 inline constexpr auto shown_parts = std::to_array<std::string_view>(
     {"title", "subtitle", "clock", "labels", "credit", "rods", "bobs", "circle", "twin"});
 
-/// The speeds that a film may change to.
+/// The range of speeds if the speed changes.
 inline constexpr auto changing_speeds = from_to(0.001, 1000);
 
-/// Seconds of motion a second of film: one speed; or from each of some times on another, eased (scene/frame_times.hpp).
+/// Seconds of motion per second of film: constant, or changing at given times with easing (scene/frame_times.hpp).
 struct Speed {
     struct Change {
         Rational at_s, speed;
         friend bool operator==(const Change&, const Change&) = default;
     };
-    Rational constant{1, 1};      // where there are no changes
+    Rational constant{1, 1};      // if there are no changes
     std::vector<Change> changes;  // from 0 s on
 
     bool changes_over_time() const { return !changes.empty(); }
@@ -149,12 +150,12 @@ struct Speed {
     }
 };
 
-/// A member of an ensemble. What it does not give goes from side a to side b in equal steps.
+/// A member of an ensemble. Numbers that it does not give go from side a to side b in equal steps.
 struct Release {
-    std::vector<Quad> angle_deg, mass_kg, length_m;  // one a link; none where not given
+    std::vector<Quad> angle_deg, mass_kg, length_m;  // one per link; empty if not given
     std::optional<Color> color;
 
-    /// Its lists with their keys, those of SideSpec, and how pictures write them.
+    /// Its lists with their keys, those of SideSpec, and their symbols in pictures.
     struct List {
         std::string_view key;
         std::vector<Quad> Release::*member;
@@ -166,20 +167,20 @@ inline constexpr std::array<Release::List, 3> Release::lists{{{"angle_deg", &Rel
                                                               {"mass_kg", &Release::mass_kg, "m", " kg"},
                                                               {"length_m", &Release::length_m, "l", " m"}}};
 
-/// The pendulums of an ensemble: so many from side a to side b, or each by itself.
+/// The members of an ensemble: a number of them from side a to side b, or a list.
 struct Members {
     static constexpr std::size_t most_releases = 8;
-    int count = 100;                // the pair included
-    std::vector<Release> releases;  // none, or 2 to most_releases
+    int count = 100;                // including the pair
+    std::vector<Release> releases;  // empty, or 2 to most_releases
 
     std::size_t size() const { return releases.empty() ? static_cast<std::size_t>(count) : releases.size(); }
 };
 
-/// The part of the plane that a panel of pendulums shows, in place of what fits the motion.
+/// The part of the plane shown in a panel, instead of an automatic one.
 struct ViewSpec {
     std::optional<std::array<Quad, 2>> center_m;  // x and y
     std::optional<double> height_m;
-    int follow = 0;  // the mass that stays in the middle, from 1; 0 = none
+    int follow = 0;  // number of the mass that stays in the centre, from 1; 0 = none
 };
 
 /// Whether a film shows the pendulums, and the strips below them.
@@ -188,46 +189,46 @@ struct Panels {
     std::vector<StripKind> strips{StripKind::distance};
 };
 
-/// [video]: what a film shows and how it is written. Sizes are for 1920×1080 and grow and shrink with the picture.
+/// [video]: contents and output of a film. Sizes are for 1920×1080 and scale with the picture.
 struct VideoSpec : Panels {
     Size size{1920, 1080};
-    std::optional<Rational> fps;  // frames/s; sample_hz · speed where it is not given, of a gif up to 30
+    std::optional<Rational> fps;  // frames/s; if not given, sample_hz · speed, at most 30 for a gif
     Speed speed;
     double speed_ease_s = 0.5;                      // of motion, before each change
-    Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // how long the first and the last frame stand
+    Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // hold times of the first and last frame
     Rational title_card_s{0, 1}, end_card_s{0, 1};  // 0 = none
 
     FilmFormat format = FilmFormat::mp4;
-    std::string codec;  // of webm; the usual one where empty
+    std::string codec;  // for webm; empty: the default
     PixelFormat pixel_format = PixelFormat::yuv420;
-    bool transparent = false;  // no page, no panels; what is drawn alone
+    bool transparent = false;  // without page and panels
     std::string preset = "doppel";
     int crf = 18;
-    std::optional<Rational> poster_s;                 // the frame nearest to this time, as a picture of its own
-    std::optional<std::array<int, 2>> contact_sheet;  // frames across and down
+    std::optional<Rational> poster_s;                 // save the frame nearest to this time as a picture
+    std::optional<std::array<int, 2>> contact_sheet;  // columns and rows
 
     Arrangement layout = Arrangement::side_by_side;
     std::vector<std::string> show{shown_parts.begin(), shown_parts.end()};
     Members members;  // of an ensemble
     PhaseKind phase = PhaseKind::rate;
-    int phase_link = 2;  // whose angle and rate
+    int phase_link = 2;  // number of the link in the phase portrait
     ViewSpec view;
-    std::optional<double> model_limit_s;                   // how long a fitted model predicts what was measured
-    std::array<std::optional<Range>, strip_kinds> ranges;  // of strips; fitted to the scene where not given
+    std::optional<double> model_limit_s;                   // predictability limit of a fitted model, s
+    std::array<std::optional<Range>, strip_kinds> ranges;  // of strips; automatic if not given
 
     std::string theme = "dark";
-    std::array<std::optional<Color>, color_names.size()> colors;  // in place of the theme's
+    std::array<std::optional<Color>, color_names.size()> colors;  // replace the theme's
     std::optional<std::array<Color, 2>> side_colors;
     Widths widths;
     FontSizes fonts;
-    std::optional<std::string> text_font;               // path of the font file for all words
-    Typeface typeface = Typeface::with_system_fonts();  // with that file, read
-    std::optional<double> glow_px;                      // glow radius of trails and bobs; the theme's where not given
+    std::optional<std::string> text_font;               // path of the font file for all text
+    Typeface typeface = Typeface::with_system_fonts();  // including that file
+    std::optional<double> glow_px;                      // glow radius of trails and bobs; the theme's if not given
     double trail_s = 2.5;                               // s; 0 = none
 
     bool shows(std::string_view part) const { return std::find(show.begin(), show.end(), part) != show.end(); }
     const FormatRow& format_row() const { return doppel::format_row(format, codec); }
-    /// How the file of a film of so many frames/s is written, but for its metadata.
+    /// The options of the video file at a frame rate, without metadata.
     VideoOptions options(const Rational& rate) const {
         return {.format = format,
                 .codec = codec,
