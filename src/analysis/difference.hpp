@@ -7,15 +7,15 @@
 
 namespace doppel {
 
-/// How far apart two systems of as many masses are in state space: the Euclidean norm of the difference of
-/// (m, x, vx, y, vy) over all masses, in SI numbers, so that a difference in mass counts.
+/// Distance of two systems with the same number of masses in state space: the Euclidean norm of the difference of (m,
+/// x, vx, y, vy) over all masses, in SI units. A difference in mass counts, too.
 template <class Scalar>
 Scalar state_space_distance(const Bobs<Scalar>& a, const Bobs<Scalar>& b) {
     using std::sqrt;
     Scalar sum(0);
     const auto add = [&](const Scalar& difference) { sum += difference * difference; };
     for (std::size_t i = 0; i < a.size(); ++i) {
-        // in the order of memory: GCC 12 at -O3 sums in that order whatever stands here, and the last bit depends on it
+        // in the order of memory: GCC 12 at -O3 sums in this order whatever is written, and the last bit depends on it
         add(a[i].mass - b[i].mass);
         add(a[i].x - b[i].x);
         add(a[i].y - b[i].y);
@@ -25,15 +25,15 @@ Scalar state_space_distance(const Bobs<Scalar>& a, const Bobs<Scalar>& b) {
     return sqrt(sum);
 }
 
-/// λ = ln(d / d0), the study's measure of divergence: dimensionless, not an exponent per second. Nothing where d0 or d
-/// is 0.
+/// λ = ln(d / d0), the measure of divergence in Kao's study: dimensionless, not an exponent per second. Nothing if d0
+/// or d is 0.
 inline std::optional<double> log_ratio(double distance, double start) {
     if (start == 0 || distance == 0) return std::nullopt;
     return portable_log(distance / start);
 }
 
-/// The mean of λ over all samples but the first of a pair, from its distances in their order (Kao 2022). Samples at which
-/// the two are one are left out; NaN where none is left, or the motion failed.
+/// The mean of λ over all samples of a pair except the first, from its distances in order (Kao 2022). Samples with
+/// distance 0 are left out. NaN if no sample is left, or the motion failed.
 class AverageLogRatio {
 public:
     void add(double distance) {
@@ -56,14 +56,14 @@ private:
     long counted_ = 0;
 };
 
-/// Finds when a pair that starts as one parts: from when on it is apart for a second of motion without a break.
+/// Finds when a pair that starts nearly equal diverges: its distance stays above the limit for one second from then on.
 class Divergence {
 public:
-    static constexpr double apart_at = 1;                  // state-space distance from which the two count as apart
-    static constexpr double together_at = 0.1 * apart_at;  // below it a pair starts as one, and can part
+    static constexpr double apart_at = 1;  // state-space distance from which the pair counts as diverged
+    static constexpr double together_at = 0.1 * apart_at;  // only a pair that starts below this distance can diverge
     static constexpr double least_s = 1;
 
-    /// Every sample in order, from that at time 0 on; s.
+    /// Adds a sample; all are required in order, from time 0 on. s.
     void add(double time, double distance) {
         if (time == 0) start_as_one_ = distance < together_at;
         if (!start_as_one_ || since_) return;
@@ -73,7 +73,8 @@ public:
     }
 
     bool start_as_one() const { return start_as_one_; }
-    /// s; known a second later. Nothing where the two stay together, come back within a second, or start apart.
+    /// The time of divergence, s; known one second later. Nothing if the pair does not diverge, comes back within a
+    /// second, or starts apart.
     std::optional<double> since() const { return since_; }
 
 private:

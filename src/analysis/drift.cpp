@@ -10,8 +10,8 @@
 namespace doppel {
 namespace {
 
-/// Settings are numbered, the finer the higher: steps of 100/n s, and tolerances of three digits from 0.0999 down to
-/// four roundings.
+/// Settings have numbers, finer ones higher numbers: steps of 100/n s, and tolerances of three digits from 0.0999 down
+/// to four times the machine epsilon.
 constexpr long all_steps_s = 100;
 constexpr long tolerances_a_decade = 900;
 constexpr long finest_tolerance = 14 * tolerances_a_decade + 110;  // 8.89e-16
@@ -22,7 +22,7 @@ bool is_adaptive(const MotionSpec& motion) {
 
 /// The motion with its n-th setting.
 MotionSpec at_setting(MotionSpec motion, long n) {
-    constexpr long samples_per_s = 4;  // at least, where steps are not longer
+    constexpr long samples_per_s = 4;  // at least, if steps are not longer
     if (is_adaptive(motion)) {
         motion.tolerance =
             parse_quad(fmt::format("{}e{}", 999 - n % tolerances_a_decade, -4 - n / tolerances_a_decade));
@@ -39,14 +39,13 @@ WatchedMotion watched(const MotionSpec& spec) {
     return {spec, chain.potential_range(), chain.reach()};
 }
 
-/// Of a sample, s.
+/// The time of a sample, s.
 double time_of(const MotionSpec& spec, long sample) {
     return static_cast<double>(sample) * static_cast<double>(spec.sample_interval.numerator) /
            static_cast<double>(spec.sample_interval.denominator);
 }
 
-/// Evaluations a second between the first sample and the last, or the last before a failure; NaN where there are not
-/// two.
+/// Evaluations per second between the first and the last sample (or the last before a failure); NaN with less than two.
 double evaluation_rate(const MotionSpec& spec, double duration_s, const std::atomic<bool>& stop) {
     auto motion = watched(spec);
     double first = NAN, rate = NAN;
@@ -58,7 +57,7 @@ double evaluation_rate(const MotionSpec& spec, double duration_s, const std::ato
     return rate;
 }
 
-/// By the finest setting within the cost. One that fails at once is too coarse.
+/// The motion at the finest setting within the cost. A setting that fails at once counts as too coarse.
 MotionSpec calibrated(const MotionSpec& motion, double evaluations_per_s, double seconds,
                       const std::atomic<bool>& stop) {
     const double most = evaluations_per_s * (1 + 1e-9);
@@ -74,7 +73,7 @@ MotionSpec calibrated(const MotionSpec& motion, double evaluations_per_s, double
     return at_setting(motion, coarse);
 }
 
-/// The slope of the straight line through the points, by least squares; NaN where there are not two.
+/// The slope of the least-squares line through the points; NaN with less than two.
 double slope(std::span<const double> x, std::span<const double> y) {
     const auto n = static_cast<double>(x.size());
     double mean_x = 0, mean_y = 0, above = 0, below = 0;
@@ -119,7 +118,7 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
 }
 
 Growth growth_of(std::span<const double> times_s, std::span<const double> errors, double failed_at_s) {
-    constexpr double decades = 2, doublings = 2;  // that the fits go back, of time
+    constexpr double decades = 2, doublings = 2;  // the range of time that the fits use
     std::vector<double> times, log_times, log_errors;
     for (std::size_t i = 0; i < errors.size(); ++i) {
         if (!(errors[i] > 0)) continue;
@@ -136,7 +135,7 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
     if (times.size() > 1) growth.exponent = fitted(log_times, decades * std::log(10));
     const double p = growth.exponent;
     using Kind = Growth::Kind;
-    // half-way between the powers 0, ½, 1 and 2; no error at all is bounded, too
+    // thresholds half-way between the powers 0, ½, 1 and 2; no error at all also counts as bounded
     growth.kind = p >= 1.5 ? Kind::steeper : p >= 0.75 ? Kind::linear : p >= 0.25 ? Kind::root : Kind::bounded;
     if (!(failed_at_s > 0)) return growth;
     return {Kind::failed, p, std::log(2) / fitted(times, doublings * std::log(2))};

@@ -16,7 +16,7 @@
 namespace doppel {
 namespace {
 
-/// The growth of one tangent, told in logarithms.
+/// The growth of one tangent, as its logarithm.
 class TangentGrowth {
 public:
     TangentGrowth(const TangentFlow& flow, const PhysicalPendulum<double>& p, double tolerance, double unit_s)
@@ -25,7 +25,7 @@ public:
           size_(flow.start.size() / 2),
           unit_(unit_s),
           least_(p.friction.is_none() ? -huge : tenth) {
-        // a direction that no symmetry knows: 1, 1/2, 1/3 …
+        // 1, 1/2, 1/3 …: a direction without any symmetry
         auto y = flow.start;
         for (Eigen::Index i = 0; i < links_; ++i) {
             y[size_ + i] = 1 / static_cast<double>(i + 1);
@@ -35,7 +35,7 @@ public:
         motion_.restart(y);
     }
 
-    /// How much ln|δ| grows in so many seconds.
+    /// The growth of ln|δ| over `seconds`.
     double advance(double seconds) {
         constexpr double many_turns = 100;  // rad
         TangentState y = motion_.advance(seconds);
@@ -50,11 +50,11 @@ public:
     }
 
 private:
-    static constexpr double huge = 13.8, tenth = -2.3;  // ln of a million, of 1/10
+    static constexpr double huge = 13.8, tenth = -2.3;  // ln of a million; ln of 1/10
 
-    /// ln of the tangent's Euclidean norm, rates times the natural unit of time.
+    /// ln of the tangent's Euclidean norm; rates are multiplied by the natural unit of time.
     double log_norm(const TangentState& y) const {
-        double angles = 0, rates = 0;  // squares
+        double angles = 0, rates = 0;  // sums of squares
         for (Eigen::Index i = 0; i < links_; ++i) {
             const double angle = y[size_ + i], rate = y[size_ + size_ / 2 + i];
             angles += angle * angle;
@@ -64,21 +64,21 @@ private:
     }
 
     TangentMotion motion_;
-    Eigen::Index links_, size_;  // size of the state alone
+    Eigen::Index links_, size_;  // size of the state without the tangent
     double unit_;                // s
-    double least_;               // ln|δ| from which on it is made 1 again: error control sees little of small ones
+    double least_;               // ln|δ| above which it is rescaled to 1; error control hardly sees small tangents
     double last_ = 0;
 };
 
-/// In standard errors from `count` numbers, what holds as much of Student's distribution as one standard deviation does
-/// of a normal one, within 2 %.
+/// The factor on a standard error from `count` numbers that makes Student's distribution cover as much as one standard
+/// deviation of a normal one, within 2 %.
 /// Source  Abramowitz & Stegun, 26.7.5, for x = 1.
 double student(std::size_t count) {
     const double n = static_cast<double>(count - 1);
     return 1 + 1 / (2 * n) + 1 / (4 * n * n) + 1 / (16 * n * n * n);
 }
 
-/// Of the mean, from `count` blocks of as many parts each, 1/s; more where these are few.
+/// The standard error of the mean, 1/s, from `count` blocks of equal size; larger if there are few blocks.
 double standard_error(const std::vector<double>& local, std::size_t count) {
     const auto parts = local.size() / count;
     std::vector<double> blocks(count);
@@ -89,15 +89,15 @@ double standard_error(const std::vector<double>& local, std::size_t count) {
     return student(count) * std::sqrt(square / static_cast<double>(count * (count - 1)));
 }
 
-/// What follows the transient is cut into so many blocks for the standard error; from four times as many to a quarter.
+/// The number of blocks after the transient; block lengths up to four times as long are tried.
 constexpr std::size_t blocks = 20;
 
-/// Mean and uncertainty of the local exponents of equal parts. Its own parts:
-///     standard error      of the mean, the greatest of those from blocks of growing length (Flyvbjerg & Petersen 1989,
-///                         J. Chem. Phys. 91:461): near sticky orbits, blocks that are short are not independent. Where
-///                         it still grows at the end, by blocks four times as long, it is taken to grow so once more
-///     finite time         what a tangent that grows like t, as that of a regular motion does, would show by now
-///     the other's error   a run four times as long has half of it
+/// Mean and uncertainty of the local exponents of equal parts. Contributions to the uncertainty:
+///     standard error      the largest of those from blocks of increasing length (Flyvbjerg & Petersen 1989, J. Chem.
+///                         Phys. 91:461): near sticky orbits, short blocks are not independent. If it still grows at
+///                         the end, by blocks four times as long, the same growth is assumed once more
+///     finite time         the value that a tangent growing like t, as in regular motion, would give at this time
+///     comparison          a run four times as long has half this error
 Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
     double mean = 0, error = 0, whole = 0, last = 0;
     for (const double value : local) mean += value / static_cast<double>(local.size());
@@ -108,24 +108,24 @@ Exponent summary(const std::vector<double>& local, const ExponentSpec& spec) {
         if (count == blocks) whole = last;
     }
     if (last > whole) error *= last / whole;
-    // of 48 runs in two chaotic seas 1 is beyond, of 24 from 70°, where orbits stick, 6, of 24 in a transient 15
+    // measured: exceeded by 1 of 48 runs in two chaotic seas, 6 of 24 from 70° (sticky orbits), 15 of 24 in a transient
     constexpr double unlike = 3;
     const bool is_settled = !(error > unlike * whole);
     const double finite_time = portable_log(spec.duration_s / spec.transient_s) / (spec.duration_s - spec.transient_s);
     return {mean, std::sqrt(1.25 * (error * error + finite_time * finite_time)), is_settled};
 }
 
-/// Of the equations for bodies.
+/// The tangent flow of the rigid-body equations.
 TangentFlow flow_of(const PhysicalPendulum<double>& p) {
     using Chain = PhysicalChain<Dual<double, 1>>;
     const auto release = p.cast<Dual<double, 1>>();
     return tangent_flow(Chain(release, false), Chain::start(release, false));
 }
 
-/// Of the eigenvalues of a matrix; 0 where it is that to rounding.
+/// The largest real part of a matrix's eigenvalues; 0 if it is zero within rounding.
 double greatest_real_part(const Eigen::MatrixXd& matrix) {
-    constexpr double rounding = 1e-12;  // what an oscillation without friction may seem to grow by
-    // as Eigen's eigenvalues(), without the vectors: half the time to compile
+    constexpr double rounding = 1e-12;  // apparent growth of an undamped oscillation by rounding
+    // like Eigen's eigenvalues() without vectors, at half the compile time
     const double scale = matrix.cwiseAbs().maxCoeff();
     const Eigen::HessenbergDecomposition<Eigen::MatrixXd> hessenberg(matrix / scale);
     Eigen::RealSchur<Eigen::MatrixXd> schur(matrix.rows());
@@ -133,14 +133,14 @@ double greatest_real_part(const Eigen::MatrixXd& matrix) {
     const Eigen::MatrixXd t = schur.matrixT() * scale;
     double most = -std::numeric_limits<double>::infinity();
     for (Eigen::Index i = 0; i < t.rows(); ++i) {
-        const bool is_pair = i + 1 < t.rows() && t(i + 1, i) != 0;  // of complex ones
+        const bool is_pair = i + 1 < t.rows() && t(i + 1, i) != 0;  // of complex eigenvalues
         most = std::max(most, is_pair ? t(i + 1, i + 1) + 0.5 * (t(i, i) - t(i + 1, i + 1)) : t(i, i));
         i += is_pair;
     }
     return std::abs(most) < rounding * scale ? 0 : most;
 }
 
-/// Nothing where the release is no equilibrium, as of what is driven.
+/// Nothing if the release is no equilibrium, as for driven pendulums.
 std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
     constexpr double level = 1e-14;  // of a sine
     for (std::size_t i = 0; i < p.chain.links(); ++i)
@@ -148,7 +148,7 @@ std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
             return std::nullopt;
     if (p.is_driven()) return std::nullopt;
     if (p.chain.gravity == 0) return 0.0;
-    // ∂(θ′, ω′)/∂(θ, ω)
+    // The Jacobian ∂(θ′, ω′)/∂(θ, ω).
     const auto flow = flow_of(p);
     const auto size = flow.start.size() / 2;
     Eigen::MatrixXd jacobian(size, size);
@@ -163,7 +163,7 @@ std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
     return std::sqrt(std::max(0.0, greatest_real_part(jacobian.bottomLeftCorner(size / 2, size / 2))));
 }
 
-/// `flow` = the tangents' of the pendulum.
+/// `flow` = the tangent flow of the pendulum.
 Exponent exponent_of(const TangentFlow& flow, const PhysicalPendulum<double>& p, const ExponentSpec& spec,
                      const std::atomic<bool>& stop) {
     if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};

@@ -7,43 +7,42 @@
 namespace doppel {
 
 struct ExponentSpec {
-    double duration_s = 500;               // of the motion, the transient included; > 0
-    double transient_s = duration_s / 10;  // left out at the start, while the tangent finds its direction
-    double tolerance = 1e-7;  // of dop853, state and tangent alike; energy keeps to 3e-7 of its range over 500 s
+    double duration_s = 500;               // of the motion, including the transient; > 0
+    double transient_s = duration_s / 10;  // left out at the start, while the tangent aligns
+    double tolerance = 1e-7;  // of dop853 for state and tangent; the energy error after 500 s is 3e-7 of its range
 };
 
 /// The largest Lyapunov exponent, λ = lim ln|δ(t)|/t.
 struct Exponent {
     double value;  // 1/s
-    /// 1/s: within it of the value is, two times in three or more, that of a run four times as long from a release next
-    /// to this one; within twice of it nine times in ten or more (docs/methods.md has how often).
+    /// 1/s. A run four times as long from a nearby release has its value within this in at least two of three cases,
+    /// and within twice this in at least nine of ten (docs/methods.md has the frequencies).
     double uncertainty;
-    /// Whether long stretches of the run differ by no more than short ones foretell. Where they do (a chaotic transient,
-    /// orbits that stick), one run does not show all of the motion, and the uncertainty is too small.
+    /// Whether long parts of the run differ no more than short parts suggest. If they differ more (a chaotic transient,
+    /// sticky orbits), one run does not represent the whole motion, and the uncertainty is too small.
     bool is_settled = true;
 
-    /// Whether the release stays where it is, and its exponent is known exactly.
+    /// Whether the release is an equilibrium, whose exponent is exact.
     bool is_of_equilibrium() const { return uncertainty == 0; }
 };
 
-/// Whether the exponent cannot be told from 0, as for regular motion: up to 1.5 times its uncertainty (regular
-/// motions had up to 0.8, of 40).
+/// Whether the exponent cannot be distinguished from 0, as for regular motion: up to 1.5 times its uncertainty (40
+/// regular motions had at most 0.8).
 inline bool is_regular(const Exponent& exponent) {
     return exponent.value <= 1.5 * exponent.uncertainty;
 }
 
-/// The largest exponent of the motion that `p` is released into, any number of links, by the tangent equations in
-/// (θ, ω). The time, by which a driven pendulum moves, is given: no exponent is its own.
-/// One released at an equilibrium, at rest and all links upright or hanging to rounding (or g = 0), stays there: its
-/// exponent is the greatest real part of the eigenvalues of the linearised equations.
+/// The largest exponent of the motion released as `p`, with any number of links, from the tangent equations in (θ, ω).
+/// The time of a driven pendulum is given, so it has no exponent of its own.
+/// A release at an equilibrium (at rest with all links vertical within rounding, or g = 0) stays there: its exponent is
+/// the largest real part of the eigenvalues of the linearised equations.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:21.
-/// Errors  exit 2 where joints have Coulomb friction (require_smooth()), exit 3 where dop853 fails, exit 130 soon
-///         after `stop` is set.
+/// Errors  exit 2 if joints have Coulomb friction (require_smooth()), exit 3 if dop853 fails, exit 130 soon after
+///         `stop` is set.
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop);
 
-/// Throws Error (exit 2) where joints have Coulomb friction: they come to rest and let go again, where the motion has no
-/// tangents.
+/// Throws Error (exit 2) if joints have Coulomb friction: where they stop and start, the motion has no tangents.
 void require_smooth(const PhysicalPendulum<double>& p);
 
 }  // namespace doppel

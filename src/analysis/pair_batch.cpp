@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-/// The pendulums of one side, or of both where they obey the same equations, each of them once.
+/// The pendulums of one side, or of both if they have the same equations, without duplicates.
 struct SideBatch {
     const MotionSpec& side;
     std::vector<Pendulum<double>> members{};
@@ -18,7 +18,7 @@ struct SideBatch {
     std::vector<Bobs<double>> seen{};
     State<double, Eigen::Dynamic> state{};
 
-    /// The number of this pendulum, which is new or was there.
+    /// Adds the pendulum if it is new, and returns its number.
     std::size_t add(const Pendulum<double>& pendulum) {
         const auto known = std::find(members.begin(), members.end(), pendulum) - members.begin();
         if (known == static_cast<std::ptrdiff_t>(members.size())) members.push_back(pendulum);

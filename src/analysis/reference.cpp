@@ -10,10 +10,10 @@
 namespace doppel {
 namespace {
 
-/// Of a motion by Taylor series.
+/// The end of a motion by Taylor series in quad.
 Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& seconds,
                         const std::atomic<bool>& stop) {
-    constexpr long parts = 64;  // an interruption is noticed between them
+    constexpr long parts = 64;  // an interruption is noticed between parts
     spec.precision = Precision::in_quad;
     spec.tolerance = parse_quad(tolerance);
     spec.sample_interval = *quotient(seconds, {parts, 1});
@@ -22,14 +22,14 @@ Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& 
     return motion->observe();
 }
 
-/// By how many roundings, half an ulp each, some_roundings_away() moves a number. A number is wrong by one at most; more of
-/// them leave room for the errors of the steps.
+/// The number of roundings, half an ulp each, by which some_roundings_away() changes a number. A number is wrong by at
+/// most one; the rest allows for the errors of the steps.
 constexpr double roundings_away = 24;
 
-/// Light masses make more of the roundings of steps than of those of the start: 5.5 times that was seen.
+/// Light masses amplify the rounding errors of steps more than those of the start: by up to 5.5 times in trials.
 constexpr double caution = 9;
 
-/// The same system with its numbers some roundings away, those of its precision.
+/// The same system with each number changed by some roundings of its precision.
 MotionSpec some_roundings_away(MotionSpec spec) {
     Quad change = roundings_away / 2 *
                   (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
@@ -49,7 +49,7 @@ MotionSpec some_roundings_away(MotionSpec spec) {
             for (auto& number : *numbers) move(number);
     }
     if (spec.parts) {
-        // places and velocities stay: constraints hold them
+        // positions and velocities stay, because constraints hold for them
         for (auto& particle : spec.parts->particles) move(particle.mass);
         for (auto& force : spec.parts->forces) {
             if (auto* gravity = std::get_if<Gravity<Quad>>(&force)) move(gravity->g);
@@ -59,8 +59,8 @@ MotionSpec some_roundings_away(MotionSpec spec) {
     return spec;
 }
 
-/// A motion and another beside it, sample by sample, `further` times as far as to where `caution` times what they are apart
-/// is more than `enough`; its uncertainty is the largest of that so far.
+/// Follows a motion and a neighbouring one sample by sample. Beyond the point where `caution` times their distance
+/// exceeds `enough`, it continues until `further` times that time. The uncertainty is the largest distance up to then.
 ReferenceTrajectory followed(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples, double enough,
                              double further, const std::atomic<bool>& stop) {
     ReferenceTrajectory all{measure};
@@ -123,7 +123,7 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
     const ErrorMeasure measure{spec.chain.has_value()};
     Reference reference{end_in_quad(spec, "1e-32", seconds, stop), 0, NAN};
     for (std::size_t i = 0; is_plain && i < spec.chain->links(); ++i) {
-        constexpr double apart = 1e-14;  // rad: far above the tolerance; what grows from it stays small
+        constexpr double apart = 1e-14;  // rad: far above the tolerance, yet its growth remains small
         auto beside = spec;
         beside.chain->angle[i] += Quad(apart);
         const double grown = measure.distance(end_in_quad(beside, "1e-24", seconds, stop), reference.end);
@@ -132,7 +132,7 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
     if (is_plain) spec.model = Model::constraints;
     reference.disagreement =
         measure.distance(reference.end, end_in_quad(spec, is_plain ? "1e-32" : "1e-30", seconds, stop));
-    // quad at its tolerance comes to some 1e-30 of the sensitivity; that of a mechanism is not known
+    // quad at its tolerance reaches some 1e-30 of the sensitivity; the sensitivity of a mechanism is unknown
     const double allowed = is_plain ? 1e-26 * std::max(reference.sensitivity, 1.0) : 1e-15;
     if (!(reference.disagreement <= allowed))
         throw method_failed(
@@ -154,17 +154,18 @@ ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, d
         followed(*fine, *made(some_roundings_away(spec), quad ? "3e-33" : "3e-15"), measure, samples, enough, 1, stop);
     if (!std::isfinite(own.uncertainty.back())) own.seen.pop_back(), own.uncertainty.pop_back();
     const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
-    // series by a tape take as long as those of so many ideal links; where joints stick, steps are tiny
+    // a taped series takes as long as one of so many ideal links; joints with Coulomb friction need tiny steps
     constexpr double of_tape = 30;
     const double work = static_cast<double>(fine->effort().evaluations) * bodies * (spec.physical ? of_tape : 1);
     if (quad || work > most_work || (spec.physical && !spec.physical->friction.coulomb.empty())) return own;
     auto in_quad = spec;
     in_quad.precision = Precision::in_quad;
-    constexpr double further = 1.25;  // than a run in double is of use; quad at that tolerance gets as much further
+    constexpr double further =
+        1.25;  // times as long as a run in double is useful; quad at that tolerance reaches further by this factor
     auto wide =
         followed(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, caution * enough, further, stop);
     wide.is_wider = true;
-    // a run in double begins at numbers that were rounded once; a smaller error may be chance
+    // a run in double starts from rounded numbers; a smaller error may be coincidence
     wide.uncertainty.assign(wide.seen.size(), 0);
     for (std::size_t sample = 0; sample < wide.seen.size() && !own.uncertainty.empty(); ++sample)
         wide.uncertainty[sample] =

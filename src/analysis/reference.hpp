@@ -10,9 +10,9 @@
 
 namespace doppel {
 
-/// How far one motion is from another: rad, the largest of all angles, up to whole turns; of what hangs in no chain, of
-/// places in units of `reach`. NaN where a number is NaN. In quad, where either is: turns are then taken off in quad, or
-/// nothing below their rounding in double, 2e-16 a turn, could be seen.
+/// The distance of two motions: the largest difference of any angle modulo whole turns, rad; for mechanisms, of
+/// positions in units of `reach`. NaN if a number is NaN. Computed in quad if either motion is: in double, removing
+/// turns would hide differences below 2e-16 per turn.
 struct ErrorMeasure {
     bool in_angles = true;
     double reach = 1;  // m
@@ -25,40 +25,38 @@ struct ErrorMeasure {
     }
 };
 
-/// How a motion ends, to more digits than double has.
+/// The end of a motion, to more digits than double has.
 struct Reference {
-    Observation end;      // angles up to whole turns
-    double disagreement;  // of the two computations: of angles, rad, or of places, m, where there are none
-    /// How much the motion makes of an error at its start: the largest |∂θ_i(T)/∂θ_j(0)|; NaN where it is no chain of point
-    /// masses.
+    Observation end;      // angles modulo whole turns
+    double disagreement;  // of the two computations: of angles, rad, or for mechanisms of positions, m
+    /// The factor by which the motion amplifies an initial error: the largest |∂θ_i(T)/∂θ_j(0)|. NaN if it is no chain
+    /// of point masses.
     double sensitivity;
 
-    /// The error that rounding alone makes in double, which no method can be expected to beat; NaN where it is not known.
+    /// The error from rounding in double, which no method is expected to undercut; NaN if unknown.
     double floor() const { return 0x1p-53 * sensitivity; }
 };
 
-/// The end after `seconds`, by Taylor series in quad, twice: a chain in angles and as particles on rods, which have no
-/// equation in common; links with mass, friction or a drive and mechanisms at two tolerances, and so orders. The
-/// sensitivity by runs in quad from next to the start. Of `spec` only what moves, and whether it is a mechanism, matters.
-///
-/// Throws Error: exit 3 where the two differ by more than quad makes of the sensitivity, or a step cannot be made; exit 130
-/// soon after `stop` is set.
+/// The end after `seconds` by Taylor series in quad, computed twice. A chain is computed in angles and as particles on
+/// rods, which share no equation. Rigid-body chains and mechanisms are computed at two tolerances, and so two orders.
+/// The sensitivity comes from neighbouring runs in quad. Of `spec`, only the system matters, and whether it is a
+/// mechanism. Throws Error: exit 3 if the two results differ by more than the sensitivity and quad precision explain,
+/// or a step cannot be made; exit 130 soon after `stop` is set.
 Reference reference_end(MotionSpec spec, const Rational& seconds, const std::atomic<bool>& stop);
 
-/// The motion as well as it can be known, sample by sample: what the errors of a run are measured by.
-///
-/// Of a motion in double, by Taylor series in quad: wrong by a ten-thousandth of what any run in double is. Where that
-/// would cost too much, and of a motion in quad, by Taylor series as fine as its own precision allows; how far those
-/// may be off is told by others of another tolerance, from a start some roundings away.
+/// The most accurate motion available, sample by sample, by which the errors of a run are measured. For a motion in
+/// double it is a Taylor series in quad: its error is a ten-thousandth of that of any run in double. If that costs too
+/// much, and for a motion in quad, it is a Taylor series at the finest tolerance of the motion's precision; its error
+/// is estimated from runs at another tolerance and from changed initial numbers.
 struct ReferenceTrajectory : ErrorMeasure {
     std::vector<std::vector<Quad>> seen{};  // coordinates() at samples 0, 1 …
-    /// How far that may be off: rad, or units of `reach`, the largest so far. Where `is_wider`, what one rounding of the
-    /// motion's numbers to its precision does: they are not known better.
+    /// Error bound of the reference, rad or units of `reach`; the maximum up to each sample. If `is_wider`, it is the
+    /// effect of rounding the motion's numbers to its precision.
     std::vector<double> uncertainty{};
-    bool is_wider = false;  // in more digits than the motion's own
-    std::string failure{};  // why it could not go on
+    bool is_wider = false;  // computed with more digits than the motion has
+    std::string failure{};  // why it ended early
 
-    /// How far a motion is from it at a sample that was seen.
+    /// The distance of a motion from the reference at a sample.
     double off_at(std::size_t sample, const Observation& observed) const {
         return distance(coordinates(observed), seen[sample]);
     }
@@ -67,38 +65,39 @@ struct ReferenceTrajectory : ErrorMeasure {
     }
 };
 
-/// What quad may cost, in evaluations of the right-hand side times links or particles: some two seconds.
+/// The limit of the cost in quad, in evaluations of the right-hand side times links or particles: some two seconds.
 inline constexpr double most_quad_work = 3e5;
 
-/// Up to `samples`, or somewhat beyond where a run in the motion's own precision would be off by more than `enough`.
-/// The system is that of `spec`; its method does not matter. `most_work` of quad; 0 = none.
+/// Up to `samples`, or somewhat beyond the sample where the error of a run in the motion's own precision exceeds
+/// `enough`. The system is that of `spec`; its method does not matter. `most_work` in quad; 0 = none.
 /// Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
 ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
                                          const std::atomic<bool>& stop, double most_work = most_quad_work);
 
-/// The motion of `spec` by the method of the reference in the motion's own precision.
+/// The motion of `spec` by the method of a reference in the motion's own precision.
 MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance);
 
-/// How far a run is off, in rad, the largest of all angles and of all samples so far; of what hangs in no chain, of
-/// places in units of its size. What the reference itself may be off by counts as well.
+/// The error of a run: the maximum over all angles and all samples up to each one, rad; for mechanisms, of positions in
+/// units of the size. The uncertainty of the reference is included.
 struct ErrorHistory {
-    std::vector<double> error;  // at samples 0, 1 …, up to the first that is too great
-    Effort effort;              // of the run, as far as the reference goes:
-    long effort_samples = 0;    // up to that one
-    std::string failure;        // why it, or the reference, could not go on
+    std::vector<double> error;  // at samples 0, 1 …, up to the first that is too large
+    Effort effort;              // of the run, as far as the reference goes
+    long effort_samples = 0;    // number of samples of `effort`
+    std::string failure;        // why the run or the reference ended early
 
-    /// Infinity where nothing was seen that far.
+    /// Infinity beyond the last known sample.
     double at(std::size_t sample) const {
         return sample < error.size() ? error[sample] : std::numeric_limits<double>::infinity();
     }
-    /// The last sample before an error is greater; −1 = none.
+    /// The last sample before an error exceeds `allowed`; −1 = none.
     long last_within(double allowed) const {
         return std::upper_bound(error.begin(), error.end(), allowed) - error.begin() - 1;
     }
 };
 
-/// The run of `spec` beside the reference, sample by sample; errors until it is off by more than `enough`, fails,
-/// or the reference ends. Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
+/// The error of `spec` compared with the reference, sample by sample, until it exceeds `enough`, the run fails, or the
+/// reference ends.
+/// Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
 ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,
                            const std::atomic<bool>& stop);
 

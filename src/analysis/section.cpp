@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// A double pendulum on its way from crossing to crossing, step by step.
+/// Steps a double pendulum and finds its crossings of the section.
 class Crossings {
 public:
     using Model = DoublePendulum<double>;
@@ -20,9 +20,9 @@ public:
     Crossings(const Pendulum<double>& p, double tolerance)
         : model_(p), canonical_(model_), stepper_(model_, Model::start(p), tolerance) {}
 
-    double time() const { return static_cast<double>(time_); }  // s, up to which all crossings are found
+    double time() const { return static_cast<double>(time_); }  // s; all crossings up to here have been found
 
-    /// Another step; the crossings on it are added, in order.
+    /// Takes a step and adds its crossings in order.
     void step(std::vector<SectionPoint>& points) {
         stepper_.take_step();
         const auto angle = stepper_.on_step(0);
@@ -36,7 +36,7 @@ public:
     }
 
 private:
-    /// Where θ1 rises through `level`, rad, within a bracket.
+    /// The crossing of θ1 upwards through `level`, rad, inside a bracket.
     SectionPoint crossing(const Bracket& bracket, double level) {
         constexpr double rounding = 1e-15;  // rad, and relative
         const double at = root(bracket, [&](double t) {
@@ -55,8 +55,8 @@ private:
     Model model_;
     Canonical<Model> canonical_;
     Taylor::Stepper<Model> stepper_;
-    Model::State z_ = Model::State::Zero();  // no local: what is written to that, GCC 12 loses at -O3
-    Quad time_ = 0;                          // s, where the step starts: a sum of tens of thousands
+    Model::State z_ = Model::State::Zero();  // a member, because GCC 12 at -O3 loses what is written to a local one
+    Quad time_ = 0;                          // start of the step, s: a sum of tens of thousands of steps
 };
 
 }  // namespace
@@ -76,10 +76,10 @@ std::vector<SectionPoint> poincare_section(const Pendulum<double>& p, const Sect
     return points;
 }
 
-/// On the section, with D = −θ2, the energy above that of hanging is
+/// On the section, with D = −θ2, the energy above the hanging equilibrium is
 ///     E = ½ l1² (m1 + m2 sin²θ2) ω1² + p2² / (2 m2 l2²) + m2 g l2 (1 − cosθ2) ,
-/// so that |p2| has a greatest value at each θ2, and ω1 follows. Points are spread by multiples of 1/ρ and 1/ρ², where
-/// ρ³ = ρ + 1: they fill the unit square evenly, however many are taken.
+/// so that |p2| has a maximum at each θ2, and ω1 follows. Points are at multiples of 1/ρ and 1/ρ² with ρ³ = ρ + 1,
+/// which fill the unit square evenly for any number of points.
 /// Source  Roberts 2018, The unreasonable effectiveness of quasirandom sequences.
 std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, double energy_J, int count) {
     if (!(energy_J > 0) || !(p.gravity >= 0))
@@ -91,7 +91,7 @@ std::vector<Pendulum<double>> releases_of_energy(const Pendulum<double>& p, doub
     constexpr double rho = 1.324717957244746;
     std::vector<Pendulum<double>> releases;
     for (int k = 0; k < count; ++k) {
-        const double u = 0.5 + k / rho, v = 0.5 + k / (rho * rho);  // their fractions
+        const double u = 0.5 + k / rho, v = 0.5 + k / (rho * rho);  // fractional parts
         const double theta2 = widest * (2 * (u - std::floor(u)) - 1);
         const SinCos<double> turn(theta2);
         const double kinetic = energy_J - weight * (1 - turn.cos);

@@ -14,8 +14,8 @@
 namespace doppel {
 namespace {
 
-/// frame = QR becomes Q, by Householder's reflections; returns |R_ii|. (Eigen's own QR by blocks, for large matrices, takes
-/// seconds to compile.)
+/// Replaces the frame = QR by Q, by Householder reflections; returns |R_ii|. (Eigen's blocked QR takes seconds to
+/// compile.)
 /// Source  Golub & Van Loan, Matrix Computations, §5.2.
 Eigen::VectorXd orthonormalise(Eigen::MatrixXd& frame) {
     const auto n = frame.rows();
@@ -34,11 +34,11 @@ Eigen::VectorXd orthonormalise(Eigen::MatrixXd& frame) {
     return stretched.cwiseAbs();
 }
 
-/// All tangents to a motion, kept upright: now and then their frame is turned into an orthonormal one, and what it has
-/// stretched by is told in logarithms. Frames are canonical, (δθ, δp), where a flow without friction keeps the volume: the
-/// logarithms sum to 0 at any time.
+/// All tangents of a motion. At intervals their frame is made orthonormal, and its stretching is added up as
+/// logarithms. Frames are canonical, (δθ, δp), in which a flow without friction preserves volume: the logarithms always
+/// sum to 0.
 /// Source  Shimada & Nagashima 1979, Progress of Theoretical Physics 61:1605; Benettin et al. 1980, Meccanica 15:21.
-/// `directions` are at least 2N; those beyond are 0.
+/// `directions` must be at least 2N; the remaining ones are 0.
 template <int directions>
 class Frame {
 public:
@@ -59,9 +59,9 @@ public:
         restart(Matrix::Identity(2 * links_, 2 * links_));
     }
 
-    /// What ln|δ_i| grow by in so many seconds.
+    /// The growth of each ln|δ_i| over `seconds`.
     Column advance(double seconds) {
-        constexpr double flat = 1e-7;  // a frame of which the least side has lost half of its digits
+        constexpr double flat = 1e-7;  // the frame's smallest side has lost half of its digits
         to_dual(motion_.advance(seconds), y_);
         canonical_.momenta(y_, z_);
         Matrix frame(2 * links_, 2 * links_);
@@ -81,10 +81,10 @@ private:
     using Number = Dual<double, directions>;
     using Model = PhysicalChain<Number>;
 
-    /// Of the state: angles and momenta, without the time.
+    /// The rows of the state: angles and momenta, without the time.
     Eigen::Index row(Eigen::Index i) const { return i < links_ ? i : z_.size() / 2 + i - links_; }
 
-    /// The values of z with the frame's columns for tangents.
+    /// Restarts with the values of z and the columns of the frame as tangents.
     void restart(const Matrix& frame) {
         for (Eigen::Index i = 0; i < 2 * links_; ++i)
             z_[row(i)].tangent.head(2 * links_) = unit_[i] * frame.row(i).transpose();
@@ -97,9 +97,9 @@ private:
     Canonical<Model> canonical_;
     typename Model::State y_, z_;
     TangentMotion motion_;
-    TangentState start_;  // where it was last set down
+    TangentState start_;  // at the last restart
     Eigen::Index links_;
-    Column unit_;  // of angles and momenta: 1 and N m s
+    Column unit_;  // units of angles and momenta: 1 and N m s
 };
 
 template <int directions>

@@ -16,10 +16,10 @@
 namespace doppel {
 namespace {
 
-/// The larger eigenvalue in size of leapfrogs of γz, one after another, each
+/// The larger |eigenvalue| of a product of leapfrog steps of γz, each
 ///     ( 1 − z²/2           z     )
 ///     ( −z (1 − z²/4)   1 − z²/2 )
-/// with γ those of the first half, the middle one that makes the sum 1, and those of the other half.
+/// with γ those of the first half, the middle one that makes their sum 1, and those of the other half.
 double leapfrog_growth(std::span<const std::string_view> first_half, double z) {
     Eigen::Matrix2d all = Eigen::Matrix2d::Identity();
     const auto add = [&](double fraction) {
@@ -33,14 +33,15 @@ double leapfrog_growth(std::span<const std::string_view> first_half, double z) {
     std::for_each(half.begin(), half.end(), add);
     add(middle);
     std::for_each(half.rbegin(), half.rend(), add);
-    const double half_trace = std::abs(all.trace() / 2);  // of determinant 1
+    const double half_trace = std::abs(all.trace() / 2);  // its determinant is 1
     return half_trace <= 1 ? 1 : half_trace + std::sqrt((half_trace - 1) * (half_trace + 1));
 }
 
 constexpr std::size_t adams_order = AdamsWeights::bashforth.size();
 
-/// What is left of the amplitude of y′ = iω y after `steps` from the true motion: the roots that grow are not those that
-/// carry it, and begin at the error of one step. Predict, evaluate, correct, evaluate over the last eight y:
+/// The amplitude of y′ = iω y after `steps` from exact initial values. The growing roots are not the one that
+/// represents the solution; they start at the error of one step. Predict, evaluate, correct, evaluate with the last
+/// eight y:
 ///     p = y_n + iz Σ_j b_j y_{n−j} ,   y_{n+1} = y_n + iz (c_0 p + Σ_{j>0} c_j y_{n+1−j})
 double adams_amplitude(double z, long steps) {
     using Power = Eigen::Matrix<std::complex<double>, adams_order, adams_order>;
@@ -63,12 +64,12 @@ double adams_amplitude(double z, long steps) {
     return std::abs(past[0]);
 }
 
-/// Takes the error of one sample in; NaN stays.
+/// Updates `greatest` with one error; NaN is kept.
 void take(double error, double& greatest) {
     greatest = error <= failure_error ? std::max(greatest, error) : NAN;
 }
 
-/// By a method that steps them in lanes.
+/// For methods that integrate in SIMD lanes.
 std::vector<double> side_by_side(const MotionSpec& spec, std::span<const Pendulum<Quad>> releases, long samples,
                                  const std::atomic<bool>& stop) {
     std::vector<Pendulum<double>> chains;
@@ -122,7 +123,7 @@ std::vector<Mode> small_oscillations(const Pendulum<double>& p) {
     }
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved(n);
     solved.computeFromTridiagonal(diagonal, below, Eigen::ComputeEigenvectors);
-    // each mode is an oscillator by itself
+    // each mode is an independent oscillator
     const auto amounts = [&](const std::vector<double>& values) -> Eigen::VectorXd {
         Eigen::VectorXd moved(n);
         double across = 0;
@@ -150,7 +151,7 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
     };
     double fastest = 0;
     for (const auto& mode : modes) fastest = std::max(fastest, mode.frequency);
-    // from a step at which nothing has grown to one at which it has; then between them
+    // increases the step until the error has grown, then bisects
     constexpr double first_z = 1e-3, ratio = 1.04, close = 1e-6;
     double stays = std::min(first_z / fastest, seconds / 2);
     while (grows(stays)) stays /= 2;
@@ -167,7 +168,7 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
 }
 
 double released_energy(const Pendulum<double>& release) {
-    // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …), without the cancellation of the levels
+    // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …) avoids cancellation of potential energies
     double vx = 0, vy = 0, height = 0, sum = 0;
     for (std::size_t i = 0; i < release.links(); ++i) {
         const double l = release.length[i], theta = release.angle[i], half = SinCos<double>(theta / 2).sin;

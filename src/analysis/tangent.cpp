@@ -29,7 +29,7 @@ struct TangentMotion::Stepper {
     TangentFlow flow;
     Eigen::Index angles;
     double tolerance;
-    std::optional<Dop853::Stepper<TangentFlow>> dop853{};  // knows where the flow is
+    std::optional<Dop853::Stepper<TangentFlow>> dop853{};  // contains the address of the flow
 };
 
 TangentMotion::TangentMotion(TangentFlow flow, std::size_t angles, double tolerance)

@@ -9,20 +9,21 @@
 
 namespace doppel {
 
-/// What a pendulum's own motion is measured in: the mean link, and the time it takes for anything to happen.
+/// Natural units of a pendulum's motion: the mean link length, and a typical time.
 struct NaturalUnits {
     double length;  // m
-    double time;    // s: 1 / √(g/l) or 1 / the greatest rate at the release, whichever is less; 1 where nothing moves
+    double time;    // s: 1 / √(g/l) or 1 / the largest initial rate, whichever is less; 1 if nothing moves
 
-    /// The drive counts as gravity: the greatest acceleration of the pivot, and that of all masses by the motors.
+    /// A drive counts like gravity, by the largest acceleration of the pivot, and that of all masses by the joint
+    /// torques.
     explicit NaturalUnits(const PhysicalPendulum<double>& p);
 };
 
-/// Into how many parts to cut an interval, so that no tangent outgrows its numbers within one.
+/// The number of parts of an interval, so that no tangent overflows in one part.
 long parts_of(double seconds, const NaturalUnits& units);
 
-/// A state y of a model in angles over Dual<double, D>, and D tangents to it, as plain numbers: y, then D numbers for each
-/// component of y, one of each tangent. Time, where it is part of y, has no tangents: they stay 0.
+/// A state y of a model in angles over Dual<double, D>, with D tangents, as plain numbers: y, then for each component
+/// of y D numbers, one for each tangent. If y contains the time, its tangents are 0.
 using TangentState = State<double, Eigen::Dynamic>;
 
 template <class DualState>
@@ -44,7 +45,7 @@ void from_dual(const DualState& y, TangentState& all) {
     }
 }
 
-/// The state and its tangents as one system, so that a method's control of its error sees them all:
+/// The state and its tangents as one system, so that error control applies to all of them:
 ///     y′ = f(y) ,    δ′ = Df(y) δ
 /// both from one evaluation of f in dual numbers.
 /// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:9.
@@ -69,8 +70,8 @@ TangentFlow tangent_flow(Model model, const typename Model::State& start) {
     return flow;
 }
 
-/// Both by dop853, from where they are set down again and again: error control knows only the size of tangents, so these
-/// are to be neither huge nor tiny, and the first `angles` numbers not many turns.
+/// Integrates state and tangents by dop853, with restarts. Error control is relative to the size of tangents, so they
+/// must be neither huge nor tiny, and the first `angles` numbers must not be many turns.
 class TangentMotion {
 public:
     TangentMotion(TangentFlow flow, std::size_t angles, double tolerance);

@@ -18,7 +18,8 @@ double cpu_of(Run&& run) {
     return seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
-/// A solver at one setting, on a problem: a step of a whole part of the duration or, in 0 steps, a tolerance.
+/// A solver with one setting on a problem. The setting is a step (a fraction of the duration) or, if `steps` is 0, a
+/// tolerance.
 class Trial {
 public:
     Trial(const WorkProblem& problem, const Solver& solver, long steps, const Quad& tolerance)
@@ -58,12 +59,12 @@ private:
         return external_->make(spec_.chain->cast<double>(), problem_.duration(), setting());
     }
 
-    /// The worst errors of energy and lengths, as seen some 240 times on the way. False where the run fails.
+    /// Finds the largest errors of energy and lengths at some 240 samples. Returns false if the run fails.
     bool is_sound(StepResult& outcome, const std::atomic<bool>& stop) const {
         long samples = 240;
         auto spec = spec_;
         if (const long steps = spec.steps_per_sample; steps > 0) {
-            // the same steps, some of them between two samples
+            // the same steps, except that some are between two samples
             spec.steps_per_sample = (steps + samples - 1) / samples;
             spec.sample_interval = *product(spec.sample_interval, *reduced(spec.steps_per_sample, steps));
             samples = steps / spec.steps_per_sample;
@@ -82,11 +83,11 @@ private:
         return true;
     }
 
-    /// Seconds of CPU for one run; `first_s` is what it took the first time.
+    /// CPU time of one run, s; `first_s` is that of the first run.
     double timed(double first_s, const std::atomic<bool>& stop) const {
-        constexpr double long_enough_s = 1e-3;  // for a clock error of some tenths of a percent
-        constexpr double warm_enough_s = 3e-3;  // for cold caches not to count
-        constexpr long most_runs = 32;          // at a time: all fit into the first-level cache
+        constexpr double long_enough_s = 1e-3;  // reduces the clock's error to some tenths of a percent
+        constexpr double warm_enough_s = 3e-3;  // warms the caches
+        constexpr long most_runs = 32;          // at a time: all of them fit into the first-level cache
         if (first_s > warm_enough_s) return first_s;
         const auto wanted = static_cast<long>(std::ceil(long_enough_s / std::max(first_s, 1e-9)));
         std::vector<std::unique_ptr<Motion>> motions(static_cast<std::size_t>(std::clamp(wanted, 1L, most_runs)));
@@ -102,8 +103,8 @@ private:
     MotionSpec spec_;
 };
 
-/// Steps of 2^(k/2)/30000 s, from the problem's natural time down, or tolerances of 10^(−k/2), to three digits as they would
-/// be written, from a tenth to what double can give.
+/// Step sizes of 2^(k/2)/30000 s, from the problem's natural time down, or tolerances of 10^(−k/2) rounded to three
+/// digits, from 0.1 to the limit of double.
 std::vector<Trial> trials_of(const WorkProblem& problem, const Solver& solver, long most_steps) {
     const auto* external = solver.external;
     std::vector<Trial> all;
@@ -127,7 +128,7 @@ std::vector<Trial> trials_of(const WorkProblem& problem, const Solver& solver, l
     }
 }
 
-/// Of sorted values, between two of them in proportion.
+/// A quantile of sorted values, interpolated linearly.
 double quantile(const std::vector<double>& sorted, double share) {
     const double at = share * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(at);
@@ -141,7 +142,7 @@ std::vector<StepResult> run_step_study(const WorkProblem& problem, const Referen
                                        const StepStudySpec& spec, const std::atomic<bool>& stop) {
     double best = std::numeric_limits<double>::infinity();
     long since_best = 0;
-    // finer settings no longer help
+    // finer settings do not help any more
     const auto is_at_floor = [&](double error) {
         constexpr double near = 100, useful = 1e-3;
         constexpr long patience = 3, long_patience = 8;
@@ -170,7 +171,7 @@ StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>
         std::vector<double> times;
         for (const auto& outcomes : repeats)
             if (i < outcomes.size() && std::isfinite(outcomes[i].cpu_s)) times.push_back(outcomes[i].cpu_s);
-        if (times.empty() || outcome.failed()) continue;  // the repeats do not look on the way
+        if (times.empty() || outcome.failed()) continue;  // repeats do not check energies and lengths
         std::sort(times.begin(), times.end());
         outcome.cpu_s = quantile(times, 0.5);
         outcome.spread = (quantile(times, 0.75) - quantile(times, 0.25)) / 2 / outcome.cpu_s;
