@@ -14,8 +14,8 @@ namespace {
 constexpr int degree = 5;
 constexpr std::size_t least_points = degree + 3;
 
-/// Of a link, those in a window around a moment, which is shifted to be whole even at the ends of the piece, and widened
-/// to hold enough; without outliers.
+/// The samples of a link in a window around a time, without outliers. The window is shifted to have its full width near
+/// the ends of the piece, and widened to contain enough samples.
 std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t arm, double time_s, double window) {
     const auto& times = piece.time_s;
     const double from = std::max(times.front(), std::min(time_s - window / 2, times.back() - window));
@@ -33,7 +33,7 @@ std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t arm
     return samples;
 }
 
-/// Least squares in N unknowns, equation by equation: row · x = value.
+/// Least squares in N unknowns; each equation is row · x = value.
 template <int N>
 struct Equations {
     Eigen::Matrix<double, N, N> matrix = Eigen::Matrix<double, N, N>::Zero();
@@ -73,7 +73,7 @@ LinkEstimate glimpse_of(const TrackPiece& piece, std::size_t arm, const std::vec
     return {c[0], c[1] / span, 2 * c[2] / (span * span), std::sqrt(rest / static_cast<double>(count))};
 }
 
-/// Long enough that its polynomial averages the noise away, short against a swing.
+/// Long enough for its polynomial to average out the noise, short compared with a swing.
 double window_of(const Track& track) {
     constexpr double shortest = 0.06, longest = 0.2, samples = 12;
     const auto& piece = track.pieces.front();
@@ -87,7 +87,7 @@ double window_of(const Track& track) {
 }  // namespace
 
 Glimpse estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
-    // encoders err alike for some samples in a row, which the noise from sample to sample does not tell
+    // encoder errors are correlated over some samples, which the sample-to-sample noise does not show
     constexpr double noises = 3, shortest_s = 1e-6;
     Glimpse glimpse{};
     for (std::size_t arm = 0; arm < 2; ++arm)
@@ -113,7 +113,8 @@ std::vector<Glimpse> estimates_of(const Track& track, const std::atomic<bool>& s
 Regression regress(const std::vector<Glimpse>& glimpses) {
     Regression result;
     if (glimpses.size() < 8) return result;
-    // the second link, whose own term has no unknown: −θ2″ = C (cosδ θ1″ − sinδ ω1²) + D2 sinθ2 + friction
+    // the equation of the second link, whose own acceleration has no unknown factor: −θ2″ = C (cosδ θ1″ − sinδ ω1²) +
+    // D2 sinθ2 + friction
     Equations<3> second, first;
     for (const auto& [one, two] : glimpses) {
         const SinCos<double> between(one.angle - two.angle), turn1(one.angle), turn2(two.angle);
@@ -123,10 +124,10 @@ Regression regress(const std::vector<Glimpse>& glimpses) {
                   -(between.cos * two.acceleration + between.sin * two.rate * two.rate));
     }
     const auto of_second = second.solution();
-    const Eigen::Vector3d of_first = of_second[0] * first.solution();  // over C, so far
+    const Eigen::Vector3d of_first = of_second[0] * first.solution();  // divided by C
     const auto share = [](const Equations<3>& equations) {
         const double explained = equations.right.dot(equations.solution());
-        return explained > 0 ? std::max(1 - explained / equations.squares, 0.0) : 1;  // also where it is no number
+        return explained > 0 ? std::max(1 - explained / equations.squares, 0.0) : 1;  // also if it is not a number
     };
     result.unexplained = std::max(share(second), share(first));
     result.ratios = {of_first[0], of_second[0], of_first[1], of_second[1]};

@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-constexpr double whole_sample = 1e-9;  // s: times are the same within that
+constexpr double whole_sample = 1e-9;  // s: tolerance for equal times
 
 class ReplayedMotion final : public Motion {
 public:
@@ -53,7 +53,7 @@ private:
     Replay replay_;
     double interval_s_;
     long count_ = 0;    // samples
-    double share_ = 0;  // of the way to the next one
+    double share_ = 0;  // fraction of the interval to the next one
 };
 
 }  // namespace

@@ -39,9 +39,9 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     }
 }
 
-// messages name the place, not what stands there: a stranger's preset may name any file
+// messages name the place but not its contents, because a preset of another person may name any file
 
-/// Where the columns stand in a file.
+/// The columns of a file.
 struct Heading {
     std::vector<std::string_view> names;
     std::vector<std::size_t> values;  // the time, then two angles or six pixel places
@@ -95,7 +95,7 @@ double number_of(const std::string& place, std::string_view column, std::string_
     return value;
 }
 
-/// Of both links, given themselves or by the places of pivot, joint and end, y down.
+/// The angles of both links: given directly, or from the positions of pivot, joint and end, y down.
 std::array<double, 2> angles_of(const std::string& place, std::span<const double> values) {
     constexpr double most = 1e6;  // rad: 160 000 turns
     std::array<double, 2> angles{values[0], values[1]};
@@ -111,7 +111,7 @@ std::array<double, 2> angles_of(const std::string& place, std::span<const double
     return angles;
 }
 
-/// Takes out jumps by whole turns, of angles that keep within one; others count turns already.
+/// Removes jumps by whole turns from angles that stay within one turn; other angles already count turns.
 void unwrap(std::vector<double>& angles) {
     constexpr double turn = 2 * std::numbers::pi, margin = 1.01;
     const auto [low, high] = std::minmax_element(angles.begin(), angles.end());
@@ -119,7 +119,7 @@ void unwrap(std::vector<double>& angles) {
     for (std::size_t i = 1; i < angles.size(); ++i) angles[i] -= turn * std::round((angles[i] - angles[i - 1]) / turn);
 }
 
-/// The rows of one file, cut where a piece ends.
+/// Reads the rows of one file into pieces.
 void read_text(const std::string& name, std::string_view text, Track& track, const std::atomic<bool>& stop) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     std::optional<Heading> heading;
@@ -169,12 +169,12 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
     if (track.pieces.size() == first_piece) throw bad_input("{}: there are no rows below the header", name);
 }
 
-// Checking.
+// Checks.
 
 constexpr std::size_t least_samples = 100, least_of_piece = 12;
 constexpr double least_s = 1.5, least_of_piece_s = 0.25;
 
-/// How far each sample is from the cubic through two neighbours on either side.
+/// The distance of each sample from the cubic through two neighbours on either side.
 std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t arm) {
     const auto &t = piece.time_s, &x = piece.angle[arm];
     std::vector<double> residuals(x.size(), 0);
@@ -190,9 +190,10 @@ std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t arm
     return residuals;
 }
 
-/// The noise, and samples that stand out of it alone: their neighbours deviate the other way.
+/// Finds the noise, and outliers: samples far from the cubic while their neighbours deviate the other way.
 void find_noise(Track& track, const std::atomic<bool>& stop) {
-    constexpr double far = 12, of_cubic = 1.39;  // the deviation of noise of 1 from a cubic of the same noise
+    constexpr double far = 12,
+                     of_cubic = 1.39;  // the deviation from a cubic through values with noise 1, in units of that noise
     for (std::size_t arm = 0; arm < 2; ++arm) {
         std::vector<double> all;
         std::vector<std::vector<double>> of_pieces;
@@ -217,7 +218,7 @@ bool is_short(const TrackPiece& piece) {
     return piece.size() < least_of_piece || piece.duration() < least_of_piece_s;
 }
 
-/// Leaves out fragments between gaps; a whole file that is too short is left, to be refused.
+/// Removes fragments between gaps; a file that is too short as a whole stays, and is refused later.
 void drop_fragments(Track& track) {
     std::map<std::string, std::size_t> of_file;
     for (const auto& piece : track.pieces) ++of_file[piece.name];
@@ -230,7 +231,7 @@ void drop_fragments(Track& track) {
                                           dropped, least_of_piece, least_of_piece_s));
 }
 
-/// Where the pieces are on one clock, if their times never go back.
+/// Finds the start times of pieces on one clock, if their times never go back.
 void find_clock(Track& track) {
     for (std::size_t k = 0; k < track.pieces.size(); ++k) {
         const auto& times = track.pieces[k].time_s;
@@ -271,13 +272,13 @@ void require_motion(const Track& track) {
         throw bad_input("{}: theta1_rad and theta2_rad have the same numbers; both links are needed", name);
 }
 
-/// Another way to take the columns.
+/// Another interpretation of the columns.
 struct Reading {
     double unit = 1;  // of the angles, rad
     bool relative = false, mirrored = false;
-    std::array<int, 2> quarters{};  // of a turn to subtract
+    std::array<int, 2> quarters{};  // of a turn, subtracted
 
-    /// Takes both links' angles so; or what they change by, which does not begin anywhere.
+    /// Converts both links' angles, or their differences, which have no zero point.
     void take(double& first, double& second, bool are_angles) const {
         const double quarter = are_angles ? std::numbers::pi / 2 : 0, shift = quarters[0] * quarter;
         first *= unit, second *= mirrored ? -unit : unit;
@@ -311,8 +312,8 @@ void convert(Track& track, const Reading& reading) {
         for (std::size_t i = 0; i < piece.size(); ++i) reading.take(piece.angle[0][i], piece.angle[1][i], true);
 }
 
-/// Where the angles taken as they are obey no double pendulum's equations, but do when taken in another way: refuses
-/// what is a mistake, and takes so what is a convention.
+/// If the angles do not fit the equations of any double pendulum, but do in another interpretation: converts a
+/// different convention, and refuses a mistake.
 void check_convention(Track& track, const std::atomic<bool>& stop) {
     constexpr double well = 0.003, obeys = 0.1, much_better = 0.3, degree = std::numbers::pi / 180;
     const auto glimpses = estimates_of(track, stop);
@@ -330,7 +331,8 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
         throw_if_set(stop);
         if (const double value = unexplained(glimpses, reading); value < least) least = value, best = reading;
     };
-    constexpr double small = 4;  // rad: of degrees, a motion so small is linear, and any such fits
+    constexpr double small =
+        4;  // rad: motions that are this small in degrees are linear, and any linear motion would fit
     if (widest > small) consider({.unit = degree});
     for (int way = 0; way < 64; ++way)
         consider({.relative = way >= 32, .mirrored = way / 16 % 2 == 1, .quarters = {way / 4 % 4 - 1, way % 4 - 1}});
@@ -343,7 +345,7 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
             "forces are unexplained, otherwise {:.0f} %",
             name, 100 * least, 100 * as_it_is);
     constexpr double most_turns = 60;             // rad: ten turns and a half
-    if (as_it_is > obeys && widest > most_turns)  // else the fit will tell
+    if (as_it_is > obeys && widest > most_turns)  // otherwise the fit will show it
         throw bad_input(
             "{}: the angles go from {:.3g} to {:.3g}, and do not fit a double pendulum; are they in degrees? They must "
             "be in radians (degrees × π/180)",
