@@ -4,7 +4,7 @@
 
 namespace doppel {
 
-/// sum + lost ← sum + lost + more, all but exactly.
+/// Adds `more` to sum + lost with almost no rounding error.
 /// Source  Knuth, The Art of Computer Programming 2, §4.2.2.
 template <class Scalar>
 void add_compensated(Scalar& sum, Scalar& lost, const Scalar& more) {
@@ -13,7 +13,7 @@ void add_compensated(Scalar& sum, Scalar& lost, const Scalar& more) {
     sum = total;
 }
 
-/// A number as the sum of what the scalar holds and what rounding left over.
+/// A number as the sum of a scalar and its rounding error.
 /// Source  Dekker 1971, A floating-point technique for extending the available precision, Numer. Math. 18:224.
 template <class Scalar>
 struct Compensated {

@@ -4,8 +4,8 @@
 
 namespace doppel {
 
-/// A number as it is printed, kept to 32 digits: the sum of two doubles that do not overlap. For published coefficients
-/// that are to serve a Quad as well as a double.
+/// A decimal constant with 32 digits: the sum of two doubles that do not overlap. For published coefficients that are
+/// used in both quad and double.
 struct Decimal {
     double high = 0, low = 0;
 
@@ -14,7 +14,7 @@ struct Decimal {
 
 namespace literals {
 
-/// 0.0526001519587677318785587544488016_d; digits and one point, at most 36 of them.
+/// For example 0.0526001519587677318785587544488016_d; digits and one point, at most 36 of them.
 consteval Decimal operator""_d(const char* text) {
     __extension__ using Whole = unsigned __int128;  // 38 digits
 
@@ -33,7 +33,7 @@ consteval Decimal operator""_d(const char* text) {
     }
     if (digits == 0) return {};
 
-    // the power of two at the head of the quotient, then its bits by long division
+    // the leading power of two of the quotient, then its bits by long division
     double bit = 1;
     while (digits / 2 >= scale) scale *= 2, bit *= 2;
     while (digits < scale) digits *= 2, bit /= 2;

@@ -11,11 +11,10 @@
 
 namespace doppel {
 
-/// A number and how fast it changes along N directions: f(x + Σ ε_i e_i) = f(x) + Σ ε_i ∂f·e_i with ε_i ε_j = 0.
-/// Whatever is computed with them carries its exact derivatives along (forward-mode automatic differentiation); a state
-/// whose i-th entry starts with the tangent e_i ends as the Jacobian of the flow.
-///
-/// Comparisons are those of the values. A number is a constant: its tangents are 0.
+/// A number and its derivatives along N directions: f(x + Σ ε_i e_i) = f(x) + Σ ε_i ∂f·e_i with ε_i ε_j = 0. Computing
+/// with dual numbers gives exact derivatives (forward-mode automatic differentiation). If the i-th entry of a state
+/// starts with the tangent e_i, its end contains the Jacobian of the flow.
+/// Comparisons compare the values. A plain number is a constant, with tangents 0.
 /// Source  Griewank & Walther, Evaluating Derivatives, §3.1.
 template <class Scalar, int N>
 struct Dual {
@@ -32,7 +31,7 @@ struct Dual {
     template <class Vector>
     Dual(const Scalar& x, const Eigen::MatrixBase<Vector>& dx) : value(x), tangent(dx) {}
 
-    /// The variable number `direction` at x.
+    /// Variable number `direction` with the value x.
     static Dual variable(const Scalar& x, Eigen::Index direction) { return {x, Tangent::Unit(direction)}; }
 
     Dual& operator+=(const Dual& b) {
@@ -78,7 +77,7 @@ struct Dual {
         return {portable_atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
     }
 
-    /// At 0, where it has no finite slope, a constant is still a constant.
+    /// at 0, where the slope is infinite, a constant remains a constant
     friend Dual sqrt(const Dual& a) {
         using std::sqrt;
         const Scalar root = sqrt(a.value);
@@ -100,7 +99,7 @@ struct SinCos<Dual<Scalar, N>> {
 
 }  // namespace doppel
 
-/// The range and the precision of its value.
+/// Range and precision are those of its value.
 template <class Scalar, int N>
 struct std::numeric_limits<doppel::Dual<Scalar, N>> : std::numeric_limits<Scalar> {};
 

@@ -4,8 +4,8 @@
 
 namespace doppel {
 
-/// x ← A⁻¹ x for a symmetric positive definite A, which needs no pivoting; A is overwritten. For scalars and small matrices for
-/// which Eigen's factorisations by blocks cost seconds of compiling.
+/// x ← A⁻¹ x for a symmetric positive definite A, which needs no pivoting; A is overwritten. For scalars and small
+/// matrices for which Eigen's blocked factorisations take seconds to compile.
 /// Source  Golub & Van Loan, Matrix Computations, §4.1.
 template <class Matrix, class Column>
 void solve_positive_definite(Matrix& a, Column& x) {

@@ -9,21 +9,22 @@
 
 namespace doppel {
 
-/// A square matrix whose rows each begin at some column and whose columns begin likewise, kept and factored within that
-/// envelope without interchanges: O(N) in memory and time for a chain, O(N²) and O(N³) for a full one.
+/// A square matrix with a symmetric envelope: each row, and the column of the same number, begins at some index. It is
+/// stored and factored inside the envelope without pivoting: O(N) in memory and time for a chain, O(N²) and O(N³) for a
+/// full matrix.
 ///
-/// For J M⁻¹ Jᵀ no interchange is needed, and without one the pivots have a meaning: pivot i is the squared length of
-/// what is left of gradient i beside the gradients before it. One that vanishes names the constraint that depends on
+/// J M⁻¹ Jᵀ needs no pivoting, and its pivots have a meaning: pivot i is the squared length of the component of
+/// gradient i that is orthogonal to the gradients before it. A zero pivot belongs to a constraint that depends on
 /// others.
-/// Source  Golub & Van Loan, Matrix Computations, §4.3; George & Liu, Computer Solution of Large Sparse Positive Definite
-///         Systems, §4.
+/// Source  Golub & Van Loan, Matrix Computations, §4.3; George & Liu, Computer Solution of Large Sparse Positive
+///         Definite Systems, §4.
 template <class Scalar>
 class EnvelopeMatrix {
 public:
     using Column = State<Scalar, Eigen::Dynamic>;
     using Index = Eigen::Index;
 
-    /// Zeros. Only (i, j) and (j, i) with begin[i] ≤ j ≤ i may differ from zero.
+    /// A matrix of zeros. Only (i, j) and (j, i) with begin[i] ≤ j ≤ i may be nonzero.
     explicit EnvelopeMatrix(const std::vector<Index>& begin) {
         Index entries = 0;
         for (std::size_t i = 0; i < begin.size(); ++i) {
@@ -37,7 +38,7 @@ public:
 
     Index rows() const { return static_cast<Index>(envelope_.size()); }
     Index begin(Index i) const { return envelope_[static_cast<std::size_t>(i)].begin; }
-    /// Numbers kept of the matrix itself.
+    /// The number of stored entries.
     Index entries() const { return lower_.size() + diagonal_.size() + upper_.size(); }
 
     void clear() {
@@ -47,7 +48,7 @@ public:
     }
     Scalar& operator()(Index i, Index j) { return i == j ? diagonal_[i] : i > j ? lower(i, j) : upper(i, j); }
 
-    /// Replaces the matrix by unit lower times upper.
+    /// Replaces the matrix by its unit lower and upper factors.
     void factor() {
         whole_ = diagonal_;
         for (Index i = 0; i < rows(); ++i) {
@@ -63,10 +64,10 @@ public:
         }
     }
 
-    // Of the factors; rows() where no row is like that.
+    // These refer to the factors; they return rows() if there is no such row.
 
-    /// The first row that depends on those before it so closely that no more than a quarter of the digits would be right (or
-    /// that is NaN).
+    /// The first row that is NaN, or so nearly dependent on the rows before it that at most a quarter of the digits
+    /// remain.
     Index dependent_row() const {
         using std::abs;
         Index i = 0;
@@ -79,7 +80,7 @@ public:
         while (i < rows() && !(diagonal_[i] < Scalar(0))) ++i;
         return i;
     }
-    /// Whether a pivot is less than a twentieth of what stood in its place.
+    /// Whether a pivot is less than a twentieth of the diagonal element it replaces.
     bool nearly_singular() const {
         using std::abs;
         for (Index i = 0; i < rows(); ++i)
@@ -97,7 +98,7 @@ public:
         }
     }
 
-    /// c with row i = Σ_{j<i} c_j row j as nearly as can be, after factor() has come to row i.
+    /// The c for which row i is closest to Σ_{j<i} c_j row j, if factor() has reached row i.
     Column dependence(Index i) const {
         Column c = Column::Zero(i);
         for (Index j = begin(i); j < i; ++j) c[j] = lower(i, j);
@@ -107,7 +108,7 @@ public:
     }
 
 private:
-    /// Where row i of the lower half and column i of the upper half begin, and what to add for their places in memory.
+    /// Where row i of the lower and column i of the upper triangle begin, and the offset to their places in memory.
     struct Envelope {
         Index begin, offset;
     };

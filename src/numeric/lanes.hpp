@@ -9,7 +9,7 @@
 
 namespace doppel {
 
-/// Doubles in one register of the processor that the code is compiled for.
+/// The number of doubles in a register of the target processor.
 #if defined(__AVX512F__)
 inline constexpr int register_width = 8;
 #elif defined(__AVX__)
@@ -18,30 +18,29 @@ inline constexpr int register_width = 4;
 inline constexpr int register_width = 2;
 #endif
 
-/// Doubles to a register in this file: 2, or what cmake/widths.cmake compiles it for once more.
+/// Doubles per register in this file: 2, or the width for which cmake/widths.cmake compiles it again.
 #ifdef DOPPEL_COMPILED_WIDTH
 constexpr int compiled_width = DOPPEL_COMPILED_WIDTH;
 #else
 constexpr int compiled_width = 2;
 #endif
 
-/// log2 of a double is within this of a straight line between powers of two, in the mean.
+/// Mean error of approximating log2 by straight lines between powers of two.
 inline constexpr double rough_log2_deviation = 0.043;
 
 template <int width>
 struct LaneRegister {
     typedef double Doubles __attribute__((vector_size(8 * width)));
     typedef std::int64_t Masks __attribute__((vector_size(8 * width)));
-    typedef double Memory __attribute__((vector_size(8 * width), aligned(8), may_alias));  // as doubles lie in it
+    typedef double Memory __attribute__((vector_size(8 * width), aligned(8), may_alias));  // doubles in memory
 };
 
-/// `lanes` doubles that are computed side by side, each by the operations, and so to the bits, of a double on its own:
-/// + − × ÷ and the square root round alike at every width; for sine and cosine see numeric/sin_cos.hpp. More lanes than
-/// a register holds hide the wait for its results. Lanes are never compared as a whole: a comparison gives a mask, for
-/// select().
+/// `lanes` doubles that are computed side by side, each with the operations, and so the bits, of a single double: + − ×
+/// ÷ and the square root round equally at every width; for sine and cosine see numeric/sin_cos.hpp. More lanes than a
+/// register has hide latency. Comparisons give a mask for select().
 ///
-/// `Build` names the code that the type belongs to. Code for different processors must differ in it, or the linker
-/// would take one for the other (integrate/batch_width.cpp).
+/// `Build` names the code that the type belongs to. Code for different processors must have different `Build` types, or
+/// the linker would mix them up (integrate/batch_width.cpp).
 template <int lanes, class Build = void>
 struct Lanes {
     static constexpr int width = lanes;
@@ -50,7 +49,7 @@ struct Lanes {
     using Masks = typename LaneRegister<part>::Masks;
     using Memory = typename LaneRegister<part>::Memory;
 
-    /// What a comparison says: a lane has all bits set, or none.
+    /// The result of a comparison: in each lane all bits are set, or none.
     struct Mask {
         Masks v[parts];
 
@@ -77,7 +76,7 @@ struct Lanes {
         for (int k = 0; k < parts; ++k) v[k] = static_cast<double>(all) - Doubles{};
     }
 
-    /// Of consecutive doubles, aligned as such.
+    /// Loads consecutive doubles, aligned like doubles.
     [[gnu::always_inline]] static Lanes load(const double* from) {
         Lanes r;
         for (int k = 0; k < parts; ++k) r.v[k] = *reinterpret_cast<const Memory*>(from + k * part);
@@ -136,7 +135,7 @@ struct Lanes {
     }
     [[gnu::always_inline]] friend Mask operator>(const Lanes& a, const Lanes& b) { return b < a; }
 
-    /// Lane by lane a where the mask is set, else b.
+    /// In each lane a if the mask is set, otherwise b.
     [[gnu::always_inline]] friend Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) {
         Lanes r;
         for (int k = 0; k < parts; ++k) r.v[k] = mask.v[k] ? a.v[k] : b.v[k];
@@ -150,9 +149,10 @@ struct Lanes {
 
     [[gnu::always_inline]] friend Lanes lesser(const Lanes& a, const Lanes& b) { return select(b < a, b, a); }
 
-    /// log2 a within 0.05 for a > 0, a straight line between powers of two; −1023 of zero.
+    /// log2 a within 0.05 for a > 0, by straight lines between powers of two; −1023 for zero.
     [[gnu::always_inline]] friend Lanes rough_log2(const Lanes& a) {
-        // the bits of a double are its logarithm; put below the point of a number they are a double again
+        // the exponent and fraction bits of a double approximate its logarithm; as the fraction of a number they are
+        // read as a double
         Lanes r;
         for (int k = 0; k < parts; ++k)
             r.v[k] = (Doubles((Masks(a.v[k]) >> 11) | std::int64_t(0x4330000000000000)) - 0x1p52) * 0x1p-41 -
@@ -173,14 +173,14 @@ struct Lanes {
         return r;
     }
 
-    /// Lane i from lane i xor s.
+    /// Permutes the lanes: lane i gets lane i xor s.
     template <int s>
     [[gnu::always_inline]] Lanes exchanged() const requires(lanes == 4) {
         Lanes r = *this;
         if constexpr (s / 2 == 1 && part == 2) r.v[0] = v[1], r.v[1] = v[0];
 #ifdef __AVX__
         if constexpr (s / 2 == 1 && part == 4)
-            r.v[0] = __builtin_ia32_vperm2f128_pd256(v[0], v[0], 1);  // half the latency of a general permutation
+            r.v[0] = __builtin_ia32_vperm2f128_pd256(v[0], v[0], 1);  // has half the latency of a general permutation
 #endif
         for (int k = 0; s % 2 == 1 && k < parts; ++k) {
             if constexpr (part == 4)
@@ -197,11 +197,11 @@ inline constexpr bool is_lanes = false;
 template <int width, class Build>
 inline constexpr bool is_lanes<Lanes<width, Build>> = true;
 
-/// What the processor computes with by itself: double and lanes.
+/// Types with native arithmetic: double and lanes.
 template <class Scalar>
 inline constexpr bool is_machine_number = std::is_same_v<Scalar, double> || is_lanes<Scalar>;
 
-// The same for a lone number, whose mask is a bool.
+// The same for a single number, whose mask is a bool.
 [[gnu::always_inline]] inline bool all_of(bool mask) {
     return mask;
 }
@@ -214,7 +214,7 @@ inline double rough_log2(double a) {
     return static_cast<double>(std::bit_cast<std::int64_t>(a)) * 0x1p-52 - (1023 - rough_log2_deviation);
 }
 
-/// The greater of two numbers, lane by lane of many; NaN where either is NaN.
+/// The larger of two numbers, lane by lane; NaN if either is NaN.
 template <class Scalar>
 [[gnu::always_inline]] inline Scalar greater(const Scalar& a, const Scalar& b) {
     return select(b <= a, a, select(a <= a, b, a));

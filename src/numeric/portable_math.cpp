@@ -9,7 +9,7 @@ namespace doppel {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// ln 2 as a sum of two: the product of the first with a double's exponent is exact
+// ln 2 as a sum of two; the product of the first with a double's exponent is exact
 constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
 
 /// z c_0 + z² c_1 + …
@@ -20,7 +20,7 @@ double polynomial(double z, const double (&c)[count]) {
     return sum;
 }
 
-/// Of t ≥ 0: atan t = atan c + atan((t − c) / (1 + c t)), with the c of five that is nearest.
+/// For t ≥ 0: atan t = atan c + atan((t − c) / (1 + c t)), with the nearest of five values c.
 /// Source  the constants of fdlibm's s_atan.c (Sun Microsystems 1993)
 double arctangent(double t) {
     static constexpr double even[]{3.33333333333329318027e-01, 1.42857142725034663711e-01, 9.09088713343650656196e-02,
@@ -65,7 +65,7 @@ double portable_log(double x) {
     return k * ln2_high - ((half_square - (s * (half_square + rest) + k * ln2_low)) - f);
 }
 
-/// e^x = 2^k e^r with |r| ≤ ½ ln 2, and e^r = 1 + 2r / (2 − c) with the c of an even polynomial.
+/// e^x = 2^k e^r with |r| ≤ ½ ln 2, and e^r = 1 + 2r / (2 − c), where c is an even polynomial in r.
 /// Source  the constants of fdlibm's e_exp.c (Sun Microsystems 1993)
 double portable_exp(double x) {
     static constexpr double p[]{1.66666666666666019037e-01, -2.77777777770155933842e-03, 6.61375632143793436117e-05,

@@ -4,22 +4,23 @@
 
 namespace doppel {
 
-// Functions of double whose bits are the same on every processor and with every C library: from + − × ÷ alone. What a
-// table holds, or a step of a method goes by, is computed with them. Sine and cosine: numeric/sin_cos.hpp.
+// Functions of double that give the same bits on every processor and with every C library, because they only use + − ×
+// ÷. They are used for numbers in tables, and for decisions of methods. Sine and cosine: numeric/sin_cos.hpp.
 
-/// Natural logarithm within 1 ulp; −∞ of 0, NaN of what is negative.
+/// Natural logarithm within 1 ulp; −∞ for 0, NaN for negative numbers.
 double portable_log(double x);
 
 /// e^x within 1 ulp; 0 where it is less than 1e-307.
 double portable_exp(double x);
 
-/// x^y for x > 0, within 1 + |y log x| ulp: for what needs no last digit.
+/// x^y for x > 0, within 1 + |y log x| ulp, where the last digit does not matter.
 double portable_pow(double x, double y);
 
-/// The angle of (x, y) from the x axis, rad, within (−π, π] and 1.5 ulp. Zeros and infinities: as the C library does.
+/// The angle of (x, y) from the x axis, rad, in (−π, π], within 1.5 ulp. Zeros and infinities are treated as in the C
+/// library.
 double portable_atan2(double y, double x);
 
-/// The same for any other scalar: its own.
+/// For any other scalar, its own atan2.
 template <class Scalar>
 Scalar portable_atan2(const Scalar& y, const Scalar& x) {
     using std::atan2;

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-// Quad, IEEE binary128: 113 bits, about 34 digits. Where the machine's long double is one, that; else the compiler's
-// software type in Boost's dress.
+// Quad, IEEE binary128: 113 bits, about 34 digits. It is long double if that is binary128; otherwise the compiler's
+// software type, wrapped by Boost.
 #if defined(__aarch64__)
 #include <cmath>
 #include <cstdlib>
@@ -20,7 +20,7 @@ namespace doppel {
 using Quad = boost::multiprecision::float128;
 }
 
-/// Eigen asks for the digits in decimal and for what a number costs.
+/// What Eigen requires: decimal digits and costs.
 template <>
 struct Eigen::NumTraits<doppel::Quad> : Eigen::GenericNumTraits<doppel::Quad> {
     enum {
@@ -38,11 +38,11 @@ struct Eigen::NumTraits<doppel::Quad> : Eigen::GenericNumTraits<doppel::Quad> {
 
 namespace doppel {
 
-/// The quad nearest to a decimal literal, "90.003"; for text that is a literal (the preset reader sees to that).
+/// The quad nearest to a decimal literal, "90.003". The text must be a literal (the preset reader checks this).
 Quad parse_quad(std::string_view decimal);
 
-/// The fewest digits that mean this number: those of the double where its shortest decimal is the same quad ("9.8"),
-/// else 34 to 36.
+/// The fewest digits that mean this number: the shortest decimal of the nearest double if that is the same quad
+/// ("9.8"), otherwise 34 to 36.
 std::string text_of(const Quad& value);
 
 }  // namespace doppel

@@ -25,7 +25,7 @@ std::optional<Rational> reduced(std::int64_t numerator, std::int64_t denominator
 }
 
 std::optional<Rational> product(const Rational& a, const Rational& b) {
-    // cancel across first, so that only products that do not fit are refused
+    // reduces crosswise first, so that only products that do not fit are refused
     const auto left = reduced(a.numerator, b.denominator);
     const auto right = reduced(b.numerator, a.denominator);
     if (!left || !right) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<Rational> parse_decimal(std::string_view text) {
     const bool negative = at < text.size() && text[at] == '-';
     if (at < text.size() && (text[at] == '-' || text[at] == '+')) ++at;
 
-    // the digits as one whole number, and how many of them follow the point
+    // all digits as one whole number, and the number of decimals
     int exponent = 0;
     bool any = false, point = false;
     for (; at < text.size() && text[at] != 'e' && text[at] != 'E'; ++at) {

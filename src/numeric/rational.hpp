@@ -7,7 +7,7 @@
 
 namespace doppel {
 
-/// A fraction in lowest terms, denominator > 0. Times and rates that must divide each other exactly are kept as these.
+/// A fraction in lowest terms, denominator > 0. Used for times and rates that must divide each other exactly.
 struct Rational {
     std::int64_t numerator = 0, denominator = 1;
 
@@ -21,18 +21,17 @@ struct Rational {
     friend bool operator==(const Rational&, const Rational&) = default;
 };
 
-/// numerator / denominator in lowest terms; nothing where the denominator is 0.
+/// numerator / denominator in lowest terms; nothing if the denominator is 0.
 std::optional<Rational> reduced(std::int64_t numerator, std::int64_t denominator);
 
-/// Exact; nothing where a part leaves 64 bits or the divisor is 0.
+/// Exact; nothing if a number exceeds 64 bits or the divisor is 0.
 std::optional<Rational> product(const Rational& a, const Rational& b);
 std::optional<Rational> quotient(const Rational& a, const Rational& b);
 
-/// "1/30000", "0.001", "2.5e-4": the number its digits mean. Nothing where the text is none, or needs more than 64
-/// bits.
+/// Parses "1/30000", "0.001", "2.5e-4" exactly. Nothing if the text is no number, or exceeds 64 bits.
 std::optional<Rational> parse_rational(std::string_view text);
 
-/// The decimal fraction that the shortest digits of `value` mean: 0.1 becomes 1/10.
+/// The decimal fraction given by the shortest digits of `value`: 0.1 becomes 1/10.
 std::optional<Rational> rational_from_decimal(double value);
 
 }  // namespace doppel

@@ -5,14 +5,14 @@
 namespace doppel {
 namespace {
 
-/// Zeros count as positive: a rise ends where 0 is reached.
+/// Zero counts as positive, so that a rise ends where 0 is reached.
 int sign_changes(const std::vector<double>& b) {
     int changes = 0;
     for (std::size_t i = 1; i < b.size(); ++i) changes += (b[i - 1] < 0) != (b[i] < 0);
     return changes;
 }
 
-/// The coefficients of both halves, by de Casteljau's averages.
+/// The coefficients of both halves, by de Casteljau's algorithm.
 std::pair<std::vector<double>, std::vector<double>> halves(const std::vector<double>& whole) {
     auto left = whole, right = whole;
     for (std::size_t i = 1; i < right.size(); ++i) {
@@ -38,7 +38,7 @@ void add_rises(const std::vector<double>& b, const Bracket& part, int halved, st
 
 }  // namespace
 
-/// b_j = Σ_i C(j,i) a_i length^i / C(n,i), by n rounds of sums.
+/// b_j = Σ_i C(j,i) a_i length^i / C(n,i), in n rounds of sums.
 Bernstein Bernstein::of_powers(std::span<const double> a, double length) {
     const auto n = a.size() - 1;
     Bernstein polynomial{.b = std::vector<double>(a.begin(), a.end()), .length = length};

@@ -6,30 +6,30 @@
 
 namespace doppel {
 
-/// Times between which something rises through 0: < 0 at `low`, ≥ 0 at `high`.
+/// An interval in which a function rises through 0: < 0 at `low`, ≥ 0 at `high`.
 struct Bracket {
     double low, high;
 };
 
-/// A polynomial on 0 ≤ t ≤ length by its Bernstein coefficients, b_0 … b_n: it starts at b_0, ends at b_n, and stays
-/// between the least and the greatest. It has no more roots there than the coefficients change sign, and as many but
-/// for pairs (Descartes' rule); cut in halves until no more than one change is left, they tell all roots apart.
+/// A polynomial on 0 ≤ t ≤ length by its Bernstein coefficients b_0 … b_n: its values at the ends are b_0 and b_n, and
+/// all values lie between the smallest and largest coefficient. The number of sign changes of the coefficients exceeds
+/// the number of roots by an even number (Descartes' rule). Bisection until at most one change is left isolates all
+/// roots.
 /// Source  Farin, Curves and Surfaces for CAGD, §5–6; Lane & Riesenfeld 1981, BIT 21:112.
 struct Bernstein {
     std::vector<double> b;
     double length = 1;
 
-    /// Of Σ a_i t^i.
+    /// From Σ a_i t^i.
     static Bernstein of_powers(std::span<const double> a, double length);
 
-    /// Where it rises through `level`, in order, each in a bracket of its own. A pair of roots closer than 1e-15 of the
+    /// Where it rises through `level`, in order, each in a bracket of its own. Two roots closer than 1e-15 of the
     /// length may be missed.
     std::vector<Bracket> rises(double level = 0) const;
 };
 
-/// The time within a bracket at which something rises through 0: Newton's method, halving where it would leave the
-/// bracket; a bracket wider than `widest` is cut in halves first. at(t) gives the value and its rate, in members of these
-/// names; where the value is 0 the time is found.
+/// The time in a bracket at which a function rises through 0: Newton's method, with bisection if it would leave the
+/// bracket. A bracket wider than `widest` is bisected first. at(t) returns a struct with members `value` and `rate`.
 template <class At>
 double root(Bracket bracket, const At& at, double widest = std::numeric_limits<double>::infinity()) {
     auto& [low, high] = bracket;

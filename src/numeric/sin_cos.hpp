@@ -7,8 +7,8 @@
 
 namespace doppel {
 
-/// Sine and cosine of the same angle. Those of double and of lanes are the same bits on every processor, at every width
-/// and with every C library (up to an angle of 10⁵ rad), those of other scalars are the scalar's own.
+/// Sine and cosine of the same angle. For double and lanes they have the same bits on every processor, at every width
+/// and with every C library (up to an angle of 10⁵ rad). Other scalars use their own functions.
 template <class Scalar>
 struct SinCos {
     Scalar sin, cos;
@@ -21,11 +21,11 @@ struct SinCos {
     }
 };
 
-/// The angle beyond which the C library computes them, rad: up to here the products with n below are exact.
+/// Larger angles, rad, are left to the C library; up to here the products with n below are exact.
 inline constexpr double largest_reduced_angle = 1e5;
 
-/// For |angle| ≤ largest_reduced_angle: within 0.8 ulp, from + − × alone; sine exactly odd (but for the sign of zero),
-/// cosine exactly even.
+/// For |angle| ≤ largest_reduced_angle: within 0.8 ulp, from + − × alone; sine is exactly odd (except for the sign of
+/// zero), cosine exactly even.
 ///
 ///     angle = n π/2 + r + tail,   |r| ≤ π/4,   π/2 in three parts whose products with n are exact
 ///
@@ -53,7 +53,7 @@ template <class Doubles, class Masks>
     const Doubles s = r + (tail * rest + (r * z) * (odd - 1.66666666666666324348e-01));
     const Doubles c = rest + (((1.0 - rest) - half) + (z * even - r * tail));
 
-    // by the quarter of the circle
+    // by quadrant
     const Masks bits = Masks(shifted);
     const Masks swaps = -(bits & 1);
     sine = Doubles(Masks(swaps ? c : s) ^ ((bits & 2) << 62));
@@ -93,7 +93,7 @@ struct SinCos<double> {
     }
 };
 
-/// Of each of `angles`, rad, into columns of as many rows.
+/// Sine and cosine of each of `angles`, rad, into columns with the same number of rows.
 template <class Angles, class Column>
 [[gnu::always_inline]] inline void take_sin_cos(const Angles& angles, Column& sin, Column& cos) {
     using Scalar = typename Column::Scalar;
@@ -114,17 +114,17 @@ template <class Angles, class Column>
     }
 }
 
-/// The largest turn of TurningAngle, rad.
+/// The largest rotation of TurningAngle in one step, rad.
 inline constexpr double largest_turn = 1.0 / 1024;
 
-/// Sine and cosine, times one factor, of an angle θ that turns by small angles d, through three shears,
+/// Sine and cosine, times a common factor, of an angle θ that is rotated by small angles d, as three shears,
 ///     u = cosθ − t sinθ,   sin(θ+d) = sinθ + sin d u,   cos(θ+d) = u − t sin(θ+d),   t = tan(d/2),
-/// with the series of sin d and t, which for |d| ≤ largest_turn leave less than 2⁻⁵⁶ out.
+/// with series of sin d and t whose error is below 2⁻⁵⁶ for |d| ≤ largest_turn.
 template <class Scalar>
 struct TurningAngle {
     Scalar sin, cos;
 
-    /// Turns by d, where square = d².
+    /// Rotates by d, where square = d².
     [[gnu::always_inline]] void turn(const Scalar& d, const Scalar& square) {
         const Scalar t = d * (Scalar(0.5) + square * Scalar(1.0 / 24));
         const Scalar u = cos - t * sin;
@@ -133,8 +133,8 @@ struct TurningAngle {
     }
 };
 
-/// Sines and cosines of the angles at the start of a step, and from them, where they are near, those of its stages: for
-/// double and lanes, whose every lane takes what a lone double takes.
+/// Sines and cosines of the angles at the start of a step, and from these those of its stages, if they are near. For
+/// double and lanes; every lane gives the same as a single double.
 template <class Scalar, int N>
 class StageAngles {
 public:

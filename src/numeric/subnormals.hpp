@@ -2,9 +2,9 @@
 
 namespace doppel {
 
-/// While it lives, this thread takes doubles below 2.2e-308 for zero, those that come out and those that go in. Processors
-/// compute with them up to a hundred times as slowly, and a chain released at rest is full of them: what one end does
-/// to the links far from it falls off without an end.
+/// During its lifetime, this thread treats doubles below 2.2e-308 as zero, as operands and as results. Processors are
+/// up to a hundred times slower with such numbers, and a chain released at rest has many of them: the influence of one
+/// end decreases along the chain without limit.
 class NoSubnormals {
 public:
     NoSubnormals() : before_(control()) { set_control(before_ | flush); }

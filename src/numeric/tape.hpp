@@ -17,16 +17,16 @@
 
 namespace doppel {
 
-/// The operations by which a function was computed at one point, in their order and each once, so that the Taylor series of
-/// its results follow from those of its arguments, order by order. A comparison is noted as well: the function is as recorded
-/// until the difference of what was compared changes its sign.
+/// The operations that computed a function at one point, in order and without repetitions. They give the Taylor series
+/// of its results from those of its arguments, order by order. Comparisons are recorded as well: the recording is valid
+/// until the difference of the compared numbers changes its sign.
 /// Source  Griewank & Walther, Evaluating Derivatives, §13.2; Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
 template <class S>
 class Tape {
 public:
     using Scalar = S;
 
-    /// Series to that order.
+    /// For series up to that order.
     explicit Tape(int order) : terms_(static_cast<std::size_t>(order) + 1) {
         for (int k = 0; k <= order; ++k) inverse_.push_back(Scalar(1) / Scalar(std::max(k, 1)));
     }
@@ -36,7 +36,7 @@ public:
         events_.clear();
         systems_.clear();
     }
-    /// The nodes are there; their series may be written.
+    /// Ends the recording and allocates the series.
     void finish() {
         coefficients_.assign(nodes_.size() * terms_, Scalar(0));
         known_.clear();
@@ -47,14 +47,14 @@ public:
         return coefficients_[static_cast<std::size_t>(node) * terms_ + static_cast<std::size_t>(k)];
     }
     const Scalar* series(int node) const { return &coefficients_[static_cast<std::size_t>(node) * terms_]; }
-    /// A node whose sign is part of what was recorded. Where it vanishes the function may jump if it was compared for
-    /// equality.
+    /// A node whose sign was compared in the recording. If it was compared for equality, the function may jump where it
+    /// vanishes.
     struct Event {
         int node, sign;
         bool may_jump;
     };
     const std::vector<Event>& events() const { return events_; }
-    /// Whether the function at the arguments of the last compute(0) is the one recorded.
+    /// Whether the recording is valid for the arguments of the last compute(0).
     bool is_as_recorded() const {
         return std::all_of(events_.begin(), events_.end(),
                            [&](const Event& event) { return sign_of(*series(event.node)) == event.sign; });
@@ -73,14 +73,14 @@ public:
         norm,
         unknown
     };
-    /// A node's operands; −1 is the constant. Of an unknown its system and row.
+    /// The operands of a node; −1 stands for the constant. For an unknown, its system and row.
     struct Node {
         Operation operation;
         int a = -1, b = -1;
         Scalar constant = Scalar(0);
     };
 
-    /// The node of that operation; an earlier one where it is the same.
+    /// Adds the node of an operation, or finds an earlier equal one.
     int add(Operation operation, int a = -1, int b = -1, const Scalar& constant = Scalar(0)) {
         const auto next = static_cast<int>(nodes_.size());
         if (operation == Operation::product && a > b && b >= 0) std::swap(a, b);
@@ -91,18 +91,18 @@ public:
         nodes_.push_back({operation, a, b, constant});
         return next;
     }
-    /// A x = b, with unknowns x_k of A_0 x_k = b_k − Σ_{j=1}^k A_j x_{k−j}: one matrix for all orders.
+    /// A x = b, with unknowns x_k from A_0 x_k = b_k − Σ_{j=1}^k A_j x_{k−j}: the same matrix for all orders.
     struct LinearSystem {
         struct Entry {
             Eigen::Index row, column;
-            int node;  // −1 of a constant
+            int node;  // −1 for a constant
             Scalar constant;
         };
         std::vector<Entry> entries;       // of A
         std::vector<Entry> right;         // b, in column 0
         EnvelopeMatrix<Scalar> matrix;    // A_0, factored
         State<Scalar, Eigen::Dynamic> x;  // x_k
-        int first = 0;                    // node of the unknowns, one after the other
+        int first = 0;                    // first node of the unknowns, which are consecutive
     };
     LinearSystem& add(LinearSystem system) {
         const auto number = static_cast<int>(systems_.size());
@@ -110,12 +110,13 @@ public:
         for (int row = 0; row < system.matrix.rows(); ++row) add(Operation::unknown, number, row);
         return systems_.emplace_back(std::move(system));
     }
-    /// `now` is its value.
+    /// `now` is its current value.
     void note_event(int node, const Scalar& now, bool may_jump = false) {
         if (events_.empty() || events_.back().node != node) events_.push_back({node, sign_of(now), may_jump});
     }
 
-    /// Coefficient k of every node that is no argument, from those of the arguments to k and all before.
+    /// Computes coefficient k of every node that is no argument, from those of the arguments up to k and all earlier
+    /// ones.
     void compute(int k) {
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             if (nodes_[i].operation == Operation::argument) continue;
@@ -205,13 +206,13 @@ private:
                     x[entry.row] -= convolution(entry.node, first + static_cast<int>(entry.column), k, 1, k);
         matrix.solve(x);
     }
-    /// The first of the terms to k that is not 0; k where all are.
+    /// The first nonzero one of the terms up to k; k if all are zero.
     int first_term(int node, int k) const {
         int first = 0;
         while (first < k && series(node)[first] == Scalar(0)) ++first;
         return first;
     }
-    /// √(a² + b²) =: c. Where all of it starts from 0, c² starts with t², and c_k follows from a and b to k all the same.
+    /// c = √(a² + b²). If all terms start from 0, c² starts with t², and c_k still follows from a and b up to k.
     Scalar norm(int a, int b, int self, int k) const {
         using std::sqrt;
         const auto squares = [&](int order) {
@@ -229,12 +230,12 @@ private:
     std::vector<Node> nodes_;
     std::vector<Event> events_;
     std::vector<LinearSystem> systems_;
-    std::map<std::tuple<Operation, int, int, Scalar>, int> known_;  // while it is recorded
+    std::map<std::tuple<Operation, int, int, Scalar>, int> known_;  // during recording
     std::vector<Scalar> coefficients_, inverse_;
 };
 
-/// A number whose operations a tape takes down. One without a tape is a constant. All bytes 0 are the constant 0: so Eigen 5
-/// sets vectors to zero.
+/// A number whose operations are recorded on a tape. One without a tape is a constant. All bytes 0 represent the
+/// constant 0, which Eigen 5 requires.
 template <class S>
 class Taped {
 public:
@@ -252,7 +253,7 @@ public:
 
     static Taped argument(const Scalar& now, Tape<Scalar>& tape) { return {now, tape, tape.add(Operation::argument)}; }
 
-    /// −1 of a constant.
+    /// −1 for a constant.
     int node() const { return next_ - 1; }
 
     friend Taped operator+(const Taped& a, const Taped& b) {
@@ -282,7 +283,7 @@ public:
         const Scalar root = sqrt(a.value);
         return a.tape_ ? Taped(root, *a.tape_, a.tape_->add(Operation::root, a.node())) : Taped(root);
     }
-    /// Until it changes its sign.
+    /// Valid until the sign of a changes.
     friend Taped abs(const Taped& a) {
         using std::abs;
         if (!a.tape_) return Taped(Scalar(abs(a.value)));
@@ -290,7 +291,7 @@ public:
         a.tape_->note_event(size.node(), size.value);
         return size;
     }
-    /// √(a² + b²), until it vanishes: neither is a constant.
+    /// √(a² + b²), valid until it vanishes; a and b must not both be constant.
     friend Taped norm(const Taped& a, const Taped& b) {
         using std::sqrt;
         const Taped size(sqrt(Scalar(a.value * a.value + b.value * b.value)), *a.tape_,
@@ -322,10 +323,10 @@ private:
     }
 
     Tape<Scalar>* tape_ = nullptr;
-    int next_ = 0;  // after its node; 0 of a constant
+    int next_ = 0;  // number of its node + 1; 0 for a constant
 };
 
-/// A x = b is noted as a whole, unless all of it is constant.
+/// Records A x = b as a whole, unless all numbers are constant.
 template <class S>
 void solve_factored(EnvelopeMatrix<Taped<S>>& a, State<Taped<S>, Eigen::Dynamic>& x) {
     if (a.rows() == 0) return;
@@ -378,7 +379,7 @@ struct SinCos<Taped<S>> {
 
 }  // namespace doppel
 
-/// The range and the precision of its value.
+/// Range and precision are those of its value.
 template <class S>
 struct std::numeric_limits<doppel::Taped<S>> : std::numeric_limits<S> {};
 
