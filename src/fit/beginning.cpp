@@ -15,7 +15,7 @@ double length_of(const Track& track, const Shot& shot) {
     return times[shot.last - 1] - times[shot.first];
 }
 
-/// Adds so many parts of a stretch, of even length and with guessed starts; fewer where there are gaps.
+/// Adds `count` equal parts of a stretch, with estimated starts; fewer if there are gaps.
 void add_parts(std::vector<Shot>& parts, const Track& track, const Shot& all, long count) {
     constexpr std::size_t least_samples = 8;
     const auto& times = track.pieces[all.piece].time_s;
@@ -31,7 +31,7 @@ void add_parts(std::vector<Shot>& parts, const Track& track, const Shot& all, lo
     }
 }
 
-/// Each stretch in `most` parts, or a half, a quarter … as many where these would be too short.
+/// Each stretch in `most` parts, or a half, a quarter … of that number if the parts would be too short.
 std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, long most) {
     constexpr double least_samples = 8, least_s = 0.15;
     std::vector<Shot> parts;
@@ -45,10 +45,10 @@ std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, 
     return parts;
 }
 
-/// Whether the motion of one shot follows the samples of the next to its end, and an error of its start grows no more
-/// than a hundredfold until then: beyond, the cost has many minima, and normal equations lose their digits.
+/// Whether the motion of one shot follows the samples of the next one to its end, and an initial error grows at most a
+/// hundredfold up to there. Beyond that the cost has many minima, and the normal equations lose their digits.
 bool leads(const Track& track, const Fit& fit, const Shot& one, const Shot& next) {
-    constexpr double near = 0.3, most_growth = 100;  // rad; of an angle, per angle or per rate over the pendulum's own
+    constexpr double near = 0.3, most_growth = 100;  // rad; growth of an angle, per angle or per rate in natural units
     const auto& piece = track.pieces[one.piece];
     Flow<> flow(fit.model, fit.parameters, one.start, fit.step_s);
     const double rate = std::sqrt(fit.parameters[gravity_2]);
@@ -64,7 +64,7 @@ bool leads(const Track& track, const Fit& fit, const Shot& one, const Shot& next
     return true;
 }
 
-/// Pairs of which one leads through the other, as one.
+/// Joins each shot with the next one if it leads through that one.
 void join(const Track& track, Fit& fit) {
     std::vector<Shot> joined;
     for (auto next = fit.shots.begin(); next != fit.shots.end();) {
@@ -75,7 +75,7 @@ void join(const Track& track, Fit& fit) {
     fit.shots = std::move(joined);
 }
 
-/// Shots that do not follow their samples, halved; what begins anew is guessed.
+/// Halves the shots that do not follow their samples; new starts are estimated.
 void halve_lost(const Track& track, Fit& fit) {
     constexpr double lost = 0.1;  // rad, rms
     constexpr std::size_t least_samples = 16;
@@ -91,7 +91,7 @@ void halve_lost(const Track& track, Fit& fit) {
 }
 
 Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
-    // a swing of little acceleration wants longer windows than its noise alone
+    // a slow swing requires longer windows than its noise alone
     Regression best;
     for (const double longer : {1.0, 1.5, 2.25}) {
         const auto other = regress(estimates_of(track, stop, longer));
@@ -109,14 +109,14 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
     return p;
 }
 
-/// Fits stretches in parts, joined as far as one leads to the next.
+/// Fits stretches in parts, which are joined where one leads to the next.
 std::optional<Fit> fitted_in_parts(const FitJob& job, const std::vector<Shot>& wholes, long most,
                                    const Parameters& guess) {
     const auto& track = job.track;
     std::optional<Fit> fit{{.model = model_of(false, 0), .parameters = guess, .shots = parts_of(track, wholes, most)}};
     fit->scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
     for (auto parts = 2 * most; parts > 0; parts /= 2) {
-        fit->is_evaluated = false;  // of other shots, or another model
+        fit->is_evaluated = false;  // it is of other shots, or another model
         fit = fit_model(job, *std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
         if (!fit || parts == 1) break;
         halve_lost(track, *fit);
@@ -148,7 +148,7 @@ Fit begin_fit(const FitJob& job) {
     const auto wholes = divide(job.track);
     const auto guess = regressed(job.track, job.stop);
     constexpr long quarters = 4, shortest = 16;
-    for (auto most = quarters; most <= shortest; most *= 2)  // of shorter ones the motion may stay finite
+    for (auto most = quarters; most <= shortest; most *= 2)  // the motion may stay finite over shorter parts
         if (auto fit = fitted_in_parts(job, wholes, most, guess)) return *fit;
     throw no_motion(job.track);
 }

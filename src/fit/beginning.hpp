@@ -4,15 +4,16 @@
 
 namespace doppel {
 
-/// Stretches of at most three seconds, less where there is little track, each with its unit. They are whole.
+/// Divides the track into whole stretches of at most three seconds, less for short tracks, and assigns units.
 std::vector<Shot> divide(const Track& track);
 
-/// Where to begin fitting: a model of rigid bodies with all friction that follows the track.
+/// The first fit of a track: a model of rigid bodies with all friction.
 ///
-/// The equations of motion are regressed, which needs no start; then stretches of a quarter of the division's, or less
-/// where the motion does not stay finite, are fitted, which follow the samples from almost any start. Those that do not are
-/// halved; others are joined as far as one leads through the next. A stretch of motion so chaotic that an error of its start
-/// would grow more than a hundredfold stays cut. Throws Error: exit 3 where no double pendulum moves so, 130.
+/// First, a regression of the equations of motion, which needs no start. Then parts of stretches are fitted: quarters,
+/// or shorter ones where the motion does not stay finite. They follow the samples from almost any start. Parts that do
+/// not are halved; others are joined as far as one leads through the next. A stretch so chaotic that an initial error
+/// would grow more than a hundredfold remains divided. Throws Error: exit 3 if no double pendulum moves like the track,
+/// 130.
 Fit begin_fit(const FitJob& job);
 
 }  // namespace doppel

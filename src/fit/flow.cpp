@@ -8,8 +8,8 @@
 namespace doppel {
 namespace {
 
-/// The angle at t seconds into a step of h: the polynomial of degree 5 through angle, rate and acceleration at both
-/// ends (error h⁶ θ⁽⁶⁾/46080). Weights of these six, in that order.
+/// Weights of angle, rate and acceleration at both ends, in that order, for the angle at t seconds in a step of h. This
+/// is the polynomial of degree 5 through all six (error h⁶ θ⁽⁶⁾/46080).
 std::array<double, 6> angle_weights(double t, double h) {
     const double s = t / h, s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
     return {1 - 10 * s3 + 15 * s4 - 6 * s5,
@@ -19,7 +19,7 @@ std::array<double, 6> angle_weights(double t, double h) {
             h * (-4 * s3 + 7 * s4 - 3 * s5),
             h * h * (0.5 * s3 - s4 + 0.5 * s5)};
 }
-/// Those of its rate.
+/// The same for the rate.
 std::array<double, 6> rate_weights(double t, double h) {
     const double s = t / h, s2 = s * s, s3 = s2 * s, s4 = s3 * s;
     return {(-30 * s2 + 60 * s3 - 30 * s4) / h, 1 - 18 * s2 + 32 * s3 - 15 * s4, h * (s - 4.5 * s2 + 6 * s3 - 2.5 * s4),
@@ -121,12 +121,13 @@ void Flow<N>::find_event(std::size_t joint) {
 
 template <int N>
 bool Flow<N>::pass_event() {
-    constexpr double at_once = 100, a_step = 4;  // events
+    constexpr double at_once = 100, a_step = 4;  // limits of events: at one time; per step
     origin_ = begin() + length_;
     done_ = 0;
     auto& [y, slope] = before_ = later(before_, length_);
     const bool was_held = values_.is_held(*joint_);
-    y(0, 2 + *joint_) = *joint_ == 0 ? 0 : y(0, 2);  // it is to rounding; less than 0 would be an event again, for ever
+    y(0, 2 + *joint_) =
+        *joint_ == 0 ? 0 : y(0, 2);  // rounded to the limit; a value below 0 would be an event again, without end
     if (values_.is_held(1)) y(0, 3) = y(0, 2);
     arms_.modes = values_.modes = settled(values_, *joint_, y.row(0));
     const Column rate = relative(y, *joint_), acceleration = relative(slope, *joint_);

@@ -6,25 +6,26 @@
 
 namespace doppel {
 
-/// How many directions there are for a start alone, and with all that moves the links; no others are compiled.
+/// Numbers of derivatives: by the start alone, and also by all parameters that affect the motion; only these are
+/// compiled.
 constexpr int start_directions = 4, all_directions = 4 + static_cast<int>(dynamic_count);
 
-/// The motion from one start, step after step, to be asked for angles at ascending times: Dormand and Prince's method of order
-/// 5 at fixed steps, so that derivatives are those of what is computed. N derivatives are carried along: those by the start
-/// (0 to 3), or by the fitted parameters that move the links, too (4 + their number).
+/// The motion from one start, computed step by step, for angles at ascending times. The method is Dormand & Prince's of
+/// order 5 at fixed steps, so that derivatives are those of the computed motion. It carries N derivatives: by the start
+/// (0 to 3), or also by the fitted parameters that affect the motion (4 + their number).
 ///
-/// With Coulomb friction each step keeps to one law and counts as far as that holds, until a joint comes to rest or is let
-/// go. Then the slope f jumps, and with it how the state changes with what fixes the time t* of the event:
-///     ∂y after = ∂y before + (f before − f after) ∂t*,   ∂t* = −∂ω/ω′ of the joint's rate ω
+/// With Coulomb friction each step uses one law of friction and ends where that law ends, when a joint stops or starts.
+/// There the slope f jumps, and so do the derivatives of the state, by the derivative of the time t* of the event:
+///     ∂y after = ∂y before + (f before − f after) ∂t*,   ∂t* = −∂ω/ω′ with the rate ω of the joint
 template <int N = start_directions>
 class Flow {
 public:
     Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step);
 
-    /// Steps on until `t` (s from the start) is in the last step. False where the motion left what is finite.
+    /// Steps until `t` (s from the start) is in the last step. Returns false if the motion did not stay finite.
     bool reach(double t);
 
-    // For a time in the last step, or a little outside:
+    // For a time in the last step, or slightly outside:
 
     using Column = Eigen::Matrix<double, 1 + N, 1>;  // a number and its derivatives
     Column angle(std::size_t arm, double t) const;
@@ -37,12 +38,12 @@ private:
         State y, slope;
     };
 
-    /// The joint's own rate of a state, or its acceleration of a slope.
+    /// The joint's rate for a state, or its acceleration for a slope.
     static Column relative(const State& y, std::size_t joint) {
         return joint == 0 ? Column(y.col(2)) : Column(y.col(3) - y.col(2));
     }
     double begin() const { return origin_ + static_cast<double>(done_) * step_; }
-    /// The sum, by these weights, of a link's angle, rate and acceleration where the step begins, and where it ends.
+    /// The weighted sum of a link's angle, rate and acceleration at both ends of the step.
     auto weighted(const std::array<double, 6>& w, std::size_t arm) const {
         return w[0] * before_.y.col(arm) + w[1] * before_.y.col(arm + 2) + w[2] * before_.slope.col(arm + 2) +
                w[3] * after_.y.col(arm) + w[4] * after_.y.col(arm + 2) + w[5] * after_.slope.col(arm + 2);
@@ -50,18 +51,19 @@ private:
     State slope_of(const State& y) const;
     Moment later(const Moment& from, double h) const;
     bool go_on();
-    /// An event of this joint before those already found: at the end, or where its rate is nearest to rest before.
+    /// Finds an event of this joint before those found: at the end, or before where its rate is closest to zero.
     void find_event(std::size_t joint);
-    /// Goes to the event and on by the law that holds from there. False where they are too many to end.
+    /// Moves to the event, and continues with the law that applies after it. Returns false if there are too many
+    /// events.
     bool pass_event();
 
     Arms<Dual<double, N>> arms_;
-    Arms<double> values_;               // theirs alone
-    double step_, origin_ = 0;          // s, of the last event or the start
-    long done_ = 0;                     // steps since
-    double events_ = 0;                 // so far
-    double length_ = 0;                 // s, of the last step, which an event may cut
-    std::optional<std::size_t> joint_;  // that of the event
+    Arms<double> values_;               // values without derivatives
+    double step_, origin_ = 0;          // s, time of the last event, or of the start
+    long done_ = 0;                     // steps since then
+    double events_ = 0;                 // number of events
+    double length_ = 0;                 // s, of the last step, which may end at an event
+    std::optional<std::size_t> joint_;  // joint of the event
     Moment before_, after_;
 };
 

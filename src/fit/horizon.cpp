@@ -16,7 +16,8 @@ double time_of(const Track& track, const Shot& shot, std::size_t sample) {
     return track.start_s[shot.piece] + times[sample] - times.front();
 }
 
-/// Goes along a shot after the data, by the motion from a fitted start. False where the error is well beyond the limit.
+/// Follows a shot after the data by the motion from a fitted start. Returns false once the error is far above the
+/// limit.
 bool follow(const Track& track, const Shot& shot, bool is_first_piece, double limit, const Parameters& p, Flow<>& flow,
             Prediction& prediction) {
     constexpr double kept_every_s = 0.02, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
@@ -31,7 +32,7 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
             const double at = from_start + (arm == 1 ? p[lag] : 0);
             if (!flow.reach(at)) return false;
             double off = piece.angle[arm][i] - (p[offset_1 + arm] + p[scale_1 + arm] * flow.angle(arm, at)[0]);
-            if (!is_first_piece) off -= turn * std::round(off / turn);  // a piece may count turns anew
+            if (!is_first_piece) off -= turn * std::round(off / turn);  // a new piece may count turns differently
             error = std::max(error, std::abs(off));
         }
         if (error > limit && !prediction.left_s) prediction.left_s = t;
@@ -42,10 +43,10 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
     return true;
 }
 
-/// When one standard error of the start, and of the parameters, has grown to the limit.
+/// Finds when the effect of one standard error of the start, and of the parameters, reaches the limit.
 void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty, double limit,
                Prediction& prediction) {
-    constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as fine as a standard error is known
+    constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as precise as a standard error is known
     const double step = steps * fit.step_s;
     const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
     const auto of_parameters = uncertainty.covariance.topLeftCorner<dynamic_count, dynamic_count>();
@@ -67,7 +68,7 @@ void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty
 
 Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Uncertainty& uncertainty, double limit) {
     const auto& track = job.track;
-    constexpr double data_s = 2, most_of_unit = 0.75;  // something must be left to predict
+    constexpr double data_s = 2, most_of_unit = 0.75;  // so that there is something left to predict
     const auto own = fit.unit(unit);
     auto shot = own.front();
     const auto& times = track.pieces[shot.piece].time_s;
@@ -75,7 +76,7 @@ Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Un
     const auto end = std::upper_bound(times.begin(), times.end(), begin + std::min(data_s, most_of_unit * length));
     shot.last = static_cast<std::size_t>(end - times.begin());
     Prediction prediction{.start_s = time_of(track, shot, shot.first), .data_s = times[shot.last - 1] - begin};
-    // each unit after is judged by parameters that know neither it nor the first
+    // each later unit is judged by parameters fitted without it and without the first
     for (auto judged = unit; judged < fit.units(); ++judged) {
         const auto without = stepped(fit, 0, unit, judged);
         if (judged == unit) shot.start = without.unit(unit).front().start;
@@ -97,7 +98,8 @@ Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Un
 
 std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
     std::sort(times.begin(), times.end(), [](const auto& a, const auto& b) {
-        return a.first < b.first || (a.first == b.first && a.second && !b.second);  // ends before what goes on
+        return a.first < b.first || (a.first == b.first && a.second &&
+                                     !b.second);  // at equal times, predictions that ended come before censored ones
     });
     double remaining = 1;
     for (std::size_t k = 0; k < times.size(); ++k) {
@@ -111,7 +113,7 @@ std::optional<double> median_of(std::vector<std::pair<double, bool>> times) {
 Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& uncertainty) {
     Horizon horizon;
     constexpr double noises = 5;                 // so that no single sample's noise ends a prediction
-    constexpr double never = 1e300, much = 0.6;  // of the time until errors of start or parameters end it
+    constexpr double never = 1e300, much = 0.6;  // relative to the time at which errors of start or parameters end it
     horizon.limit = std::max(horizon.limit, noises * std::max(job.track.noise[0], job.track.noise[1]));
     std::vector<Prediction> all(fit.units());
     parallel_for(all.size(), job.threads, [&](std::size_t unit) {

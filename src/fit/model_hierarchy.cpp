@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// The models, from the smallest: of point masses and of bodies as long as there is no Coulomb friction.
+/// The models, the smallest first: with point masses and with rigid bodies up to those with Coulomb friction.
 std::vector<FittedModel> models_of(Bodies bodies) {
     constexpr const char* words[]{"no friction",
                                   "viscous friction",
@@ -32,7 +32,8 @@ std::vector<FittedModel> models_of(Bodies bodies) {
     return models;
 }
 
-/// Judges by every unit, of which the starts alone are fitted: its mean square residual, infinite where no motion stays finite.
+/// Computes the mean square residual of each unit with parameters fitted without it; only starts are fitted. Infinite
+/// if no motion stays finite.
 void leave_out(const FitJob& job, FittedModel& candidate) {
     candidate.left_out.resize(candidate.fit.units());
     parallel_for(candidate.left_out.size(), job.threads, [&](std::size_t unit) {
@@ -48,10 +49,12 @@ void leave_out(const FitJob& job, FittedModel& candidate) {
     candidate.left_out_rms = std::sqrt(squares / samples);
 }
 
-/// Whether a model predicts pieces left out as well as the best, within what pieces differ by; and, where the best leaves
-/// no more than samples scatter from one to the next, so noise, is as likely: by the ratio of likelihoods, at some 99.9 %.
+/// Whether a model predicts left-out pieces as well as the best one, within the scatter of pieces. If the best one
+/// leaves only noise, comparable to the sample-to-sample scatter, the model must also be as likely by the likelihood
+/// ratio, at some 99.9 %.
 bool is_as_good(const Track& track, const FittedModel& candidate, const FittedModel& best) {
-    constexpr double negligible = 0.1, about = 1.3;  // of the mean square: a twentieth of the rms; of the noise
+    constexpr double negligible = 0.1,
+                     about = 1.3;  // of the mean square: a twentieth of the rms; relative to the noise
     double sum = 0, squares = 0;
     const auto count = static_cast<double>(candidate.left_out.size());
     for (std::size_t u = 0; u < candidate.left_out.size(); ++u) {
@@ -68,7 +71,7 @@ bool is_as_good(const Track& track, const FittedModel& candidate, const FittedMo
                10 + 2 * std::max(more, 0.0);
 }
 
-/// Another model at the same parameters, without the friction that it leaves out.
+/// Another model with the same parameters, without the friction that it lacks.
 Fit as_model(const ModelSpec& model, Fit fit) {
     fit.model = model;
     fit.is_evaluated = false;
@@ -80,14 +83,14 @@ Fit as_model(const ModelSpec& model, Fit fit) {
 }  // namespace
 
 ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
-    constexpr double roughly = 5e-4;  // enough to compare
+    constexpr double roughly = 5e-4;  // precise enough for a comparison
     const auto models = models_of(bodies);
     const auto first = begin_fit(job);
     ModelHierarchy hierarchy;
     auto& candidates = hierarchy.candidates;
     for (auto candidate : models) {
         throw_if_set(job.stop);
-        // from the nearer of two places: where all began, and where the model before ended
+        // starts from the better of two fits: the first one, and that of the previous model
         const auto model = candidate.fit.model;
         auto start = as_model(model, first);
         if (!candidates.empty() && candidates.back().fit.model.point_masses == model.point_masses) {

@@ -6,7 +6,7 @@
 namespace doppel {
 namespace {
 
-/// The torque over B that holds a held joint, > 0 against one that would turn forwards.
+/// The torque over B that holds a joint at rest, > 0 against forward motion.
 double holding(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
     const auto sides = arms.sides(y[0], y[1], y[2], y[3]);
     const auto alpha = arms.accelerations(sides);
@@ -46,12 +46,12 @@ std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState&
 FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, const Convention& convention) {
     const double a = p[inertia], c = p[coupling], d1 = p[gravity_1], d2 = p[gravity_2], g = convention.gravity;
     const double m2 = convention.second_mass;
-    // the second link: B = (1 + share) m2 a2², and g/d2 = B/(m2 a2); the rest of A and D1 must stay positive
+    // the second link: B = (1 + share) m2 a2², and g/d2 = B/(m2 a2); the remainders of A and D1 must stay positive
     constexpr double of_rod = 1.0 / 3;
     const double room = std::min(a / (c * c) - 1, d1 / (c * d2) - 1);
     const double share = model.point_masses ? 0 : std::clamp(0.5 * room, 0.0, of_rod);
     const double a2 = g / d2 / (1 + share), i2 = share * m2 * a2 * a2, b = i2 + m2 * a2 * a2, l1 = c * g / d2;
-    // the first: J = I1 + m1 a1² and m1 a1 are left
+    // the first link: J = I1 + m1 a1² and m1 a1 are the remainders
     const double second = a * b - m2 * l1 * l1, moment = d1 * b / g - m2 * l1;
     const double a1 = model.point_masses ? l1 : second / ((1 + of_rod) * moment), m1 = moment / a1;
     const auto friction = [&](std::size_t first) { return std::array{b * p[first], b * p[first + 1]}; };

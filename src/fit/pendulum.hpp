@@ -14,28 +14,28 @@
 
 namespace doppel {
 
-/// What the angles of a double pendulum can tell of it. With
+/// The quantities of a double pendulum that its angles determine. With
 ///     A = I1 + m1 a1² + m2 L1²,   B = I2 + m2 a2²,   C = m2 L1 a2,   D1 = (m1 a1 + m2 L1) g,   D2 = m2 a2 g
-/// (a: joint to centre of mass, I: about the centre of mass) they tell these over B, never B itself; and what the
-/// encoders add. Numbers into Parameters.
+/// (a: joint to centre of mass, I: about the centre of mass), the angles determine these divided by B, but not B
+/// itself; also the errors of the encoders. Values are indices into Parameters.
 enum FitParameter : std::size_t {
     inertia,      // A/B
     coupling,     // C/B
     gravity_1,    // D1/B, 1/s²
     gravity_2,    // D2/B, 1/s²
-    viscous_1,    // torque at the pivot per rate, over B, 1/s; ≥ 0, as all friction
+    viscous_1,    // torque at the pivot per rate, over B, 1/s; ≥ 0, as for all friction
     viscous_2,    // at the middle joint
     coulomb_1,    // Coulomb friction at the pivot, over B, 1/s²
     coulomb_2,    // at the middle joint
     quadratic_1,  // drag of the first link per squared rate, over B
     quadratic_2,  // of the second
-    offset_1,     // of the encoders, rad: what they show at rest
+    offset_1,     // of the encoders, rad: their reading at rest
     offset_2,
-    lag,      // s, by which the second encoder is ahead of the first
-    scale_1,  // radians shown for a radian turned
+    lag,      // s, the time by which the second encoder is ahead of the first
+    scale_1,  // measured radians per radian
     scale_2,
     parameter_count,
-    dynamic_count = offset_1  // so many move the links, the others read them
+    dynamic_count = offset_1  // parameters before this affect the motion, the others its measurement
 };
 using Parameters = Eigen::Matrix<double, parameter_count, 1>;
 
@@ -64,20 +64,20 @@ inline constexpr std::array<ParameterWords, parameter_count> parameter_words{{
     {"scale_2", "scale 2", ""},
 }};
 
-/// On which speed the quadratic drag of the second link acts.
+/// The velocity that determines the quadratic drag of the second link.
 enum class Drag {
-    own,      // its own rate ω2, as if the middle joint stood still
-    carried,  // relative to the air: u = ω2 + (C/B) cos(θ1 − θ2) ω1, the joint's motion added
+    own,      // its own rate ω2, without the motion of the middle joint
+    carried,  // relative to the air: u = ω2 + (C/B) cos(θ1 − θ2) ω1, including the motion of the joint
 };
 
-/// Which numbers of a model are fitted, and what it is like otherwise.
+/// The parameters of a model that are fitted, and its options.
 struct ModelSpec {
     bool point_masses = false;  // then D1 = A D2/C, and gravity_1 is not among `fitted`
     Drag drag = Drag::own;
     std::bitset<parameter_count> fitted;
     bool may_gain = false;  // friction may be negative
 
-    /// Those that are fitted, in their order.
+    /// The fitted parameters in order.
     std::vector<std::size_t> list() const {
         std::vector<std::size_t> all;
         for (std::size_t k = 0; k < parameter_count; ++k)
@@ -86,23 +86,23 @@ struct ModelSpec {
     }
 };
 
-/// The model with friction: 0 none, 1 viscous, 2 and Coulomb, 3 and drag; and with a reading: 0 offsets, 1 and a lag, 2 and
-/// scales.
+/// The model with `friction`: 0 none, 1 viscous, 2 also Coulomb, 3 also quadratic drag; and `reading`: 0 offsets, 1
+/// also a lag, 2 also scales.
 ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
 
 using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; ω1, ω2, rad/s
 
-/// Two rigid bodies on joints with friction, in a vertical plane, divided by B.
+/// Two rigid bodies on joints with friction, in a vertical plane; all divided by B.
 ///
 ///     A θ1″ + C cosδ θ2″ + C sinδ ω2² + D1 sinθ1 = −Q1,   δ = θ1 − θ2
 ///     θ2″ + C cosδ θ1″ − C sinδ ω1² + D2 sinθ2 = −Q2
-///     Q1 = j1 − j2 + k1 |ω1| ω1 [+ C cosδ k2 |u| u],   Q2 = j2 + k2 |u| u,   u = ω2, or of drag that is carried (Drag)
-///     j = b ω + c s,   with the joint's own rate ω, ω1 or ω2 − ω1
+///     Q1 = j1 − j2 + k1 |ω1| ω1 [+ C cosδ k2 |u| u],   Q2 = j2 + k2 |u| u,   u = ω2, or that of Drag::carried
+///     j = b ω + c s,   with the rate ω of the joint, ω1 or ω2 − ω1
 ///
-/// s is the joint's mode, the sign of its rate, until the next event (fit/flow.hpp): at 0 the joint is held.
+/// s is the mode of the joint, the sign of its rate, until the next event (fit/flow.hpp); at 0 the joint is held.
 ///
-/// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; the carried drag: a point of the second link at the
-///         distance B/(m2 a2) of its centre of oscillation moves through the air with that distance times u.
+/// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; Drag::carried: the centre of oscillation of the second
+///         link, B/(m2 a2) from its joint, moves through the air with that distance times u.
 template <class Scalar>
 struct Arms {
     std::array<Scalar, dynamic_count> p;
@@ -110,7 +110,7 @@ struct Arms {
     bool has_coulomb = false;
     std::array<int, 2> modes{1, 1};
 
-    /// Both right sides, and the factor of the other link's acceleration on both left.
+    /// The right sides of both equations, and the factor of the other link's acceleration on both left sides.
     struct Sides {
         Scalar r1, r2, cosine;
     };
@@ -130,7 +130,7 @@ struct Arms {
         return to;
     }
 
-    /// Of A α1 + cosine α2 = r1 + torques that hold joints, cosine α1 + α2 = r2 + such.
+    /// The solution of A α1 + cosine α2 = r1 + torque holding a joint, cosine α1 + α2 = r2 + such a torque.
     std::array<Scalar, 2> accelerations(const Sides& of_arms) const {
         const auto& [r1, r2, cosine] = of_arms;
         if (is_held(0)) return {Scalar(0), is_held(1) ? Scalar(0) : r2};
@@ -145,7 +145,7 @@ struct Arms {
     bool is_held(std::size_t joint) const { return has_coulomb && modes[joint] == 0; }
 };
 
-/// The links of a model. Derivatives by fitted parameters are along direction 4 + their number, where there is one.
+/// The links of a model. The derivative by a fitted parameter is in direction 4 + its number, if that is carried.
 template <class Scalar>
 Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
     Arms<Scalar> arms{.p = {}, .drag = model.drag};
@@ -162,31 +162,31 @@ Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
     return arms;
 }
 
-// Joints with Coulomb friction: how they move at a state, and until when.
+// Joints with Coulomb friction: their mode at a state, and the end of that mode.
 
-/// The modes of joints that turn as in this state.
+/// The modes of sliding joints at this state.
 inline std::array<int, 2> turning(const ArmState& y) {
     return {y[2] < 0 ? -1 : 1, y[3] < y[2] ? -1 : 1};
 }
-/// 0 or more while the joint keeps to its mode.
+/// 0 or more while the mode of the joint is valid.
 double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y);
-/// The modes in which the joints go on after an event of this joint, now at rest: whether it was held before matters.
+/// The modes after an event of this joint, which is now at rest. It matters whether it was held before.
 std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y);
 
-/// What angles do not tell, and so has to be given.
+/// Quantities that angles cannot determine and that must be given.
 struct Convention {
     double gravity = 9.8;      // m/s², > 0
     double second_mass = 1.0;  // kg, > 0
 };
 
-/// A pendulum that moves as the fitted links do. Lengths of the first link follow from gravity (L1 = g C/D2); how the rest is
-/// shared out among mass, centre and inertia no angle tells: both links are uniform rods (I = m a²/3, a to the centre of
-/// mass), or, where point masses were fitted, points at their ends (I = 0). A second link too light in its first for that
-/// is given less inertia.
+/// A pendulum that moves like the fitted links. The length of the first link follows from gravity (L1 = g C/D2). Angles
+/// do not determine how the rest is divided into mass, centre and inertia. Both links are taken as uniform rods (I = m
+/// a²/3, a to the centre of mass) or, if point masses were fitted, as points at their ends (I = 0). A second link that
+/// is too light for this gets less inertia.
 struct FittedPendulum {
-    std::vector<std::pair<std::string, std::array<double, 2>>> arms;  // what presets say of both, by key
-    double gravity = 0, second_inertia = 0;                           // m/s²; B, kg m², by which ratios become these
-    std::string rule;                                                 // the sentence above, as it applied
+    std::vector<std::pair<std::string, std::array<double, 2>>> arms;  // values of both links for each key of a preset
+    double gravity = 0, second_inertia = 0;  // m/s²; B, kg m², the factor that turns ratios into these values
+    std::string rule;                        // a sentence with the rule that was applied
 };
 FittedPendulum fitted_pendulum(const Parameters& parameters, const ModelSpec& model, const Convention& convention);
 

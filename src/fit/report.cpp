@@ -16,7 +16,7 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// The files of a track, each once.
+/// The files of a track, without duplicates.
 std::vector<std::string> files_of(const Track& track) {
     std::vector<std::string> files;
     for (const auto& piece : track.pieces)
@@ -113,7 +113,7 @@ std::string horizon_sentence(const FitResult& result) {
     auto sentence =
         fmt::format("Predictions from {} s of data stay within {:.2g} rad ", span(&Prediction::data_s), h.limit);
     if (left == 0) {
-        // of those seen for the median time or longer: (1 − p)ⁿ = 5 %
+        // among those observed for the median time or longer: (1 − p)ⁿ = 5 %
         std::vector<double> seen;
         for (const auto& p : h.predictions) seen.push_back(p.within_s);
         std::sort(seen.begin(), seen.end());
@@ -147,7 +147,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto& p = result.pendulum;
     const auto files = files_of(result.track);
     const auto& shot = candidate.fit.shots.front();
-    // what the start is known to by itself; what it shares with the parameters would add little
+    // the uncertainty of the start by itself; its correlation with the parameters would add little
     const Eigen::Matrix4d covariance = shot.sums.inverse_of_start();
     const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
     auto text = fmt::format(
@@ -183,7 +183,7 @@ Json fit_json(const FitResult& result) {
     Json pendulum = {{"convention", rule}, {"gravity_m_per_s2", gravity}, {"B_kg_m2", second_inertia}};
     for (const auto& [key, values] : arms) pendulum[key] = values;
     const auto file_name = [](const std::string& file) {
-        std::error_code ignored;  // of a folder that is gone: the path is empty
+        std::error_code ignored;  // if the current folder was removed, the path is empty
         return on_one_line(std::filesystem::proximate(file, ignored).string());
     };
     const auto candidate_json = [](const FittedModel& candidate) {
@@ -237,14 +237,14 @@ void write_residuals(const FitResult& result, const std::filesystem::path& place
     table.finish();
 }
 
-// The page.
+// The page of a fit.
 
 namespace {
 
 constexpr double mrad = 1e3;
 constexpr std::array<const char*, 2> names{"θ1", "θ2"};  // of the links
 
-/// The first shot: some samples as points, the model as lines.
+/// The first shot: samples as points, the model as lines.
 Plot track_plot(const FitResult& result) {
     const auto& shot = result.chosen().fit.shots.front();
     const auto& piece = result.track.pieces[shot.piece];
@@ -268,7 +268,7 @@ Plot track_plot(const FitResult& result) {
     return plot;
 }
 
-/// All residuals, piece after piece, thinned to what a panel can show: the one of a stretch that is largest.
+/// All residuals in order. Each stretch that a panel can resolve shows its largest one.
 Plot residual_plot(const FitResult& result) {
     const auto& fit = result.chosen().fit;
     constexpr double points = 900, none = std::numeric_limits<double>::quiet_NaN();
@@ -300,7 +300,7 @@ Plot residual_plot(const FitResult& result) {
     return plot;
 }
 
-/// The error on pieces left out over the number of parameters.
+/// The error on left-out pieces against the number of parameters.
 Plot ladder_plot(const FitResult& result) {
     Plot plot{.title = "Error against number of parameters", .needs_no_legend = true};
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};

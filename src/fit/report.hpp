@@ -7,27 +7,27 @@
 
 namespace doppel {
 
-/// A preset that swings as the track's first piece does: comments on what was fitted, then [scene], [system] and [b],
-/// the same pendulum released one standard error further. Where presets cannot state the chosen model, it is the best of
-/// those that they can.
+/// A preset that moves like the track's first piece: comments on the fit, then [scene], [system], and [b] with the same
+/// pendulum released one standard error away. If presets do not support the chosen model, the best supported one is
+/// used.
 std::string fitted_preset(const FitResult& result, const std::string& name);
 
-/// Everything found, for the manifest.
+/// All results for the manifest.
 Json fit_json(const FitResult& result);
 
-/// Columns and rows of the residuals: piece (from 0), time_s, both angles as they were taken, and measured − model of
-/// both, rad; empty where an angle was left out.
+/// Writes the residuals. Columns: piece (from 0), time_s, both angles as interpreted, and measured − model of both,
+/// rad; empty if an angle was left out.
 void write_residuals(const FitResult& result, const std::filesystem::path& place);
 
-/// One sentence on the residuals: like noise, or not and why.
+/// A sentence about the residuals: white noise, or otherwise why not.
 std::string residual_sentence(const FitResult& result);
-/// One on the horizon, and what limits it.
+/// A sentence about the prediction horizon, and what limits it.
 std::string horizon_sentence(const FitResult& result);
-/// "A/B = 1.7988 ± 0.0007", with as many digits as the error bears.
+/// "A/B = 1.7988 ± 0.0007", with as many digits as the error justifies.
 std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter);
 
-/// The page of a fit: a piece and the model, the residuals with a band of two rms, the hierarchy, and the errors of
-/// predictions; below them the parameters and what was found, in sentences.
+/// The page of a fit: a piece with the model, the residuals with a band of two rms, the hierarchy, and the errors of
+/// predictions; below them, the parameters and results in sentences.
 Figure fit_page(const FitResult& result, const std::string& name);
 
 }  // namespace doppel

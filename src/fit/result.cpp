@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// How far the angles are spread about their mean, rms of both links, rad.
+/// Spread of the angles about their mean, rms of both links, rad.
 double spread_of(const Track& track) {
     double squares = 0;
     for (const auto& piece : track.pieces)
@@ -23,13 +23,13 @@ double spread_of(const Track& track) {
     return std::sqrt(squares / static_cast<double>(2 * track.samples()));
 }
 
-/// How much a model may leave, rms, rad.
+/// The largest acceptable residual of a model, rms, rad.
 double most_left(const Track& track) {
     constexpr double most_share = 0.05, noises = 3;
     return std::max(most_share * spread_of(track), noises * std::max(track.noise[0], track.noise[1]));
 }
 
-/// Throws where the swing gains energy. Only where friction that must not be negative is held at 0 need one look.
+/// Throws if the swing gains energy. This is only checked if some friction is at its lower bound 0.
 void require_loss(const FitJob& job, const ModelHierarchy& hierarchy) {
     constexpr double sure = 5;  // standard errors
     const auto viscous =
@@ -39,7 +39,7 @@ void require_loss(const FitJob& job, const ModelHierarchy& hierarchy) {
     if (viscous == hierarchy.candidates.rend()) return;
     if (!viscous->fit.is_at_bound(viscous_1) && !viscous->fit.is_at_bound(viscous_2)) return;
     const auto loss = energy_loss(job, viscous->fit);
-    const bool is_sure = loss && loss->share < -sure * loss->standard_error;  // not where the error is not a number
+    const bool is_sure = loss && loss->share < -sure * loss->standard_error;  // false if the error is not a number
     if (!is_sure || loss->rms > most_left(job.track)) return;
     throw method_failed(
         "{}: the motion gains energy, {:.2g} ± {:.1g} % of its kinetic energy a second; a free pendulum loses energy: "
@@ -47,7 +47,7 @@ void require_loss(const FitJob& job, const ModelHierarchy& hierarchy) {
         job.track.pieces.front().name, -100 * loss->share, 100 * loss->standard_error);
 }
 
-/// Throws where even the best model leaves too much for its numbers to mean anything.
+/// Throws if even the best model leaves too much for its parameters to mean anything.
 void require_description(const Track& track, const ModelHierarchy& hierarchy) {
     const auto& best = hierarchy.candidates[hierarchy.best];
     if (best.left_out_rms <= most_left(track)) return;
@@ -57,8 +57,8 @@ void require_description(const Track& track, const ModelHierarchy& hierarchy) {
         track.pieces.front().name, best.name, best.left_out_rms, spread_of(track));
 }
 
-/// Exchanged, the links obey the same equations, but for friction. No body, however, hangs by its own weight the wrong
-/// way: D1 − C D2/B is the first link's own moment, m1 a1 g and more, where B/(m2 a2) ≥ a2.
+/// Throws if the links seem exchanged. Exchanged links obey the same equations, except for friction. But D1 − C D2/B is
+/// the first link's own moment, at least m1 a1 g as B/(m2 a2) ≥ a2, so it must be positive.
 void require_order(const Track& track, const ModelHierarchy& hierarchy) {
     constexpr double least = 1.01;
     const auto& fit = hierarchy.candidates[hierarchy.best].fit;
@@ -70,15 +70,15 @@ void require_order(const Track& track, const ModelHierarchy& hierarchy) {
         track.pieces.front().name, moment);
 }
 
-/// The interval at which the fitted motion leads from each piece to the next; nothing where no interval up to four
-/// times a piece stands out.
+/// The interval at which the fitted motion leads from each piece to the next. Nothing if no interval up to four times a
+/// piece stands out.
 std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     constexpr double longest = 4, apart_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
     const auto& pieces = job.track.pieces;
     if (pieces.size() < 3) return std::nullopt;
     const double shortest = std::ranges::min_element(pieces, {}, &TrackPiece::duration)->duration(), step = fit.step_s;
-    // the state at the start of each piece, and how far the motion of each is from it, far beyond its end: rates in units of
-    // the pendulums' own
+    // the state at the start of each piece, and the distance of each piece's motion from it, far beyond the end of the
+    // piece; rates are in natural units
     const double rate = std::sqrt(fit.parameters[gravity_2]), leads = static_cast<double>(pieces.size() - 1);
     const ArmState unit(1, 1, rate, rate);
     std::vector<ArmState> starts(pieces.size());
@@ -86,7 +86,7 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     const auto count = static_cast<std::size_t>(longest * shortest / step);
     const auto from = static_cast<std::size_t>(0.95 * shortest / step);
     std::vector<std::vector<ArmState>> motions(pieces.size() - 1);
-    std::vector<double> distance(count, 0);  // of the ends, mean square, for each interval
+    std::vector<double> distance(count, 0);  // mean square distance of ends and starts, for each interval
     for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
         throw_if_set(job.stop);
         Flow<> flow(fit.model, fit.parameters, starts[k], step);
@@ -100,11 +100,12 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
     const auto least = std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1);
     const auto best = static_cast<std::size_t>(least - distance.begin());
     const double found_s = static_cast<double>(best) * step;
-    for (std::size_t i = from; i < count; ++i)  // rivals
+    for (std::size_t i = from; i < count; ++i)  // competing minima
         if (std::abs(static_cast<double>(i) * step - found_s) > apart_s && distance[i] < times * *least)
             return std::nullopt;
     if (*least > close) return std::nullopt;
-    // between the steps: the shift along each motion that brings the ends together, without those that have diverged
+    // refines between the steps: the shift along the motions that brings ends and starts together, without motions that
+    // have diverged
     double along = 0, speed = 0, rest = 0, used = 0;
     for (const auto& off : motions) {
         if (off[best].squaredNorm() > diverged) continue;
@@ -145,7 +146,7 @@ FitResult answer(Track track, const FitOptions& options, const std::atomic<bool>
     require_loss(job, hierarchy);
     require_description(result.track, hierarchy);
     auto& fit = hierarchy.candidates[hierarchy.chosen].fit;
-    constexpr double of_errors = 0.2;  // of a model's own: there, steps need not be finer
+    constexpr double of_errors = 0.2;  // of a model's own error: steps need not be finer
     for (const double share : {of_errors, FitEffort{}.step_share}) {
         const auto finer = fit_model(job, fit, {.step_share = share});
         if (!finer) throw no_motion(result.track);

@@ -14,7 +14,7 @@
 namespace doppel {
 namespace {
 
-/// The sums of a shot, by N directions: those of its start, or of all parameters, too.
+/// The sums of a shot with N derivatives: by its start, or also by all parameters.
 template <int N>
 ShotSums evaluate(const Track& track, const Fit& fit, const Shot& shot, double block_s) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -71,9 +71,10 @@ ShotSums evaluate(const Track& track, const Fit& fit, const Shot& shot, double b
     return sums;
 }
 
-/// The minimum of the model that a matrix and a slope make of the cost, where friction that would be less than 0 is 0.
+/// The minimum of the quadratic model of the cost given by its matrix and slope. Friction that would become negative is
+/// held at 0.
 Parameters bounded_change(const Fit& fit, ParameterMatrix matrix, Parameters slope) {
-    std::bitset<parameter_count> held;  // each once: what is not finite would ask for it for ever
+    std::bitset<parameter_count> held;  // each at most once: numbers that are not finite would repeat for ever
     for (;;) {
         Parameters change = matrix.ldlt().solve(slope);
         bool again = false;
@@ -91,13 +92,13 @@ Parameters bounded_change(const Fit& fit, ParameterMatrix matrix, Parameters slo
     }
 }
 
-/// Whether such links exist: their energy of motion is positive, they hang down, and the clock's lag is small.
+/// Whether such links can exist: their kinetic energy is positive, they hang down, and the lag is small.
 bool is_possible(const Parameters& p) {
     return p[inertia] > p[coupling] * p[coupling] && p[coupling] > 0 && p[gravity_1] > 0 && p[gravity_2] > 0 &&
            std::abs(p[lag]) < 0.05 && p[scale_1] > 0.5 && p[scale_2] > 0.5;
 }
 
-/// Of each link: 1.48 times the median size of its residuals, which a few wild ones do not move; no less than `least`.
+/// For each link 1.48 times the median size of its residuals, which is insensitive to outliers; at least `least`.
 std::array<double, 2> scale_of(const Fit& fit) {
     constexpr double least = 1e-10;
     std::array<double, 2> scale{};
@@ -111,8 +112,8 @@ std::array<double, 2> scale_of(const Fit& fit) {
     return scale;
 }
 
-/// Damped steps until the next would gain nothing that counts: less than a hundredth of what one standard error costs,
-/// or than the share `relative` of the cost; or until `most` passes are spent.
+/// Damped steps until the expected gain is negligible: less than a hundredth of that of one standard error, or than
+/// `relative` of the cost. Takes at most `most` passes.
 void descend(const FitJob& job, Fit& fit, double relative, int most) {
     constexpr double enough = 0.005, least_damping = 1e-9;
     double damping = 1e-8;
@@ -143,7 +144,7 @@ double step_error(const FitJob& job, const Fit& fit) {
     double largest = 0;
     for (std::size_t k = 0; k < fit.shots.size(); ++k)
         for (std::size_t i = 0; i < fit.shots[k].size(); ++i)
-            for (std::size_t arm = 0; arm < 2; ++arm)  // what is no number is not larger
+            for (std::size_t arm = 0; arm < 2; ++arm)  // a comparison with NaN is false
                 largest = std::max(
                     largest, std::abs(fine.shots[k].sums.residuals[i][arm] - fit.shots[k].sums.residuals[i][arm]));
     return largest;
@@ -181,7 +182,7 @@ void evaluate_fit(const FitJob& job, Fit& fit, double block_s) {
     });
     double squares = 0;
     fit.cost = 0;
-    for (const auto& shot : fit.shots) {  // in order, whoever computed them
+    for (const auto& shot : fit.shots) {  // in order, whichever thread computed them
         fit.cost += shot.sums.cost;
         squares += shot.sums.squares;
     }
@@ -252,7 +253,7 @@ std::optional<Fit> fit_model(const FitJob& job, Fit fit, const FitEffort& effort
     fit.passes = 0;
     constexpr int rounds = 20, some = 3;
     constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
-    // a start from which the motion ran away is guessed anew from the samples, and steps are finer
+    // starts from which the motion diverged are estimated again from the samples, and steps become finer
     const auto evaluate = [&] {
         for (evaluate_fit(job, fit); !std::isfinite(fit.cost) && fit.step_s > least_step; evaluate_fit(job, fit)) {
             for (auto& shot : fit.shots)
@@ -263,7 +264,7 @@ std::optional<Fit> fit_model(const FitJob& job, Fit fit, const FitEffort& effort
     };
     if (!fit.is_evaluated && !evaluate()) return std::nullopt;
     bool is_settled = !effort.finds_scale;
-    if (effort.finds_scale) {  // too small a scale is slow
+    if (effort.finds_scale) {  // a scale that is too small is slow
         const auto before = std::exchange(fit.scale, scale_of(fit));
         if (std::max(fit.scale[0] / before[0], fit.scale[1] / before[1]) <= 2)
             fit.scale = before;
@@ -274,7 +275,7 @@ std::optional<Fit> fit_model(const FitJob& job, Fit fit, const FitEffort& effort
         descend(job, fit, is_settled ? effort.relative : std::max(effort.relative, roughly),
                 std::max(effort.most_passes - fit.passes, 2));
         const double noise = std::min(fit.scale[0], fit.scale[1]);
-        // a scale that does not settle may be that of the steps' errors
+        // if the scale does not settle, it may be that of the integration errors
         const bool is_coarse = (is_settled || round > some) && effort.step_share > 0 && fit.step_s > least_step &&
                                step_error(job, fit) > effort.step_share * noise;
         if (fit.passes >= effort.most_passes || (is_settled && !is_coarse)) break;

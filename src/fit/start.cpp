@@ -14,16 +14,17 @@ namespace {
 
 using Unknowns = Eigen::Matrix<double, 6, 1>;  // two angles, two rates, two offsets
 
-/// What the motion from a start leaves of measured angles, both links' moment by moment.
+/// The residuals of measured angles for the motion from a start, both links at each time.
 using Rest = std::function<Eigen::VectorXd(const Eigen::VectorXd& measured, const Unknowns& x)>;
 
 double rms_of(const Eigen::VectorXd& rest) {
     return std::sqrt(rest.squaredNorm() / static_cast<double>(rest.size()));
 }
 
-/// One Gauss–Newton step, with derivatives by central differences, halved until it leads down. The rms after it, rad.
+/// One Gauss–Newton step with derivatives by central differences, halved until the cost decreases. Returns the new rms,
+/// rad.
 double improve(const Rest& rest_of, const Eigen::VectorXd& measured, Unknowns& x) {
-    // encoders are set to within a degree or so; where the motion does not tell better, that is all that is known
+    // the prior of the offsets: encoders are aligned to within a degree or so
     constexpr double small = 1e-4, likely_offset = 0.02;  // rad
     const auto rest = rest_of(measured, x);
     const double before = rms_of(rest);
@@ -52,11 +53,11 @@ FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std:
     constexpr double longest_s = 2, followed = 0.1, settled = 0.999;
     constexpr int most_passes = 12;
     constexpr Eigen::Index first_count = 20;
-    const Rational interval{1, 200};  // s, between the angles that are compared
+    const Rational interval{1, 200};  // s, between the compared angles
     auto spec = motion;
     spec.sample_interval = interval;
     const double step = motion.sample_interval.value() / static_cast<double>(motion.steps_per_sample);
-    spec.steps_per_sample = std::max(1L, std::lround(interval.value() / step));  // of fixed steps
+    spec.steps_per_sample = std::max(1L, std::lround(interval.value() / step));  // for methods with a fixed step
     const Rest rest_of = [&](const Eigen::VectorXd& measured, const Unknowns& x) {
         spec.chain->angle = {Quad(x[0]), Quad(x[1])};
         spec.chain->rate = {Quad(x[2]), Quad(x[3])};

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace {
 
-/// Σ over shots of r_i r_(i+lag) of one link, by lag.
+/// Σ over shots of r_i r_(i+lag) of one link, for each lag.
 std::vector<double> correlations_of(const Fit& fit, std::size_t arm, std::size_t lags, const std::atomic<bool>& stop) {
     std::vector<double> result(lags + 1, 0);
     const double most = Fit::bend * fit.scale[arm];
@@ -27,10 +27,10 @@ std::vector<double> correlations_of(const Fit& fit, std::size_t arm, std::size_t
     return result;
 }
 
-/// Whether successive residuals know of each other, and for how long.
+/// Tests whether successive residuals are correlated, and for how long.
 void look_at_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     constexpr std::size_t lags = 10, furthest = 400;
-    constexpr double limit = 29.6;  // χ² of ten at 99.9 %
+    constexpr double limit = 29.6;  // χ² with ten degrees of freedom at 99.9 %
     double intervals = 0;
     for (const auto& piece : job.track.pieces) intervals += static_cast<double>(piece.size() - 1);
     for (std::size_t arm = 0; arm < 2; ++arm) {
@@ -45,7 +45,7 @@ void look_at_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     }
 }
 
-/// Σ g gᵀ over stretches of the slope g of the parameters, starts eliminated.
+/// Σ g gᵀ over stretches, with the slope g by the parameters, starts eliminated.
 ParameterMatrix scatter_of(const Fit& fit) {
     ParameterMatrix scatter = ParameterMatrix::Zero();
     double stretches = 0;
@@ -66,7 +66,7 @@ ParameterMatrix scatter_of(const Fit& fit) {
 Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
     Uncertainty result;
     look_at_residuals(job, fit, result);
-    // of white residuals; of parameters at a bound, too: that they could be more makes the others less certain
+    // for white residuals; includes parameters at a bound, whose possible increase makes the others less certain
     ParameterMatrix matrix = ParameterMatrix::Zero();
     double bounded = 0, beyond = 0;
     for (const auto& shot : fit.shots) {
@@ -80,7 +80,7 @@ Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
     result.covariance =
         inverse * (bounded / (n - (count + 4 * static_cast<double>(fit.shots.size()))) / (slope * slope));
     if (result.is_white) return result;
-    // of others
+    // for correlated residuals
     constexpr double shortest_s = 0.3, memories = 4;
     evaluate_fit(job, fit, std::max(shortest_s, memories * std::max(result.memory_s[0], result.memory_s[1])));
     const ParameterMatrix sandwich = inverse.lazyProduct(scatter_of(fit)).eval().lazyProduct(inverse) / (slope * slope);
@@ -99,10 +99,11 @@ Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
 std::optional<EnergyLoss> energy_loss(const FitJob& job, Fit start) {
     start.model = model_of(start.model.point_masses, 1, start.model.drag, 2);
     start.model.may_gain = true;
-    start.is_evaluated = false;  // of fewer parameters
+    start.is_evaluated = false;  // it was evaluated with fewer parameters
     const auto fit = fit_model(job, std::move(start), {.step_share = 0.2, .relative = 1e-4});
     if (!fit) return std::nullopt;
-    // over the motion, over B: what the friction of both joints takes per unit of b1 and b2, and the energy of motion
+    // sums over the motion, divided by B: energy lost to the friction of both joints per unit of b1 and b2, and kinetic
+    // energy
     const auto& p = fit->parameters;
     Parameters taken = Parameters::Zero();
     double energy = 0;
