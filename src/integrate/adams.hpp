@@ -12,9 +12,9 @@ constexpr std::array<Fraction, 8> over_120960(const std::array<long, 8>& numerat
     for (std::size_t j = 0; j < weights.size(); ++j) weights[j] = {numerators[j], 120960};
     return weights;
 }
-/// The linear multistep methods of order 8 in exact fractions, newest slope first:
+/// The linear multistep methods of order 8 with exact fractions, newest slope first:
 ///     predictor  y ← y + h Σ_j b_j f_{n−j}
-///     corrector  y ← y + h Σ_j c_j f_{n+1−j},  f_{n+1} that of the prediction
+///     corrector  y ← y + h Σ_j c_j f_{n+1−j},  where f_{n+1} is the slope at the prediction
 /// Source  Adams & Bashforth 1883, Moulton 1926; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I,
 ///         §III.1.
 struct AdamsWeights {
@@ -23,9 +23,8 @@ struct AdamsWeights {
     static constexpr auto moulton = over_120960({36799, 139849, -121797, 123133, -88547, 41499, -11351, 1375});
 };
 
-/// Adams–Bashforth–Moulton at fixed step: predict, evaluate, correct, evaluate; two evaluations a step whatever the
-/// order. The first seven steps, and those after an event, for which the past is missing, are taken by dop853, of the same
-/// order.
+/// Adams–Bashforth–Moulton at fixed step: predict, evaluate, correct, evaluate; two evaluations per step. The first
+/// seven steps, and those after an event, lack earlier slopes and are taken by dop853, which has the same order.
 template <System Model>
 class AdamsStepper {
 public:
@@ -61,7 +60,7 @@ private:
         newest_ = known_++;
         arrive();
     }
-    /// Without a past, by dop853; starter_[0] is the slope at y.
+    /// A step by dop853 without earlier slopes; starter_[0] is the slope at y.
     void one_step(State& y, const Scalar& h) {
         starter_.template evaluate<1, Dop853::pair.stages>(model_, y, h);
         starter_.finish(y, h, at_);
@@ -69,7 +68,7 @@ private:
         evaluations_ += static_cast<long>(Dop853::pair.stages) - 1;
     }
 
-    /// Behind an event the past tells nothing: it begins again at the end of the step.
+    /// After an event earlier slopes are useless: starts again at the end of the step.
     void step_to_event() requires HasEvents<Model> {
         before_ = y_;
         if (known_ < past_.size())
@@ -91,7 +90,7 @@ private:
     void step() {
         sum<AdamsWeights::bashforth>(sum_);
         at_ = y_ + h_ * sum_;
-        newest_ = (newest_ + 1) % order;  // the oldest slope makes room for the one predicted
+        newest_ = (newest_ + 1) % order;  // the predicted slope replaces the oldest one
         model_.rate(at_, past_[newest_]);
         ++evaluations_;
         sum<AdamsWeights::moulton>(sum_);
@@ -99,7 +98,7 @@ private:
         arrive();
     }
 
-    /// At the new state: its slope becomes the newest.
+    /// Adds the slope at the new state as the newest one.
     void arrive() {
         project(model_, y_);
         model_.rate(y_, past_[newest_]);
@@ -117,7 +116,7 @@ private:
     State y_, at_, sum_, before_;
     Scalar h_;
     std::array<State, order> past_;       // slopes, a ring that ends at `newest_`
-    std::size_t newest_ = 0, known_ = 1;  // the newest slope; how many there are
+    std::size_t newest_ = 0, known_ = 1;  // index of the newest slope; number of slopes
     long evaluations_ = 1;
     Slopes<Model, Dop853::pair> starter_;
 };

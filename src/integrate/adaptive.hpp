@@ -11,12 +11,12 @@
 
 namespace doppel {
 
-/// An embedded pair at the step size that a tolerance allows. Steps go where the motion wants them; the output time
-/// lies inside the last one, where the state is interpolated, so that sampling never changes a step.
+/// An embedded Runge–Kutta pair with step size control by a tolerance. The output time lies inside the last step, where
+/// the state is interpolated, so that sampling never changes the steps.
 ///
 /// The error of a step, root mean square over the components of the state, is kept below
 ///     tolerance · (1 + |y_i|)
-/// with y_i in rad and rad/s, or m and m/s: one tolerance, absolute and relative alike.
+/// with y_i in rad and rad/s, or m and m/s: the tolerance is both absolute and relative.
 ///
 /// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, §II.4 to II.6.
 template <System Model, const auto& pair, const Method& method>
@@ -25,7 +25,7 @@ public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    /// Throws Error (exit 2) for a tolerance that the scalar cannot give.
+    /// Throws Error (exit 2) for a tolerance that the scalar cannot reach.
     Adaptive(Model& model, const State& start, const Scalar& tolerance)
         : model_(model), tolerance_(tolerance), y0_(start), y1_(start), out_(start), scratch_(start), k_(start) {
         const Scalar least = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
@@ -39,7 +39,7 @@ public:
         evaluations_ = 2;
     }
 
-    /// On from another state, by steps as long as before: for one much like the last.
+    /// Continues from another, similar state with the same step size.
     void reset(const State& start) {
         y1_ = out_ = start;
         take_modes(model_, y1_);
@@ -71,7 +71,8 @@ private:
         return needs;
     }();
 
-    /// One step that the tolerance accepts, from y1. `seconds`, the interval asked for, tells when h has vanished.
+    /// Takes a step that the tolerance accepts, from y1. `seconds`, the requested interval, is used to detect a
+    /// vanishing h.
     void step(const Scalar& seconds) {
         if (ends_at_event_) {
             if constexpr (HasEvents<Model>) model_.settle(y1_);
@@ -112,7 +113,7 @@ private:
         evaluations_ += static_cast<long>(error_needs_end ? end : end - 1);
         span_ = h;
     }
-    /// The step stands: the slope at its end is that of the next one's start.
+    /// Accepts the step: the slope at its end becomes that at the next start.
     void arrive() {
         project(model_, y1_);
         if (!error_needs_end || projects(model_)) {
@@ -122,7 +123,7 @@ private:
         interpolates_ = false;
     }
 
-    /// Where an event is inside the last step, it is taken again as far as there.
+    /// If an event lies inside the last step, takes the step again up to the event.
     void end_at_event() requires HasEvents<Model> {
         const auto state_at = [&](const Scalar& t) -> const State& {
             interpolate(t);
@@ -136,7 +137,7 @@ private:
         ends_at_event_ = true;
     }
 
-    /// h_next / h; no more than `limit`. An error that is NaN shrinks the step.
+    /// h_next / h; at most `limit`. An error that is NaN shrinks the step.
     static double growth(double error, double before, double limit) {
         constexpr StepControl control = pair.control;
         const double factor =
@@ -145,7 +146,7 @@ private:
         return factor < limit ? factor : limit;
     }
 
-    /// ε, 1 where the tolerance is just met.
+    /// The error ε relative to the tolerance; 1 if it is just met.
     double error_of_step() {
         using std::sqrt;
         static constexpr auto first = pair.error[0];
@@ -162,7 +163,7 @@ private:
         }
     }
 
-    /// Mean square of the components, each in units of what the tolerance allows it.
+    /// Mean square of the components, each in units of its tolerance.
     Scalar norm_squared(const State& error) const {
         using std::abs;
         Scalar sum(0);
@@ -174,7 +175,7 @@ private:
         return sum / Scalar(error.size());
     }
 
-    /// A step that is rather too short than too long (section II.4, "starting step size").
+    /// The initial step size, which is rather too short than too long (section II.4, "starting step size").
     Scalar first_step() {
         const double size = std::sqrt(static_cast<double>(norm_squared(y1_)));
         const double slope = std::sqrt(static_cast<double>(norm_squared(k_[end])));
@@ -188,7 +189,7 @@ private:
         return Scalar(step < 100 * guess ? step : 100 * guess);
     }
 
-    /// out ← the state at the output time, `offset` s from the start of the last step.
+    /// Sets out_ to the state at the output time, `offset` s from the start of the last step.
     void sample(const Scalar& offset) {
         if (offset == span_)
             out_ = y1_;
@@ -196,7 +197,7 @@ private:
             interpolate(offset);
     }
 
-    /// out ← the state at t s from the start of the last step.
+    /// Sets out_ to the state at t s from the start of the last step.
     void interpolate(const Scalar& t) {
         if (!interpolates_) {
             k_.evaluate_dense(model_, y0_, span_);
@@ -217,12 +218,12 @@ private:
 
     Model& model_;
     Scalar tolerance_;
-    Scalar h_ = Scalar(0), span_ = Scalar(0);  // s, of the next step and of the last
+    Scalar h_ = Scalar(0), span_ = Scalar(0);  // s, of the next step and of the last one
     OutputTime<Scalar> time_;
     Scalar smallest_ = Scalar(0);  // s
     double error_before_ = 1e-4;
     long steps_ = 0, evaluations_ = 0;
-    bool interpolates_ = false;   // the slopes for it are those of the last step
+    bool interpolates_ = false;   // the slopes for interpolation are those of the last step
     bool ends_at_event_ = false;  // the last step
     Stall stall_;
     State y0_, y1_, out_;  // at the start and the end of the last step; at the output time

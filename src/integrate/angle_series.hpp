@@ -11,19 +11,21 @@
 
 namespace doppel {
 
-/// The Taylor series of a chain in angles, from products of series alone: no sine is expanded.
+/// The Taylor series of a chain in angles, from products of series alone, without series of sines.
 ///
-/// With the rods r̂_i = l_i (sinθ_i, −cosθ_i) and what lies across them, r_i = r̂_i turned by 90°,
+/// With the rods r̂_i = l_i (sinθ_i, −cosθ_i) and the perpendicular vectors r_i, which are r̂_i rotated by 90°,
 ///     r̂_i′ = r_i ω_i .
-/// A massless rod pulls along itself only, so the force F_i that it gives to all bobs below it has r_i · F_i = 0, and
+/// A massless rod only transmits force along itself. So the force F_i of rod i on all bobs below satisfies r_i · F_i =
+/// 0, and
 ///     r̂_i″ = (F_i − F_{i+1}) / m_i − (F_{i−1} − F_i) / m_{i−1}     (r̂_1″ = (F_1 − F_2) / m_1 − g ŷ) .
-/// Now with c_k for the coefficient of (t − t_0)^k of each quantity c: r̂″_k = (k + 1) (r_0 ω_{k+1} + R_k), where
+/// With c_k the coefficient of (t − t_0)^k of each quantity c: r̂″_k = (k + 1) (r_0 ω_{k+1} + R_k), where
 ///     R_k = Σ_{j=1}^{k+1} r_j ω_{k+1−j} ,    r_0 · F_k = − Σ_{j=1}^k r_j · F_{k−j}
-/// are known. Along r̂_0 the equations hold no ω_{k+1}, and give what F_k has there by the matrix of the tensions, the
-/// same at every order; across it they give ω_{k+1}. Vectors are kept by their parts across and along the rod at t_0,
-/// and r over its length. Four products a link for each pair of orders; the rest is O(N).
+/// are known. The components along r̂_0 do not contain ω_{k+1}; they give the component of F_k along r̂_0 by the matrix
+/// of the tensions, the same at every order. The components across it give ω_{k+1}. Vectors are stored by their
+/// components across and along the rod at t_0; r is divided by its length. Each link takes four products for each pair
+/// of orders; the rest is O(N).
 /// Source  recurrences of this kind: Jorba & Zou 2005, Experimental Mathematics 14:99, §2.
-///         The motion and its matrix: those of AngleChain.
+///         The equations of motion and the matrix are those of AngleChain.
 template <class S>
 class AngleSeries final : public Series<S> {
 public:
@@ -54,7 +56,7 @@ public:
 
     void move(const Scalar& h, State& change) override {
         const NoSubnormals here;
-        constexpr Eigen::Index some = 64;  // links at a time: they stay in the cache
+        constexpr Eigen::Index some = 64;  // links at a time, which fit in the cache
         for (Eigen::Index first = 0; first < links_; first += some) {
             const auto size = std::min(some, links_ - first);
             auto angle = change.segment(first, size), rate = change.segment(links_ + first, size);
@@ -81,15 +83,15 @@ public:
 private:
     using Half = typename Chain::Half;
 
-    /// Coefficients of one order.
+    /// The coefficients of one order.
     struct Term {
         explicit Term(Eigen::Index links) : x(Half::Zero(links)), y(x), rate(x), across(x), along(x) {}
-        Half x, y;           // r over its length, across and along the rods at t_0
+        Half x, y;           // r divided by its length, across and along the rods at t_0
         Half rate;           // ω, rad/s
         Half across, along;  // F, N
     };
 
-    /// F_k, ω_{k+1} and r_{k+2} from all before.
+    /// Computes F_k, ω_{k+1} and r_{k+2} from all earlier coefficients.
     void next(int k) {
         multiply(k);
         const auto &s = chain_.s, &c = chain_.c;
@@ -117,10 +119,10 @@ private:
         }
     }
 
-    /// R_k over the length, and F_k across.
+    /// Computes R_k divided by the length, and F_k across.
     void multiply(int k) {
         Eigen::Index first = 0;
-        if constexpr (std::is_same_v<Scalar, double>)  // side by side in registers, each with sums of its own
+        if constexpr (std::is_same_v<Scalar, double>)  // links side by side in registers, each with sums of its own
             for (constexpr int some = 8; first + some <= links_; first += some) multiply<Lanes<some>>(k, first);
         for (; first < links_; ++first) multiply<Scalar>(k, first);
     }
@@ -151,7 +153,7 @@ private:
         store(-across, term(k).across);
     }
 
-    /// The greatest |ω_k|.
+    /// The largest |ω_k|.
     double greatest(int k) const {
         double most = 0;
         for (Eigen::Index i = 0; i < links_; ++i) most = greater(most, std::abs(static_cast<double>(term(k).rate[i])));
@@ -167,8 +169,8 @@ private:
     Eigen::Index links_;
     std::vector<Term> terms_;
     std::vector<Scalar> inverse_;  // 1/k
-    Half known_, along_;           // R_k across and along, over the length
-    double amount_ = 0;            // of the rates, rad/s
+    Half known_, along_;           // R_k across and along, divided by the length
+    double amount_ = 0;            // scale of the rates, rad/s
 };
 
 }  // namespace doppel

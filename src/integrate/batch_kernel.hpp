@@ -9,16 +9,16 @@
 
 namespace doppel {
 
-// What integrate/batch.cpp and the code for one kind of processor (integrate/batch_width.cpp) share: no function of a common
-// type may be compiled there under a name of its own.
+// Declarations shared by integrate/batch.cpp and the code for each register width (integrate/batch_width.cpp). No
+// function of a common type may be compiled in the latter.
 
-/// Pendulums of as many links each.
+/// Pendulums with the same number of links.
 struct BatchRequest {
     const Pendulum<double>* members;
     std::size_t count;
     double step;       // s
-    bool constraints;  // the model: else angles
-    bool by_rk4;       // else by Euler
+    bool constraints;  // as particles with constraints; otherwise in angles
+    bool by_rk4;       // otherwise by Euler
 };
 
 /// Some members that are integrated side by side.
@@ -31,13 +31,13 @@ public:
     virtual void read(std::size_t lane, double* entries) const = 0;
 };
 
-/// The members of one block: twice the doubles of a register, for while one half waits for its results the other works.
+/// The members of one block: two registers, so that one is computed while the other waits for results.
 inline constexpr int batch_block(int width) {
     return 2 * width;
 }
 
-/// The block of the members from `first`, filled up with the last one, in the code for registers of `width` doubles: 2
-/// for every processor, 4 for AVX2, 8 for AVX-512 (cmake/widths.cmake). The caller deletes it.
+/// The block of the members from `first` on, filled up with copies of the last one, for registers of `width` doubles: 2
+/// on every processor, 4 with AVX2, 8 with AVX-512 (cmake/widths.cmake). The caller deletes it.
 template <int width>
 BatchBlock* make_batch_block(const BatchRequest& request, std::size_t first);
 template <>
@@ -47,7 +47,7 @@ BatchBlock* make_batch_block<4>(const BatchRequest& request, std::size_t first);
 template <>
 BatchBlock* make_batch_block<8>(const BatchRequest& request, std::size_t first);
 
-/// The block of one model and one method.
+/// A block for one model and one method.
 template <class Model, class Which>
 class SteppedBlock final : public BatchBlock {
 public:
@@ -69,7 +69,7 @@ private:
     Stepper stepper_;
 };
 
-/// The members from `first` side by side.
+/// The members from `first` on, side by side.
 template <class Pack>
 Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
     const std::size_t links = request.members->links();
@@ -89,7 +89,7 @@ Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
     return all;
 }
 
-/// The block with the method asked for.
+/// A block with the requested method.
 template <class Model>
 BatchBlock* with_method(const BatchRequest& request, const Pendulum<typename Model::Scalar>& pendulum) {
     if (request.by_rk4) return new SteppedBlock<Model, Rk4>(pendulum, request.step);

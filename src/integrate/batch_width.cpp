@@ -1,7 +1,7 @@
-// Compiled once for every kind of processor (cmake/widths.cmake). The linker keeps one copy of a function that several
-// objects define, and one compiled for AVX-512 would stop older processors. So nothing here has a name that others can
-// see but the one function: all templates are instantiated for a type of this file alone, and nothing else is called
-// that may be compiled out of line here.
+// Compiled once for each register width (cmake/widths.cmake). If several object files define a function, the linker
+// keeps one of them, and one for AVX-512 would not run on older processors. So only one function of this file is
+// visible to others. All templates are instantiated with a type of this file, and nothing else is called that could be
+// compiled out of line here.
 
 #include "integrate/batch_kernel.hpp"
 #include "physics/angle_chain.hpp"

@@ -4,7 +4,7 @@
 
 namespace doppel {
 
-/// Dormand & Prince 1980, order 5(4), with the interpolation of order 4 by Shampine.
+/// Dormand & Prince 1980, order 5(4), with Shampine's interpolation of order 4.
 /// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, table II.5.2 and §II.6 (contd5).
 struct Dopri5 {
     static constexpr Method method{"dopri5", "Dormand–Prince 5(4)", 5, true, "explicit"};
@@ -29,11 +29,11 @@ struct Dopri5 {
     using Stepper = Adaptive<Model, pair, method>;
 };
 
-/// Dormand & Prince's order 8(5,3) in twelve stages, with Hairer's estimate of the error and interpolation of order 7.
+/// Dormand & Prince's order 8(5,3) in twelve stages, with Hairer's error estimate and interpolation of order 7.
 /// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, §II.5 and II.10, and their program
-///         dop853.f. Its 30 digits meet the conditions of order and of interpolation to 3e-26; here Newton's method has
-///         moved them, by no more than 1e-26 of each. As kept, the conditions of order 8 hold to 4e-30 in quad.
-///         Its step control is damped here: over four pendulums that saves a tenth of the evaluations, and two of three
+///         dop853.f. Its 30 digits fulfil the order and interpolation conditions to 3e-26. Here they are refined by
+///         Newton's method, changing each by at most 1e-26; the conditions of order 8 then hold to 4e-30 in quad.
+///         The step control is damped here: over four pendulums this saves a tenth of the evaluations, and two of three
 ///         rejected steps.
 struct Dop853 {
     static constexpr Method method{"dop853", "Dormand–Prince 8(5,3)", 8, true, "explicit"};

@@ -15,7 +15,7 @@ struct Euler {
     using Stepper = std::conditional_t<has_incremental_euler<Model>, IncrementalEuler<Model>, RungeKutta<Model, table>>;
 };
 
-/// Euler's method with the new velocities (symplectic Euler), at fixed step, for any system whose state is (q, v):
+/// Euler's method with the new velocities (symplectic Euler), at fixed step, for any system with state (q, v):
 ///     v ← v + h a(q, v),   q ← q + h v
 /// Source  Hairer, Lubich & Wanner, Geometric Numerical Integration, §I.1.2 and theorem VI.3.3.
 template <System Model>

@@ -7,15 +7,15 @@
 
 namespace doppel {
 
-// A model whose right-hand side is smooth only between events, as with joints that stick and slip, offers
+// A model whose right-hand side is only smooth between events, as with joints that stick and slip, has
 //
-//     switches()       whether it has events
-//     take_modes(y)    at the start: y ← how the motion resumes from y; which law holds until the first event
+//     switches()       whether there are events
+//     take_modes(y)    at the start: chooses the law that applies until the first event, and adapts y to it
 //     settle(y)        the same at an event
-//     margin(y)        0 or more until the next event
-//     longest_step()   s; in longer ones a margin may go below 0 and back between two looks at it
+//     margin(y)        ≥ 0 until the next event
+//     longest_step()   s; in longer steps a margin could become negative and positive again unnoticed
 //
-// rate() keeps to one law in between, however far a trial step goes.
+// rate() uses the same law between events, however far a trial step goes.
 
 template <class Model>
 concept HasEvents = requires(Model& model, typename Model::State& y) {
@@ -39,7 +39,7 @@ void take_modes([[maybe_unused]] Model& model, [[maybe_unused]] State& y) {
         if (model.switches()) model.take_modes(y);
 }
 
-/// Between 0 ≤ low, where the margin is not below 0, and high, where it is: the least time where it is, to rounding.
+/// The smallest time, to rounding, at which the margin is negative; it is ≥ 0 at `low` ≥ 0, and negative at `high`.
 template <class Scalar, class Margin>
 Scalar bisect_event(Scalar low, Scalar high, const Scalar& h, Margin&& margin) {
     while (high - low > std::numeric_limits<Scalar>::epsilon() * h) {
@@ -50,9 +50,9 @@ Scalar bisect_event(Scalar low, Scalar high, const Scalar& h, Margin&& margin) {
     return high;
 }
 
-/// The first event in a step of h, s, to rounding and behind it; `state_at(t)` is the state at 0 ≤ t ≤ h. Looks at the ends
-/// of eight equal parts and close to those of the step; about a look where the margin is less than before and behind, for
-/// its least value there (by golden section).
+/// The time just after the first event in a step of h, s, to rounding; `state_at(t)` is the state at 0 ≤ t ≤ h. The
+/// margin is evaluated at the ends of eight equal parts, and close to the ends of the step. Around a local minimum of
+/// these values, the minimum is found by golden section.
 template <HasEvents Model, class Scalar, class StateAt>
 std::optional<Scalar> first_event(Model& model, const Scalar& h, StateAt&& state_at) {
     constexpr int looks = 11;
@@ -77,7 +77,7 @@ std::optional<Scalar> first_event(Model& model, const Scalar& h, StateAt&& state
     return std::nullopt;
 }
 
-/// Counts events one at a time of which none leaves the one before. Throws Error (exit 3) where they do not end.
+/// Counts consecutive events at the same time. Throws Error (exit 3) if they do not end.
 class Stall {
 public:
     void note(bool advances) {
@@ -91,7 +91,7 @@ private:
     int count_ = 0;
 };
 
-/// A step of h, s, of a method at fixed step, in parts where events are: `take(y, t)` is one of t.
+/// Takes a fixed step of h, s, in parts between events; `take(y, t)` takes a step of t.
 template <HasEvents Model, class State, class Scalar, class Take>
 void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
     State from = y, at = y;

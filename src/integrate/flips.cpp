@@ -16,22 +16,23 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// g l_i Σ_{k≥i} m_k, J: half of what it takes to lift rod i from hanging to upright.
+/// g l_i Σ_{k≥i} m_k, J: half of the energy that lifts rod i from hanging to upright.
 double weight(const Pendulum<double>& p, std::size_t rod) {
     double below = 0;
     for (std::size_t k = rod; k < p.links(); ++k) below += p.mass[k];
     return p.gravity * p.length[rod] * below;
 }
 
-/// A rod's angle on a step in the sense in which it flips, and its rate there.
+/// A rod's angle beyond the upright position, measured in the direction of the flip, and its rate.
 struct Outward {
     double value, rate;  // rad beyond the upright, rad/s
 };
 
-/// When |θ| first exceeds π on a step, s from its start, from the polynomial of θ; at(t) → Outward for either sense.
+/// The time in a step, s, at which |θ| first exceeds π, from the polynomial of θ; at(t) returns Outward for this
+/// direction.
 template <class At>
 double first_flip(const Bernstein& theta, const At& at) {
-    const double widest = 1.5 / 32 * theta.length;  // a 32nd, whatever rounding makes of it
+    const double widest = 1.5 / 32 * theta.length;  // 1/32 of the step, with a margin for rounding
     double first = never;
     const auto [least, greatest] = std::minmax_element(theta.b.begin(), theta.b.end());
     for (const double sense : {1.0, -1.0}) {
@@ -95,8 +96,8 @@ double flip_tolerance(double duration) {
 }
 
 bool flip_is_forbidden(const Pendulum<double>& p) {
-    if (p.gravity < 0) return false;  // it takes none to stand upright
-    // J above hanging at rest; so measured, a heavy rod that hangs takes no digits from a light one
+    if (p.gravity < 0) return false;  // a rod then needs no energy to stand upright
+    // J above the hanging equilibrium; in this form, a heavy hanging rod costs a light one no digits
     double energy = 0, least = never, vx = 0, vy = 0;
     for (std::size_t i = 0; i < p.links(); ++i) {
         const SinCos<double> turn(p.angle[i]);
@@ -114,7 +115,7 @@ void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& sp
     check(pendulums, spec, times);
     const auto find = at_width(chosen_width(width), []<int chosen>() { return find_flips<chosen>; });
     for (std::size_t i = 0; i < pendulums.size(); ++i) {
-        // what is known beforehand; the rest is marked by a negative time
+        // enters the results known beforehand; a negative time marks the others
         const auto& p = pendulums[i];
         const bool is_beyond = std::max(std::abs(p.angle[0]), std::abs(p.angle[1])) > pi;
         times[i] = is_beyond ? 0 : flip_is_forbidden(p) ? never : -1;

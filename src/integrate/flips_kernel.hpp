@@ -8,10 +8,10 @@
 
 namespace doppel {
 
-// What integrate/flips.cpp and the code for one kind of processor (integrate/flips_width.cpp) share, by the rules of
-// integrate/batch_width.cpp.
+// Declarations shared by integrate/flips.cpp and the code for each register width (integrate/flips_width.cpp), with the
+// rules of integrate/batch_width.cpp.
 
-/// What the motion of double pendulums depends on besides their states.
+/// The parameters of double pendulums.
 template <class Pack>
 struct FlipChain {
     Pack gravity;  // g / l1, 1/s²
@@ -19,19 +19,19 @@ struct FlipChain {
     Pack masses;   // 1 + m1 / m2
     Pack longer;   // L = l2 / l1
     Pack pull;     // −1 / L
-    Pack longest;  // s, of a step
+    Pack longest;  // longest step, s
 };
 
-inline constexpr int flip_order = 16;  // at 1e-8 rad/s, 12 costs 1.2 times as much and 20 costs 1.1 times
+inline constexpr int flip_order = 16;  // at 1e-8 rad/s, order 12 costs 1.2 times as much, and 20 costs 1.1 times
 
-/// Taylor series of the motion of double pendulums side by side. With the tensions a, b of the rods, divided by m1 l1,
-/// and D = θ2 − θ1 (physics/double_pendulum.hpp is what comes of eliminating them):
+/// Taylor series of double pendulums side by side. With the tensions a, b of the rods divided by m1 l1, and D = θ2 − θ1
+/// (DoublePendulum has the same equations with the tensions eliminated):
 ///
 ///     a = ω1² + (g/l1) cosθ1 + b cosD,     θ1″ = b sinD − (g/l1) sinθ1
 ///     (1 + m1/m2) b = L ω2² + a cosD,      L θ2″ = −a sinD,               L = l2/l1
 ///
-/// Each order takes its products of series from the orders before, but for the tensions' own, which come from the two
-/// equations at once: their determinant is that of the start.
+/// Each order follows from products of the earlier ones, except for the tensions, which solve the two equations
+/// together; their determinant is that at the start.
 template <class Pack>
 struct FlipSeries {
     static constexpr int order = flip_order;
@@ -39,14 +39,14 @@ struct FlipSeries {
     /// The coefficients of one power of the time; sine and cosine of θ1 times g/l1.
     struct Term {
         Pack theta[2], omega[2];
-        Pack turn, sin_d, cos_d;  // D′, and of D
+        Pack turn, sin_d, cos_d;  // D′, sinD and cosD
         Pack sin1, cos1;
         Pack a, b;
     };
     Term term[order + 1];
     Pack determinant;  // 1 / (m1/m2 + sin²D)
 
-    /// Sets out from the angles and rates in term[0].
+    /// Starts from the angles and rates in term[0].
     [[gnu::always_inline]] void start(const FlipChain<Pack>& by) {
         const SinCos<Pack> one(term[0].theta[0]), d(term[0].theta[1] - term[0].theta[0]);
         term[0].sin1 = one.sin * by.gravity;
@@ -56,7 +56,7 @@ struct FlipSeries {
         determinant = Pack(1) / (by.ratio + d.sin * d.sin);
     }
 
-    /// The tensions of power k, and from them all else of power k + 1.
+    /// Computes the tensions of power k, and from them everything else of power k + 1.
     [[gnu::always_inline]] void extend(const FlipChain<Pack>& by, int k) {
         Term& now = term[k];
         now.turn = now.omega[1] - now.omega[0];
@@ -102,8 +102,7 @@ struct FlipSeries {
         next.cos1 = (omega_sin + now.omega[0] * term[0].sin1) * -inverse;
     }
 
-    /// How far the series is good, s, but no more than `longest`: its last four terms of the rates stay below
-    /// 2^allowed rad/s.
+    /// The step, s, at most `longest`, for which each of the last four terms of the rates stays below 2^allowed rad/s.
     [[gnu::always_inline]] Pack step(double allowed, const Pack& longest) const {
         Pack exponent(1000);
         for (int k = order - watched_coefficients + 1; k <= order; ++k) {
@@ -137,12 +136,12 @@ struct FlipRequest {
     double allowed;   // log2 of the tolerance, rad/s
     std::size_t count;
     const Pendulum<double>* pendulums;
-    const Pendulum<double>* hanging;  // at rest, for lanes that are left without one
-    double* times;                    // s; those that are negative are to be found
+    const Pendulum<double>* hanging;  // at rest, for lanes without a pendulum
+    double* times;                    // s; negative ones are to be found
     const std::atomic<bool>* stop;
 };
 
-/// In the code for registers of `width` doubles (cmake/widths.cmake). False where it was stopped.
+/// For registers of `width` doubles (cmake/widths.cmake). Returns false if it was stopped.
 template <int width>
 bool find_flips(const FlipRequest& request);
 template <>
@@ -152,11 +151,11 @@ bool find_flips<4>(const FlipRequest& request);
 template <>
 bool find_flips<8>(const FlipRequest& request);
 
-/// The motion of one rod on one step of length h, s: the coefficients of its angle and of its rate, and where it ends.
+/// The motion of one rod in a step of length h, s: the coefficients of its angle and rate, and its state at the end.
 struct RodOnStep {
     double h, theta[flip_order + 1], omega[flip_order + 1], theta_end;
 };
-/// When |θ| first exceeds π, s after the start of the step; infinity where it does not.
+/// The time at which |θ| first exceeds π, s after the start of the step; infinity if it does not.
 double first_flip(const RodOnStep& rod);
 
 }  // namespace doppel

@@ -1,4 +1,4 @@
-// Compiled once for every kind of processor, by the rules of integrate/batch_width.cpp.
+// Compiled once for each register width, with the rules of integrate/batch_width.cpp.
 
 #include "integrate/flips_kernel.hpp"
 #include "numeric/state.hpp"
@@ -9,8 +9,7 @@
 namespace doppel {
 namespace {
 
-/// Finds flips in lanes. As soon as a lane's pendulum has flipped, or its time is over, the next release takes its
-/// place.
+/// Finds flips in lanes. When the pendulum of a lane has flipped, or its time is over, the next release takes the lane.
 template <class Pack>
 class FlipLanes {
 public:
@@ -32,9 +31,9 @@ public:
 private:
     using Series = FlipSeries<Pack>;
 
-    static constexpr int registers = 2;  // while one waits for its results the other works
+    static constexpr int registers = 2;  // one is computed while the other waits for results
     static constexpr int steps_between_looks = 64;
-    static constexpr double least_step = 1e-9;  // s; where no more is allowed the numbers have failed
+    static constexpr double least_step = 1e-9;  // s; if only less is allowed, the run has failed
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double broken = std::numeric_limits<double>::quiet_NaN();
     static constexpr std::size_t none = ~std::size_t(0);
@@ -52,7 +51,7 @@ private:
         for (auto& group : groups_) finish(group);
     }
 
-    /// To the end of the step, which is searched in the lanes where a rod may flip on it or the time ends.
+    /// Moves to the end of the step. Lanes whose rods may flip in it, or whose time ends, are examined.
     [[gnu::always_inline]] void finish(Group& group) {
         auto& now = group.series.term[0];
         const Pack h = group.series.step(request_.allowed, group.chain.longest);
@@ -80,15 +79,15 @@ private:
                 if (done[lane]) take_next(group, lane);
     }
 
-    /// How large |θ| may become on a step: where the rod turns back on it, it gains no more than the greater rate makes
-    /// in half the time.
+    /// An upper bound of |θ| in a step: if the rod turns back, it moves no further than the larger rate does in half
+    /// the time.
     [[gnu::always_inline]] static Pack reach(const Pack& h, const Pack& theta, const Pack& theta_end, const Pack& omega,
                                              const Pack& omega_end) {
         return greater(abs(theta), abs(theta_end)) + Pack(0.5) * h * greater(abs(omega), abs(omega_end));
     }
 
-    /// Whether a lane's pendulum flips in this step, `flip` s after its start, or comes to the end of its time; which is
-    /// noted.
+    /// Whether the pendulum of a lane flips in this step, `flip` s after its start, or its time ends; stores the
+    /// result.
     bool is_done(const Group& group, int lane, double h, double flip) {
         if (group.trial[lane] == none) return false;
         const double time = group.time[lane] + flip;
@@ -107,7 +106,7 @@ private:
         return first_flip(on_step);
     }
 
-    /// Gives a lane the next release whose time is to be found; where there is none, one at rest that hangs.
+    /// Gives a lane the next release whose time is to be found, or a hanging pendulum at rest.
     void take_next(Group& group, int lane) {
         if (group.trial[lane] != none) --busy_;
         while (next_ < request_.count && !(request_.times[next_] < 0)) ++next_;
@@ -117,7 +116,7 @@ private:
         group.time.set(lane, 0);
         const auto& p = is_left ? request_.pendulums[next_] : *request_.hanging;
         const double l1 = p.length[0], l2 = p.length[1], ratio = p.mass[0] / p.mass[1], longer = l2 / l1;
-        const double swing = std::sqrt((l2 < l1 ? l2 : l1) / std::abs(p.gravity));  // s, a rod's natural time
+        const double swing = std::sqrt((l2 < l1 ? l2 : l1) / std::abs(p.gravity));  // s, natural time of a rod
         group.chain.gravity.set(lane, p.gravity / l1);
         group.chain.ratio.set(lane, ratio);
         group.chain.masses.set(lane, 1 + ratio);

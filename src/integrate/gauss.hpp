@@ -13,10 +13,10 @@
 
 namespace doppel {
 
-/// Gauss collocation of S stages. Written with μ_ij = a_ij / b_j the method reads
-///     L_i = h b_i f(z + Σ_j μ_ij L_j) ,     z ← z + Σ L_i ,
-/// and is symplectic when μ_ij + μ_ji = 1, whatever rounding has made of b. So that this holds to the last bit, the
-/// larger one of a pair is rounded and the other is what it leaves.
+/// Gauss collocation with S stages. With μ_ij = a_ij / b_j the method is
+///     L_i = h b_i f(z + Σ_j μ_ij L_j) ,     z ← z + Σ L_i .
+/// It is symplectic if μ_ij + μ_ji = 1, even if the b are rounded. To fulfil this to the last bit, the larger one of a
+/// pair is rounded, and the other is computed as the difference from 1.
 /// Source  Butcher 1964; Antoñana, Makazaga & Murua 2017, Reducing and monitoring round-off error propagation for
 ///         symplectic implicit Runge–Kutta schemes.
 template <class Scalar, std::size_t S>
@@ -49,12 +49,12 @@ private:
     }
 };
 
-/// Gauss collocation at fixed step in canonical variables z = (θ, p), where it is symplectic: energy stays near its
-/// start for ever (with friction or a drive it is a method of its order, no more). The stages are found by fixed-point
-/// iteration, from a guess that continues the slopes of the steps before, until rounding hides what is left to gain. z is
-/// summed with compensation. What all this leaves over is rounding without a bias, so that the error of the energy walks
-/// at random instead of drifting.
-/// Errors  exit 3 where the iteration does not converge: the step is too long.
+/// Gauss collocation at fixed step in canonical variables z = (θ, p), where it is symplectic: the energy error stays
+/// bounded (with friction or a drive it is an ordinary method of its order). The stages are found by fixed-point
+/// iteration. The first guess extrapolates the stages of earlier steps, and iteration continues until it gains less
+/// than rounding. z is summed with compensation. The remaining rounding errors are unbiased, so that the energy error
+/// is a random walk without drift.
+/// Errors  exit 3 if the iteration does not converge: the step is too long.
 /// Source  Hairer, McLachlan & Razakarivony 2008, Achieving Brouwer's law with implicit Runge–Kutta methods;
 ///         Hairer, Lubich & Wanner, Geometric Numerical Integration, §VIII.6.
 template <Hamiltonian Model, std::size_t S, const auto& method>
@@ -94,13 +94,13 @@ private:
         for (Eigen::Index c = 0; c < to.size(); ++c) to[c] += factor * what[c];
     }
 
-    /// Largest change of an iteration, of angles and of momenta.
+    /// Largest changes of angles and momenta in an iteration.
     struct Change {
         Scalar angle, momentum;
     };
 
-    /// Moves as the polynomials through the past ones of each stage continue; at first, those of a constant slope. (One
-    /// polynomial through all stages would take their errors, of order S + 1 and unlike each other, for motion.)
+    /// Extrapolates the moves of each stage by the polynomial through its earlier ones; at first, for a constant slope.
+    /// (One polynomial through all stages would take their errors, which have order S + 1 and differ, for motion.)
     ///     L_i(n) = Σ_a (−1)^(a+1) (k over a) L_i(n − a),   a = 1 … k
     void guess() {
         if (known_ == 0) {
@@ -135,7 +135,7 @@ private:
             method.name, done_ + 1, static_cast<double>(before.angle), limit, static_cast<double>(step_));
     }
 
-    /// L_i ← h b_i f(z + Σ_j μ_ij L_j), all from the L before: the processor works on the stages side by side.
+    /// L_i ← h b_i f(z + Σ_j μ_ij L_j), all from the previous L, so that the processor works on the stages in parallel.
     Change iterate() {
         const auto n = z_.size();
         for (std::size_t i = 0; i < S; ++i) {
@@ -161,15 +161,15 @@ private:
         return change;
     }
 
-    /// Whether the first change was small against the moves; else the next guess forgets the past.
+    /// Whether the first change was small compared with the moves; otherwise the next guess ignores earlier steps.
     bool guessed_well(const Change& first) const {
         const auto n = z_.size() / 2;
         return Scalar(4) * first.angle <= moves_[0].head(n).cwiseAbs().maxCoeff() &&
                Scalar(4) * first.momentum <= moves_[0].tail(n).cwiseAbs().maxCoeff();
     }
 
-    /// Whether iterating is over: at the rate now / before the next change would be lost in the rounding of the moves;
-    /// or changes no longer shrink, and are small enough to be rounding. A change that is NaN is neither.
+    /// Whether the iteration has converged: at the rate now / before the next change would be below rounding, or
+    /// changes no longer decrease and are small enough to be rounding. For NaN it is false.
     template <class Values, class Moved>
     static bool is_done(const Scalar& now, const Scalar& before, const Values& values, const Moved& moved) {
         static const Scalar epsilon = std::numeric_limits<Scalar>::epsilon();
@@ -178,7 +178,7 @@ private:
         return !(now < before) && now <= Scalar(1024) * epsilon * (size + values.cwiseAbs().maxCoeff());
     }
 
-    /// z ← z + Σ L_i; what z cannot hold is left over for the next step.
+    /// z ← z + Σ L_i; the rounding error is carried over to the next step.
     void move() {
         for (Eigen::Index c = 0; c < z_.size(); ++c) {
             Scalar sum = left_over_[c];
@@ -194,10 +194,10 @@ private:
     Gauss<Scalar, S> gauss_;
     Scalar step_;
     long done_ = 0, evaluations_ = 0;
-    long known_ = 0;  // past steps to guess from
+    long known_ = 0;  // number of earlier steps for the guess
     State y_, z_, left_over_;
     Moves moves_;
-    std::array<Moves, remembered> past_;  // of step n at n modulo `remembered`
+    std::array<Moves, remembered> past_;  // step n is at index n modulo `remembered`
     std::array<typename Canonical<Model>::Angles, S> angles_;
     State at_;
     Moves slopes_;

@@ -12,25 +12,25 @@
 
 namespace doppel {
 
-/// Explicit Euler for models whose next right-hand side can be had from this one, in place of from nothing: the same
-/// method and the same rules (integrate/stepper.hpp) as RungeKutta<Model, Euler::table>, rounded differently, some times
-/// faster. For double and lanes. What all have in common:
+/// Explicit Euler for models whose right-hand side can be updated from the previous step's, instead of being computed
+/// again. It has the same interface (integrate/stepper.hpp) as RungeKutta<Model, Euler::table>, different rounding, and
+/// is several times faster. For double and lanes. Common to all models:
 ///
-///     rates are kept as the change in one step, h y′, so that positions advance by a bare addition;
-///     each step has one division, and its sums are ordered so that what comes last waits least.
+///     rates are stored as the change per step, h y′, so that positions advance by an addition;
+///     each step has one division, and sums are ordered so that the latest operand is added last.
 ///
-/// However advance() is chopped, no bit of the result changes.
+/// The result does not depend on how advance() calls divide the steps, to the last bit.
 template <class Model>
 class IncrementalEuler;
 
-/// Put before the loops of a lone pendulum: paired in vectors, its components wait for each other's shuffles.
+/// Put before the loops of a single pendulum: if its components were paired in vectors, they would wait for shuffles.
 #if defined(__GNUC__) && !defined(__clang__)
 #define DOPPEL_COMPONENTS_APART [[gnu::optimize("no-tree-slp-vectorize")]]
 #else
 #define DOPPEL_COMPONENTS_APART
 #endif
 
-/// For which models there is one.
+/// Whether there is one for this model.
 template <class Model>
 inline constexpr bool has_incremental_euler = false;
 template <class Scalar>
@@ -38,8 +38,8 @@ inline constexpr bool has_incremental_euler<DoublePendulum<Scalar>> = is_machine
 template <class Scalar, int N>
 inline constexpr bool has_incremental_euler<RodChain<Scalar, N>> = is_machine_number<Scalar> && (N == 2 || N == 3);
 
-/// The double pendulum needs sine and cosine of θ1 and of D = θ2 − θ1 alone. With the tensions of the rods T1, T2
-/// (physics/angle_chain.hpp), L = l2/l1, q = ω1² + (g/l1) cosθ1 and sine and cosine of D as S = sinD / L, C = cosD / L:
+/// For the double pendulum, sine and cosine of θ1 and D = θ2 − θ1 are enough. With the rod tensions T1, T2
+/// (physics/angle_chain.hpp) eliminated, L = l2/l1, q = ω1² + (g/l1) cosθ1, S = sinD / L and C = cosD / L:
 ///     θ1″ = (ω2² + q C) f − (g/l1) sinθ1
 ///     θ2″ = −(q lever + ω2² C) f,      f = S / (ratio + S²),   ratio = (m1/m2) / L²,   lever = (1 + m1/m2) / L²
 template <class Scalar>
@@ -60,8 +60,8 @@ public:
         now_.dtheta2 = step * start[3];
         update(now_);
 
-        // While δ1 and δD stay within the largest turn, (h ω2)² ≤ 4 largest² and f ≤ L / (2 √(m1/m2)); so in one step
-        // neither grows by more than
+        // As long as δ1 and δD are within the largest turn, (h ω2)² ≤ 4 largest² and f ≤ L / (2 √(m1/m2)). So in one
+        // step neither grows by more than
         const Scalar largest = largest_turn * largest_turn, q = largest + abs(gravity_);
         const Scalar growth =
             (Scalar(4) * largest + q * inverse_longer_ + q * by_.lever + Scalar(4) * largest * inverse_longer_) *
@@ -80,12 +80,12 @@ public:
 
 private:
     using Turning = TurningAngle<Scalar>;
-    static constexpr long refreshed_every = 256;  // steps; turning has an error of some 1e-16 each, and errors add up
-    static constexpr long block = 16;             // steps between two checks of how fast all turns
+    static constexpr long refreshed_every = 256;  // steps; each rotation has an error of some 1e-16, and errors add up
+    static constexpr long block = 16;             // steps between two checks of the rotation rates
 
     [[gnu::always_inline]] void run(long steps) {
         using std::abs;
-        Now now = now_;  // here, so that the compiler keeps it in registers
+        Now now = now_;  // a local copy, which the compiler keeps in registers
         const Constants by = by_;
         while (steps > 0) {
             const long some = std::min({steps, block, refreshed_every - taken_ % refreshed_every});
@@ -141,7 +141,7 @@ private:
         now.two.turn(d, d * d);
     }
 
-    /// A step that takes afresh, in the lanes that turn too fast, what turning would get wrong.
+    /// A step that computes sine and cosine directly in the lanes that rotate too fast for the series.
     [[gnu::noinline]] void step_fast() {
         using std::abs;
         const Scalar d1 = now_.dtheta1, d = now_.dtheta2 - now_.dtheta1;
@@ -158,7 +158,7 @@ private:
     State start_;
     Scalar h_;                         // s
     Scalar gravity_, inverse_longer_;  // h² g/l1, 1/L
-    Scalar slow_;  // h ω1 and h (ω2 − ω1) up to which no turn of the next block is too large for the series
+    Scalar slow_;  // limit of h ω1, h (ω2 − ω1) for which rotations in the next block suit the series
     Constants by_;
     Now now_;
     long taken_ = 0;  // steps

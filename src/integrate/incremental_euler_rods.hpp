@@ -9,8 +9,8 @@
 
 namespace doppel {
 
-/// Two or three particles on rods, in the rods r_k = q_k − q_{k−1} and u_k = h r_k′: u_k grows by h² times what the rods
-/// pull the masses at its ends (physics/rod_multipliers.hpp), and r_k by u_k.
+/// Two or three particles on rods, in terms of the rods r_k = q_k − q_{k−1} and u_k = h r_k′. In each step u_k changes
+/// by h² times the accelerations of its ends by the rods (physics/rod_multipliers.hpp), and r_k by u_k.
 template <class Scalar, int N>
 class IncrementalEuler<RodChain<Scalar, N>> {
 public:
@@ -58,7 +58,7 @@ public:
 
 private:
     [[gnu::always_inline]] void run(long steps) {
-        Now now = now_;  // here, so that the compiler keeps it in registers
+        Now now = now_;  // a local copy, which the compiler keeps in registers
         const Pulls by = by_;
         for (long i = 0; i < steps; ++i) step(now, by);
         now_ = now;
@@ -94,7 +94,7 @@ private:
     Pulls by_;          // gravity: h² g
     Scalar scale3_{1};  // ρ_2 (physics/rod_multipliers.hpp)
     Now now_;
-    /// What the model finds in equilibrium stays there exactly: sums that are ordered for speed would let it tremble.
+    /// A system in equilibrium for the model remains there exactly; the reordered sums would make it move by rounding.
     decltype(Scalar() <= Scalar()) rests_ = Scalar(0) <= Scalar(0);
     long taken_ = 0;  // steps
 };

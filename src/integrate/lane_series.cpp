@@ -29,7 +29,7 @@ double LaneSeries::greatest(int k) const {
     return most;
 }
 
-/// A mass much lighter than the next costs the mass matrix of the lanes its digits.
+/// Not for a mass much lighter than the next one, for which the mass matrix of the lanes would lose digits.
 template <>
 std::unique_ptr<Series<double>> series_of(const Pendulum<double>& p, int order) {
     constexpr double light = 1.0 / 64;

@@ -7,8 +7,8 @@
 
 namespace doppel {
 
-/// What of LaneSeries is compiled for registers of each width (integrate/lane_series_width.cpp, by the rules of
-/// integrate/batch_width.cpp). Not for orders above 64.
+/// The part of LaneSeries that is compiled for each register width (integrate/lane_series_width.cpp, with the rules of
+/// integrate/batch_width.cpp). For orders up to 64.
 class LaneRecurrence {
 public:
     virtual ~LaneRecurrence();
@@ -16,7 +16,7 @@ public:
     virtual void move(double h, double* change) const = 0;
     virtual const double* rates(int k) const = 0;  // ω_k of each link
 };
-/// In the code for registers of `width` doubles. The caller deletes it.
+/// For registers of `width` doubles. The caller deletes it.
 template <int width>
 LaneRecurrence* make_lane_recurrence(const Pendulum<double>& p, int order);
 template <>
@@ -24,11 +24,11 @@ LaneRecurrence* make_lane_recurrence<2>(const Pendulum<double>& p, int order);
 template <>
 LaneRecurrence* make_lane_recurrence<4>(const Pendulum<double>& p, int order);
 
-/// AngleSeries for two or three links of double, all of them side by side in four lanes: several times as fast, and bit
-/// for bit the same whether a register holds 4 doubles or 2.
+/// AngleSeries for two or three links of double, computed side by side in four lanes. It is several times as fast, and
+/// has the same bits whether a register has 4 doubles or 2.
 class LaneSeries final : public Series<double> {
 public:
-    /// `width` doubles to a register, 2 or 4; 0: the widest of the two that this processor has.
+    /// `width` doubles per register, 2 or 4; 0: the wider of these that this processor has.
     LaneSeries(const Pendulum<double>& p, int order, int width = 0);
 
     void expand(const State& y) override;
@@ -43,7 +43,7 @@ private:
     std::size_t links_;
     double longest_step_;  // s
     std::unique_ptr<LaneRecurrence> lanes_;
-    double amount_ = 0;  // of the rates, rad/s
+    double amount_ = 0;  // scale of the rates, rad/s
 };
 
 }  // namespace doppel

@@ -1,11 +1,11 @@
 // The recurrence of AngleSeries for two and three links of double, in four lanes. Compiled for registers of 2 and of 4
-// doubles, by the rules of integrate/batch_width.cpp. Each lane has its own sums in an order of its own, so both give the
+// doubles, with the rules of integrate/batch_width.cpp. Each lane has its own sums in a fixed order, so both give the
 // same bits.
 //
-// A vector of the plane for each link lies in the lanes like this:
+// A plane vector for each link is stored in the lanes as follows:
 //     two links      x1 x2 y1 y2                   and a number for each link   a1 a2 a1 a2
 //     three links    x1 x2 x3 0  and  y1 y2 y3 0   and a number for each link   a1 a2 a3 0
-// A linear map is kept by distance: by[s] holds what it makes of lane i xor s for lane i.
+// A linear map is stored by lane distance: by[s] has the factors from lane i xor s to lane i.
 
 #include "integrate/lane_series.hpp"
 #include "numeric/sin_cos.hpp"
@@ -16,7 +16,7 @@ namespace {
 struct ThisBuild;
 using Pack = Lanes<4, ThisBuild>;
 
-/// A vector of the plane for each link.
+/// A plane vector for each link.
 template <int N>
 struct Plane {
     Pack part[N - 1];
@@ -59,7 +59,7 @@ struct Plane {
     }
 };
 
-/// A linear map from the plane to a number for each link.
+/// A linear map from plane vectors to a number for each link.
 template <int N>
 struct Map {
     Plane<N> by[4];
@@ -72,7 +72,7 @@ struct Map {
     }
 };
 
-/// A number for each link, number(i).
+/// The lanes of number(i), for each link i.
 template <int N, class Number>
 [[gnu::always_inline]] inline Pack numbers(const Number& number) {
     if constexpr (N == 2) return Pack::of(number(0), number(1), number(0), number(1));
@@ -98,13 +98,13 @@ template <int N, class Number>
         for (double& entry : row) entry *= factor;
 }
 
-/// A chain as the recurrence needs it. μ_i = Σ_{k≥i} m_k.
+/// The data of a chain that the recurrence needs. μ_i = Σ_{k≥i} m_k.
 template <int N>
 struct Chain {
     static constexpr int most_orders = 64;
 
     Pack coupling[N]{};  // μ_max(i,j) / μ_i in row i
-    Pack exchange[4]{};  // the same by distance s: lane i, column i xor s
+    Pack exchange[4]{};  // the same by lane distance s: lane i, column i xor s
     double length[N];
     double gravity;
     double inverse[most_orders + 2]{};  // 1/k
@@ -113,7 +113,7 @@ struct Chain {
         double mass[N + 1] = {};  // μ
         for (int i = N - 1; i >= 0; --i) mass[i] = mass[i + 1] + p.mass[static_cast<std::size_t>(i)];
         const auto of = [&](int i, int j) { return mass[i > j ? i : j] / mass[i]; };
-        constexpr int used = N == 2 ? 4 : N;  // lanes; two links fill them twice
+        constexpr int used = N == 2 ? 4 : N;  // lanes in use; two links fill them twice
         for (int lane = 0; lane < used; ++lane) {
             for (int i = 0; i < N; ++i) coupling[i].set(lane, of(i, lane % N));
             for (int s = 0; s < 4; ++s)
@@ -124,7 +124,7 @@ struct Chain {
     }
 };
 
-/// Coefficients of one order; the forces of link i in units of μ_i.
+/// Coefficients of one order; the forces of link i are in units of μ_i.
 template <int N>
 struct Term {
     Plane<N> across;  // r
@@ -135,25 +135,25 @@ struct Term {
 /// The recurrence about one state. With D = r_0 ω_k + R_{k−1}, which is (k + 1) r̂_{k+1}, and so F_{k−1} = k F[D]:
 ///     R_k     = Σ_{j=2}^k r_j ω_{k+1−j} + r_1 ω_k + r_{k+1} ω_0
 ///     ω_{k+1} = −M⁻¹ ( r_0 · F[R_k] + k/(k+1) r_1 · F[D] + 1/(k+1) Σ_{j=2}^k r_j · F_{k−j} ) .
-/// Its time goes by in waiting for ω_{k+1} after ω_k rather than in arithmetic. So everything that can be known earlier
-/// is, and the linear maps through F and M⁻¹ are made once.
+/// The latency from ω_k to ω_{k+1} dominates the time, not the arithmetic. So everything that does not depend on ω_k is
+/// computed earlier, and the linear maps through F and M⁻¹ are computed once.
 template <int N>
 struct Recurrence {
     using Vectors = Plane<N>;
 
     const Chain<N>& chain;
     Term<N>* const term;
-    const Vectors quarter = Vectors::both(-1, 1);  // of a turn: (x, y) becomes (−y, x)
+    const Vectors quarter = Vectors::both(-1, 1);  // rotation by 90°: (x, y) becomes (−y, x)
     const Vectors weight = Vectors::both(0, chain.gravity);
     Vectors across0, across1;  // r_0, r_1
-    Vectors turning;           // ω_0 times a quarter turn
+    Vectors turning;           // ω_0 times the rotation by 90°
     Map<N> of_newest;          // −M⁻¹ r_0 · F[…]
     Map<N> of_last;            // −M⁻¹ r_1 · F[…]
-    Pack inverse[4];           // −M⁻¹, by distance
+    Pack inverse[4];           // −M⁻¹, by lane distance
     Pack rate;                 // ω_k
     Vectors known;             // R_{k−1}
 
-    /// Rates up to `order` from angles and rates.
+    /// Computes rates up to `order` from angles and rates.
     [[gnu::always_inline]] void run(const double* state, int order) {
         start(state, state + N);
         rate = of_newest(known) + solve((across0 * weight).sum());
@@ -178,7 +178,7 @@ struct Recurrence {
             across = quarter * change.mirrored() * Pack(step);
             term[k + 1].across = across;
 
-            // r_{k+1} ω_0 = (R_{k−1} + r_0 ω_k) turned, times ω_0/(k + 1); and r_0 turned, times ω_0, is r_1
+            // r_{k+1} ω_0 is (R_{k−1} + r_0 ω_k) rotated, times ω_0/(k + 1); r_0 rotated, times ω_0, is r_1
             const Vectors next = (p + turning * Pack(step) * known.mirrored()) + across1 * Pack(1 + step) * rate;
             rate = (of_newest(next) + Pack(step) * solve(e.sum())) + of_last(change * Pack(k * step));
             known = next;
@@ -210,7 +210,7 @@ struct Recurrence {
         term[1].across = across1;
     }
 
-    /// −M⁻¹ (x, y) · F[…], from n = −M⁻¹
+    /// The map −M⁻¹ (x, y) · F[…], from n = −M⁻¹.
     [[gnu::always_inline]] Map<N> map_of(const double (&x)[N], const double (&y)[N], const double (&n)[N][N]) const {
         Map<N> map{};
         for (int i = 0; i < N; ++i) {
@@ -238,7 +238,7 @@ struct Recurrence {
         return sum + (inverse[2] * v.template exchanged<2>() + inverse[3] * v.template exchanged<3>());
     }
 
-    /// Adds the products for 2 < j < k, and for j = k = 2, from the middle outwards: what came last is added last.
+    /// Adds the products for 2 < j < k, and for j = k = 2, from the middle outwards: the newest are added last.
     [[gnu::always_inline]] void add_old(int k, Vectors& p, Vectors& e) const {
         Vectors p2{}, e2{};
         const auto add = [&](int j, Vectors& into_p, Vectors& into_e) __attribute__((always_inline)) {
@@ -263,9 +263,9 @@ public:
 
     void expand(const double* state) override { Recurrence<N>{chain_, terms_}.run(state, order_); }
 
-    /// change ← Σ_{k≥0} ω_k h^{k+1} / (k + 1) and Σ_{k≥1} ω_k h^k, even and odd orders apart.
+    /// change ← Σ_{k≥0} ω_k h^{k+1} / (k + 1) and Σ_{k≥1} ω_k h^k; even and odd orders are summed separately.
     void move(double h, double* change) const override {
-        using Both = Plane<N>;  // numbers for each link, of the angles in place of x and of the rates in place of y
+        using Both = Plane<N>;  // numbers for each link, the angles in x and the rates in y
         const auto coefficient = [&](int k) __attribute__((always_inline)) {
             return Both::both(chain_.inverse[k + 1], 1) * Pack::load(terms_[k].rate);
         };

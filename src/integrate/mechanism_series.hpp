@@ -10,9 +10,10 @@
 
 namespace doppel {
 
-/// The Taylor series of a mechanism: that of its right-hand side, and a look at the way, for no series notices a singular
-/// configuration where the motion could go on smoothly. Lengths are what they are in the state: nothing pulls the rods back.
-/// Errors  those of the mechanism, wherever a singular configuration lies on the way that move() goes.
+/// The Taylor series of a mechanism, from its right-hand side. It also checks the path of each step, because the series
+/// does not show a singular configuration through which the motion could continue smoothly. The lengths are those of
+/// the state; errors of the constraints are not corrected.
+/// Errors  those of the mechanism, if a singular configuration lies on the path of move().
 template <class S>
 class MechanismSeries final : public TapedSeries<Mechanism<Taped<S>>> {
 public:
@@ -91,9 +92,9 @@ private:
             model_.fail(start_.head(start_.size() / 2), row);
     }
 
-    /// Finds out whether a singular configuration lies on the way to h. From one place to another so near that no gradient
-    /// has turned far, the volume that the gradients span must not turn over; where it seems to, somewhere between them,
-    /// until they are all but the same.
+    /// Checks the path up to h for singular configurations. Between two positions so close that no gradient changes its
+    /// direction much, the volume spanned by the gradients must not change its sign. If it seems to, positions in
+    /// between are checked, until they are almost equal.
     void check_path(const Scalar& h) {
         if (gradients_.empty()) return;
         if (h < checked_) start_checking();
@@ -106,8 +107,8 @@ private:
         }
     }
 
-    /// Whether nothing can be between the place last passed and that at time h. Throws if something seems to be and
-    /// this is the last attempt.
+    /// Whether there is certainly no singular configuration between the last checked position and that at time h. In
+    /// the last attempt, throws if one is suspected.
     bool is_clear(const Scalar& h, bool last) {
         here_.resize(start_.size() / 2);
         Base::move(h, here_);
@@ -119,7 +120,7 @@ private:
         return row == model_.constraints();
     }
 
-    /// The first row of J1 M⁻¹ J0ᵀ that depends on others or has turned over.
+    /// The first row of J1 M⁻¹ J0ᵀ that depends on others, or whose pivot is negative.
     Eigen::Index first_fault(const Gradients& one, const Gradients& zero) {
         auto& matrix = model_.matrix_;
         model_.couple(one, zero, matrix);
@@ -131,10 +132,10 @@ private:
 
     Model model_;
     State start_;
-    Scalar checked_ = Scalar(0);  // how far the way has been checked, s
+    Scalar checked_ = Scalar(0);  // end of the checked path, s
     Half here_;                   // q there
     Gradients gradients_;         // J there
-    Gradients ahead_;             // further on
+    Gradients ahead_;             // J at the next position
 };
 
 template <class Scalar>

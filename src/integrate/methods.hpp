@@ -5,28 +5,28 @@
 
 namespace doppel {
 
-/// A method as presets name it and people read it; every method's file holds its own.
+/// The description of a method, for presets and users; it is defined in the method's file.
 struct Method {
     std::string_view name;        // value of `integrator`
     std::string_view title;       // in words
-    int order;                    // its error shrinks like step^order; 0 = chosen from the tolerance
-    bool adaptive;                // goes by `tolerance` in place of `step_s`
+    int order;                    // its error is proportional to step^order; 0 = chosen from the tolerance
+    bool adaptive;                // uses `tolerance` instead of `step_s`
     std::string_view properties;  // "explicit", "implicit, symplectic, time-reversible"
 };
 
-/// A method with the models it can step.
+/// A method with the models that it supports.
 struct MethodEntry : Method {
     bool angles, constraints, mechanism;
-    bool stabilised;  // constraints that are held otherwise (integrate/stabilise.hpp): its steps end by project()
+    bool stabilised;  // with constraints that project() restores after each step (integrate/stabilise.hpp)
 };
 
-/// All of them, in the order of integrate/registry.hpp.
+/// All methods, in the order of integrate/registry.hpp.
 std::span<const MethodEntry> methods();
 
 /// Their names, in the same order.
 std::span<const std::string_view> names_of_methods();
 
-/// The one of that name; null where there is none.
+/// The method with that name; null if there is none.
 const MethodEntry* find_method(std::string_view name);
 
 }  // namespace doppel

@@ -25,11 +25,11 @@ std::unique_ptr<Stepper<Scalar>> make_mechanism_stepper(const MotionSpec& spec);
 
 namespace {
 
-/// A fast rotation or drive is checked for interruption every so many rad; some 0.1 s of work.
+/// The angle in rad after which a fast rotation or drive is checked for interruption; some 0.1 s of work.
 template <class Scalar>
 constexpr double most_unwatched = std::is_same_v<Scalar, double> ? 2e3 : 100;
 
-/// A model and the method that steps it, from sample to sample.
+/// A model with its stepper, advanced from sample to sample.
 template <class Scalar>
 class Simulation final : public Motion {
 public:
@@ -51,7 +51,7 @@ public:
         const double interval = spec.sample_interval.value();
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
         if (adaptive_) {
-            double fastest = 0;  // rad/s, of any bob or drive
+            double fastest = 0;  // rad/s, the fastest bob or drive
             for (const auto& bob : released.bobs) fastest = std::max(fastest, std::abs(static_cast<double>(bob.omega)));
             if (physical_) {
                 fastest = std::max(fastest, static_cast<double>(physical_->pivot.frequency));
@@ -133,9 +133,9 @@ private:
         return make_mechanism_stepper<Scalar>(spec);
     }
 
-    /// What a state looks like.
+    /// Bobs, pivot and energy of a state.
     struct Look {
-        Bobs<Scalar> bobs;  // their angles, where they hang in a chain, within (−π, π] but in the model of angles
+        Bobs<Scalar> bobs;  // for a chain with their angles, which are within (−π, π] except in the model of angles
         Bob<Scalar> pivot{};
         struct {
             Scalar total, kinetic;
@@ -170,7 +170,7 @@ private:
         return static_cast<double>(mechanism_ ? mechanism_->length_error(y) : length_error(*pendulum_, bobs));
     }
 
-    /// Up to that portion of the way to the next sample, or that step.
+    /// Advances to that portion of the sample interval, or to that step.
     void go_to(long last, const std::atomic<bool>& stop) {
         for (long some = 1; taken_ < last; taken_ += some) {
             throw_if_set(stop);
@@ -185,7 +185,7 @@ private:
         }
     }
 
-    /// An adaptive method, in as many pieces as following the turns takes.
+    /// For adaptive methods, in as many parts as counting turns requires.
     void advance_by(const Scalar& seconds) {
         constexpr double most = 1e6;
         const double pieces =
@@ -210,18 +210,19 @@ private:
     bool adaptive_, wants_tension_;
     std::optional<Pendulum<Scalar>> pendulum_;
     std::optional<PhysicalPendulum<Scalar>> physical_;
-    std::optional<PhysicalLayout> layout_;  // of the state of a physical pendulum
+    std::optional<PhysicalLayout> layout_;  // of the state of a rigid-body chain
     std::optional<Mechanism<Scalar>> mechanism_;
-    mutable std::optional<Mechanism<double>> weighed_;  // for the forces in rods; computes in space of its own
-    long whole_ = 1;                                    // portions of a sample, of an adaptive method; or steps
-    Scalar portion_{0};                                 // s
-    long portion_steps_ = 1;                            // of a fixed step, in one go
-    double step_ = 0;                                   // s
-    long samples_ = 0, taken_ = 0;                      // portions or steps since the last sample
+    mutable std::optional<Mechanism<double>>
+        weighed_;                   // for rod tensions; a separate copy, because it needs scratch space
+    long whole_ = 1;                // portions per sample (adaptive methods), or steps
+    Scalar portion_{0};             // s
+    long portion_steps_ = 1;        // fixed steps taken at a time
+    double step_ = 0;               // s
+    long samples_ = 0, taken_ = 0;  // samples; portions or steps since the last sample
     Scalar start_energy_{0};
-    State y_;  // of the last update of turns
+    State y_;  // at the last update of turns
     Turns turns_;
-    std::optional<Turns> ahead_;  // at a state that was looked at ahead
+    std::optional<Turns> ahead_;  // at a state between samples
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace doppel {
 
-/// The motions of one part in a Batch, from sample to sample.
+/// The motions of one part, integrated in a Batch from sample to sample.
 class MotionBatch::SideBySide {
 public:
     explicit SideBySide(std::span<const MotionSpec> specs)
@@ -62,19 +62,19 @@ private:
         }
     }
 
-    MotionSpec spec_;  // of the first; the others differ in the numbers of their chains alone
+    MotionSpec spec_;  // of the first motion; the others only differ in the numbers of their chains
     std::vector<Pendulum<double>> pendulums_;
     double step_;  // s
     Batch batch_;
-    long portion_;              // steps in one go
+    long portion_;              // steps at a time
     long taken_ = 0;            // steps since the last sample
-    std::vector<Turns> turns_;  // of each; none where they are not followed
+    std::vector<Turns> turns_;  // of each; empty if turns are not counted
     State<double, Eigen::Dynamic> state_;
 };
 
 namespace {
 
-/// Whether they are integrated alike, so that a Batch serves.
+/// Whether a Batch can integrate them together.
 bool are_stepped_alike(std::span<const MotionSpec> specs) {
     const auto& one = specs.front();
     return one.chain && one.model != Model::mechanism && one.precision == Precision::in_double &&
@@ -87,7 +87,8 @@ bool are_stepped_alike(std::span<const MotionSpec> specs) {
            });
 }
 
-/// For each of `threads` one part that is worth it, and fills its registers.
+/// The size of a part: one part for each of `threads` threads, but large enough to be worthwhile, and in full
+/// registers.
 std::size_t part_of(std::size_t size, int threads) {
     constexpr std::size_t least = 64;
     const auto share =
@@ -113,7 +114,7 @@ int MotionBatch::width() const {
     return together_.empty() ? 1 : together_.front()->width();
 }
 
-/// Errors of `act` say which motion they befell.
+/// Errors of `act` get the number of the motion as a prefix.
 template <class Act>
 void MotionBatch::with_name(std::size_t k, const Act& act) const {
     try {
@@ -131,7 +132,7 @@ void MotionBatch::advance_part(std::size_t part, double share, const std::atomic
 }
 
 void MotionBatch::advance_all(double share, const std::atomic<bool>& stop) {
-    // of several errors always the same one, whoever came first
+    // of several errors, always the same one is thrown, whichever came first
     std::vector<std::exception_ptr> errors((size_ + part_ - 1) / part_);
     parallel_for(errors.size(), jobs_, [&](std::size_t i) {
         try {

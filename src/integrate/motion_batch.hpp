@@ -10,28 +10,27 @@
 
 namespace doppel {
 
-/// Many motions that are integrated together from sample to sample, each as it would be alone, to the last bit.
-///
-/// Chains of two or three links that differ in their masses, lengths, gravity and release only, by Euler's or the classical
-/// Runge–Kutta method, are integrated side by side (integrate/batch.hpp), all others one by one.
+/// Many motions that advance together from sample to sample, each with the same bits as alone. Chains of two or three
+/// links that only differ in masses, lengths, gravity and release, with Euler's or the classical Runge–Kutta method,
+/// are integrated side by side (integrate/batch.hpp). All others are integrated one by one.
 class MotionBatch {
 public:
-    /// On `jobs` threads; what comes of it does not depend on them. Throws what make_motion() does.
+    /// On `jobs` threads; the results do not depend on their number. Throws as make_motion() does.
     explicit MotionBatch(std::span<const MotionSpec> specs, int jobs);
     ~MotionBatch();
 
-    /// All on to the next sample. Throws what Motion::advance() does, of the first that cannot go on; the message says
-    /// which one that is. The batch is lost then.
+    /// Advances all to the next sample. Throws as Motion::advance() does, for the first that fails; the message
+    /// contains its number. After an error the batch is invalid.
     void advance(const std::atomic<bool>& stop) { advance_all(1, stop); }
-    /// All as Motion::advance_within().
+    /// Advances all as Motion::advance_within() does.
     void advance_within(double share, const std::atomic<bool>& stop) { advance_all(share, stop); }
 
     std::size_t size() const { return size_; }
 
-    /// What Motion::observe() says of motion k: angles unwrapped.
+    /// The bobs that Motion::observe() gives for motion k, with unwrapped angles.
     Bobs<double> bobs(std::size_t k) const;
 
-    /// How many doubles to a register the motions are integrated in; 1 where they are integrated one by one.
+    /// Doubles per register; 1 if the motions are integrated one by one.
     int width() const;
 
 private:
@@ -43,9 +42,9 @@ private:
     template <class Act>
     void with_name(std::size_t k, const Act& act) const;
 
-    std::size_t size_, part_;  // motions, and how many are integrated on one thread at a time
+    std::size_t size_, part_;  // number of motions, and of motions per thread at a time
     int jobs_;
-    std::vector<std::unique_ptr<SideBySide>> together_;  // a part each; or
+    std::vector<std::unique_ptr<SideBySide>> together_;  // one for each part; or
     std::vector<std::unique_ptr<Motion>> one_by_one_;
 };
 

@@ -11,13 +11,13 @@
 
 namespace doppel {
 
-// The method of a motion at work on its model, from the state released. Throw Error (exit 2) where it cannot step it.
-// Compiled in files of their own, side by side.
+// The stepper of a motion with its model, from the release. Throws Error (exit 2) if the method does not support the
+// model. Compiled in separate files, in parallel.
 
 template <class Scalar>
 using MakeStepper = std::unique_ptr<Stepper<Scalar>>(const MotionSpec& spec);
 
-/// On a model of `system`, made with `more`.
+/// With a model of `system`, constructed with `more`.
 template <class Model, class System, class... More>
 std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on(const System& system, const MotionSpec& spec,
                                                             const More&... more) {
@@ -28,7 +28,7 @@ std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on(const System& system
     return make_stepper(spec.method, Model(system, more...), Model::start(system), step_or_tolerance);
 }
 
-/// On a constrained model of `system`, stabilised as asked.
+/// With a constrained model of `system`, stabilised as requested.
 template <Constrained Model, class System>
 std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on_stabilised(const System& system, const MotionSpec& spec) {
     using Scalar = typename Model::Scalar;
@@ -38,8 +38,8 @@ std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on_stabilised(const Sys
     return stepper_on<Model>(system, spec);
 }
 
-/// Two links go by the closed form; chains by O(N), three of double unrolled by the compiler for methods that ask for no more
-/// than rates.
+/// Two links use the closed form; longer chains O(N). For three links in double, the compiler unrolls the loops for
+/// methods that only need rates.
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
     if (spec.physical) return stepper_on<PhysicalChain<Scalar>>(spec.physical->cast<Scalar>(), spec);
@@ -50,8 +50,8 @@ std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
     return stepper_on<AngleChain<Scalar, Eigen::Dynamic>>(p, spec);
 }
 
-/// A chain of particles on rods: two and three links of double unrolled by the compiler for methods that ask for no more than
-/// rates.
+/// A chain of particles on rods. For two and three links in double, the compiler unrolls the loops for methods that
+/// only need rates.
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_constraints_stepper(const MotionSpec& spec) {
     const auto p = spec.chain->cast<Scalar>();

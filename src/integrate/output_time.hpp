@@ -6,12 +6,14 @@
 
 namespace doppel {
 
-/// Where the output time of an adaptive method is, s from the start of its last step; as a sum of two, so that it neither
-/// drifts nor coarsens. Steps taken to look ahead of it are subtracted when it comes to them: looking changes no bit.
+/// The output time of an adaptive method, s from the start of its last step. It is stored as a sum of two, so that it
+/// neither drifts nor loses precision. Steps taken to look ahead are subtracted when the time reaches them, so that
+/// looking ahead changes no bit.
 template <class Scalar>
 class OutputTime {
 public:
-    /// So many seconds on: next() takes the next step, which `step` is the length of, until the time lies in the last.
+    /// Advances by `seconds`: calls next() for the next step, whose length is `step`, until the time lies in the last
+    /// one.
     template <class Next>
     Scalar advance(const Scalar& seconds, const Scalar& step, const Next& next) {
         add_compensated(offset_, lost_, seconds);
@@ -23,7 +25,7 @@ public:
         }
         return offset_;
     }
-    /// Where it would be so many seconds on.
+    /// The output time after `seconds` more.
     template <class Next>
     Scalar look_ahead(const Scalar& seconds, const Scalar& step, const Next& next) {
         auto ahead = *this;
@@ -37,7 +39,7 @@ private:
     void pass(const Scalar& step) { add_compensated(offset_, lost_, Scalar(-step)); }
 
     Scalar offset_ = Scalar(0), lost_ = Scalar(0);  // s
-    std::vector<Scalar> steps_ahead_;               // s, that start before the last step and are not subtracted yet
+    std::vector<Scalar> steps_ahead_;  // s, lengths of steps before the last one that are not subtracted yet
 };
 
 }  // namespace doppel

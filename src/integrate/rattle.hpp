@@ -13,23 +13,24 @@
 
 namespace doppel {
 
-/// Whether forces depend on velocity (friction): a model with such says so of itself.
+/// Whether forces depend on velocity (friction); such models say so by themselves.
 template <Constrained Model>
 bool forces_feel_velocity([[maybe_unused]] const Model& model) {
     if constexpr (requires { model.feels_velocity(); }) return model.feels_velocity();
     return false;
 }
 
-/// RATTLE, composed: substeps make one step of the method. Their fractions γ of it are symmetric and sum to 1; `Which` has
-/// those before the middle one, in decimal. A substep of size h from (q, v) on the constraints to (q1, v1) on them is
+/// RATTLE as a composition: several substeps make one step. Their fractions γ of it are symmetric and sum to 1; `Which`
+/// has those before the middle one, in decimal. A substep of size h from (q, v) to (q1, v1), both on the constraints,
+/// is
 ///     u  = v + h/2 a(q, v) + M⁻¹ Jᵀ(q) λ ,     q1 = q + h u ,     λ such that C(q1) = 0 ,
 ///     v1 = u + h/2 a(q1, v1) + M⁻¹ Jᵀ(q1) μ ,                     μ such that J(q1) v1 = 0 ,
 /// where a = M⁻¹ F is the acceleration without constraints. u is corrected by the multipliers, never by (q1 − q) / h,
 /// which would cost three digits.
-/// Where forces do not feel velocity, μ is left to the λ of the next step, which acts in the same direction, and found
-/// only for state(): the same motion for half the work. Where they do, v1 is found by iteration, so that a step stays
-/// of second order and time-reversible, although no longer symplectic.
-/// Errors  exit 3 where λ or v1 is not found.
+/// If forces do not depend on velocity, μ is merged into the λ of the next step, which acts in the same direction, and
+/// is only computed for state(): the same motion at half the cost. If they do, v1 is found by iteration, so that a step
+/// remains of second order and time-reversible, although no longer symplectic.
+/// Errors  exit 3 if λ or v1 is not found.
 /// Source  Andersen 1983; Hairer, Lubich & Wanner, Geometric Numerical Integration, §VII.1.4 and §V.3.2.
 template <Unstabilised Model, class Which>
 class ComposedRattle {
@@ -100,7 +101,7 @@ private:
         const Scalar half = h * Scalar(0.5), span = merged_ + half;
         extrapolate();
 
-        // u and q1 with the λ that was guessed, then with the right one
+        // u and q1 with the guessed λ, then with the right one
         guess_ *= span;
         q0_ = q_;
         u_ = v_;
@@ -123,7 +124,7 @@ private:
         }
     }
 
-    /// The forces λ / s of the constraints, guessed from those before: on a straight line where steps are equal.
+    /// Extrapolates the forces λ / s of the constraints linearly from the earlier ones, for equal steps.
     void extrapolate() {
         guess_ = force_;
         if (sizes_.size() == 1) {
@@ -145,8 +146,8 @@ private:
                             Which::method.name, done_ + 1, static_cast<double>(step_));
     }
 
-    /// Whether the forces at the velocity that they led to are the same again, to rounding. Where large ones cancel
-    /// they never are: after many corrections it is enough that they lead to the same velocity.
+    /// Whether the forces at the new velocity are unchanged to rounding. If large forces cancel, this never happens;
+    /// after many corrections, an unchanged velocity is enough.
     bool unchanged(const Scalar& half, bool after_many) const {
         using std::abs;
         const Scalar rounding = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
@@ -172,7 +173,7 @@ private:
     Half q_, v_, q0_, u_;
     Half a_, a_before_;                         // M⁻¹ F
     Multipliers guess_, force_, force_before_;  // λ, and λ / s
-    Scalar merged_ = Scalar(0);                 // s, of the last step, that the next λ acts for as well
+    Scalar merged_ = Scalar(0);                 // s, length of the last step whose μ is merged into the next λ
     Newton<Model> newton_;
 };
 
@@ -184,8 +185,8 @@ struct Rattle {
     using Stepper = ComposedRattle<Model, Rattle>;
 };
 
-/// Kahan & Li 1997: of the symmetric compositions of nine steps with Σγ = 1, Σγ³ = Σγ⁵ = Σγ³m² = 0 (m: where the middle
-/// of a step lies), the one whose largest step, the middle one of 0.7985, is smallest; solved to 40 digits.
+/// Kahan & Li 1997: of the symmetric compositions of nine steps with Σγ = 1, Σγ³ = Σγ⁵ = Σγ³m² = 0 (m: the time of a
+/// step's middle), the one whose largest step, the middle one of 0.7985, is smallest; solved to 40 digits.
 struct Rattle6 {
     static constexpr Method method{"rattle6", "RATTLE composed to order 6", 6, false,
                                    "keeps rods; symplectic and time-reversible without friction"};

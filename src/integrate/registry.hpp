@@ -17,11 +17,11 @@
 
 namespace doppel {
 
-/// Every method there is, in the order in which they are listed. This list stands here and nowhere else.
+/// All methods, in the order in which they are listed. This is the only list.
 using Methods =
     std::tuple<Euler, SemiImplicitEuler, Midpoint, Rk4, Dopri5, Dop853, Adams, Gauss4, Gauss6, Taylor, Rattle, Rattle6>;
 
-/// Whether a method can step a model: its class says what it requires of one.
+/// Whether a method supports a model: its class states the requirements.
 template <class Which, class Model>
 inline constexpr bool serves = requires {
     typename Which::template Stepper<Model>;
@@ -35,7 +35,7 @@ constexpr void for_each_method(Visit&& visit) {
     }(std::type_identity<Methods>());
 }
 
-/// A stepper of one method and the system that it owns; `step_or_tolerance` is the step, s, or the tolerance.
+/// A stepper with its method and the system that it owns; `step_or_tolerance` is the step, s, or the tolerance.
 template <class Which, class Model>
 class MethodStepper final : public Stepper<typename Model::Scalar> {
 public:
@@ -72,10 +72,10 @@ private:
     typename Which::template Stepper<Model> method_;
 };
 
-/// Whether a method is compiled for that model: where it needs more of it than its right-hand side, or where a call costs
-/// more than it is worth: a few stages of a few dozen operations. (Called, midpoint takes 1.45 times as long as inlined, rk4
-/// of three links 1.2 times.) Chains of a fixed number of links are for right-hand sides: what else Gauss collocation and
-/// RATTLE ask of a model is compiled for chains of any.
+/// Whether a method is compiled for this model. It is if it needs more than the right-hand side, or if a virtual call
+/// would be too slow: for a few stages of a few dozen operations. (With calls, midpoint takes 1.45 times as long as
+/// inlined, rk4 of three links 1.2 times.) Chains with a fixed number of links are only used for right-hand sides.
+/// Other requirements, of Gauss collocation and RATTLE, are compiled for chains of any length.
 template <class Which, class Model>
 consteval bool is_compiled_for() {
     using Any = AnySystem<typename Model::State>;
@@ -91,7 +91,7 @@ consteval bool is_compiled_for() {
     return has_few_stages && Hamiltonian<Model> && std::is_same_v<typename Model::Scalar, double> && !has_any_size;
 }
 
-/// The method of that name compiled for that model; null where it is not.
+/// The method of that name compiled for that model; null if it is not.
 template <System Model>
 std::unique_ptr<Stepper<typename Model::Scalar>> compiled_stepper(std::string_view method, std::unique_ptr<Model> model,
                                                                   const typename Model::State& start,
@@ -114,8 +114,8 @@ extern template CompiledStepper<State<double, 6>> compiled_stepper;
 extern template CompiledStepper<State<double, Eigen::Dynamic>> compiled_stepper;
 extern template CompiledStepper<State<Quad, Eigen::Dynamic>> compiled_stepper;
 
-/// The method of that name at work on `model`: on any system where it needs no more of it than its right-hand side.
-/// Throws Error (exit 2) where it cannot step it.
+/// A stepper with the method of that name on `model`; on any system if the method only needs the right-hand side.
+/// Throws Error (exit 2) if it does not support the model.
 template <System Model>
 std::unique_ptr<Stepper<typename Model::Scalar>> make_stepper(std::string_view method, const Model& model,
                                                               const typename Model::State& start,

@@ -13,13 +13,12 @@
 
 namespace doppel {
 
-/// A fraction as it is printed, exact in every scalar.
+/// A fraction as published, exact in every scalar.
 struct Fraction {
     long numerator = 0, denominator = 1;
 };
 
-/// An explicit Runge–Kutta method of S stages (Butcher's tableau; the systems here do not depend on time, so c is left
-/// out).
+/// An explicit Runge–Kutta method of S stages (Butcher tableau; the systems here are autonomous, so c is omitted).
 ///     k_i = f(y + h Σ_{j<i} a_ij k_j),   y ← y + h Σ b_i k_i
 template <std::size_t S>
 struct Tableau {
@@ -27,19 +26,18 @@ struct Tableau {
     std::array<Fraction, S> b;
 };
 
-/// How an adaptive method chooses its next step from the error ε of the last, relative to what the tolerance allows:
-///     h ← h · safety · ε^(−exponent) · (ε of the step before)^memory,   by no less than `shrink`, no more than `grow`
+/// How an adaptive method chooses the next step from the error ε of the last one, relative to the tolerance:
+///     h ← h · safety · ε^(−exponent) · (ε of the previous step)^memory,   the factor being between `shrink` and `grow`
 /// Source  Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, eq. IV.2.43 (PI control).
 struct StepControl {
     double exponent, memory, safety, shrink, grow;
 };
 
-/// An explicit Runge–Kutta method of S stages that also estimates its error and interpolates (for systems that do not
-/// depend on time):
+/// An explicit Runge–Kutta method of S stages with error estimate and interpolation, for autonomous systems:
 ///     k_i = f(y + h Σ_{j<i} a_ij k_j)
 ///     rows up to S − 1   the stages
 ///     row S              the weights of the step: k_S is the slope at its end, and k_0 of the next step
-///     further rows       slopes for the interpolation alone
+///     further rows       slopes for interpolation only
 /// The error is h Σ error_i k_i. With two estimates e1 (low order) and e2 (lower), it is e1² / √(e1² + 0.01 e2²).
 ///
 /// With s = t/h and s̄ = 1 − s the state inside the step is
@@ -70,7 +68,7 @@ constexpr bool is_zero(const Decimal& d) {
     return d.high == 0;
 }
 
-/// A model in angles whose rates at the stages of a step may reuse what those at its start were found with.
+/// A model in angles that can compute the rates at the stages of a step from data of the step's start.
 template <class Model>
 concept HasStageAngles = is_machine_number<typename Model::Scalar> &&
     requires(Model model, const typename Model::State& y, typename Model::State& dydt, typename Model::Angles& angles) {
@@ -85,7 +83,7 @@ auto stage_angles(Eigen::Index links) {
         return std::monostate();
 }
 
-/// The slopes k_i of one step of `pair`: any system, any scalar; no allocation after the constructor.
+/// The slopes k_i of one step of `pair`: any system, any scalar; no allocation after construction.
 template <System Model, const auto& pair>
 class Slopes {
 public:
@@ -98,7 +96,7 @@ public:
 
     State& operator[](std::size_t i) { return k_[i]; }
 
-    /// k_first … k_{last−1}, from those before them.
+    /// Evaluates k_first … k_{last−1} from the slopes before them.
     template <std::size_t first, std::size_t last>
     void evaluate(Model& model, const State& y, const Scalar& h) {
         const auto slope = [&]<std::size_t i>() {
@@ -113,7 +111,7 @@ public:
         (std::make_index_sequence<last - first>());
     }
 
-    /// Those for the interpolation alone, from all the others.
+    /// Evaluates the slopes for interpolation from all others.
     void evaluate_dense(Model& model, const State& y, const Scalar& h) {
         for (std::size_t i = stages + 1; i < all; ++i) {
             sum_with(pair.a[i], at_);
@@ -122,19 +120,19 @@ public:
         }
     }
 
-    /// y1 ← y + h Σ b_j k_j, once the stages are evaluated.
+    /// y1 ← y + h Σ b_j k_j, after the stages are evaluated.
     void finish(const State& y, const Scalar& h, State& y1) {
         static constexpr auto b = pair.a[stages];
         sum<b>(at_);
         y1 = y + h * at_;
     }
 
-    /// out ← Σ weight_j k_j over the weights that are not zero; which those are is known to the compiler.
+    /// out ← Σ weight_j k_j over the nonzero weights, which are known at compile time.
     template <const auto& weights>
     void sum(State& out) const {
         [&]<std::size_t... j>(std::index_sequence<j...>) {
             for (Eigen::Index i = 0; i < out.size(); ++i) {
-                Scalar total(-0.0);  // unlike +0, it changes no sum and costs no addition
+                Scalar total(-0.0);  // unlike +0, −0 changes no sum, so that the addition can be removed
                 const auto add = [&]<std::size_t slope>() {
                     if constexpr (!is_zero(weights[slope])) total += value<Scalar>(weights[slope]) * k_[slope][i];
                 };
@@ -145,7 +143,7 @@ public:
         (std::make_index_sequence<weights.size()>());
     }
 
-    /// The same in a loop at run time, which is less to compile: for what is not done every step.
+    /// The same as a loop at run time, which compiles faster, for work that is not done in every step.
     template <class Weights>
     void sum_with(const Weights& weights, State& out) const {
         out.fill(Scalar(-0.0));
@@ -158,8 +156,8 @@ private:
     State at_;
 };
 
-/// Short states of doubles: whether the compiler inlines a right-hand side of its own accord depends on what else is in
-/// the file. Others gain nothing by it. With sanitizers, two test files took more than six minutes each.
+/// Short states of doubles, for which inlining is forced: otherwise the compiler's choice depends on the rest of the
+/// file. Other states gain nothing from it. Not with sanitizers, where two test files took more than six minutes each.
 #ifdef __SANITIZE_ADDRESS__
 template <class Model>
 inline constexpr bool is_flattened = false;
@@ -245,12 +243,12 @@ private:
         project(model_, y);
     }
 
-    /// y ← y + h Σ_j weight_j k_j over the weights that are not zero; which those are is known to the compiler.
+    /// y ← y + h Σ_j weight_j k_j over the nonzero weights, which are known at compile time.
     template <const auto& weights, std::size_t... J>
     void move(State& y, std::index_sequence<J...>) {
         [[maybe_unused]] const std::array<Scalar, sizeof...(J)> share{Scalar(h_ * value<Scalar>(weights[J]))...};  // s
         for (Eigen::Index i = 0; i < y.size(); ++i) {
-            Scalar change(-0.0);  // unlike +0, it changes no sum and costs no addition
+            Scalar change(-0.0);  // unlike +0, −0 changes no sum, so that the addition can be removed
             [[maybe_unused]] const auto add = [&]<std::size_t j>() {
                 if constexpr (!is_zero(weights[j])) change += share[j] * slopes_[j][i];
             };

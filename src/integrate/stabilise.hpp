@@ -7,18 +7,17 @@
 
 namespace doppel {
 
-/// to ← to + factor · what, number by number, as the models write: a wider load would wait for their stores.
+/// to ← to + factor · what, number by number as the models write: a wider load would wait for their stores.
 template <class Half>
 void add(Half& to, const typename Half::Scalar& factor, const Half& what) {
     for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += factor * what[i];
 }
 
-/// Brings positions onto their constraints along M⁻¹Jᵀ by Newton's method on the multipliers:
+/// Moves positions onto their constraints along M⁻¹Jᵀ by Newton's method for the multipliers:
 ///     C(q + M⁻¹Jᵀ(q0) λ) = 0 ,     λ ← λ − (J(q) M⁻¹ Jᵀ(q0))⁻¹ C(q) .
-/// It ends where rounding does: when every constraint is met as well as rounded positions can meet it, when a
-/// correction no longer moves any of them, or when corrections no longer help and what is left is rounding. At least
-/// one correction is made, so that no error waits below a tolerance. For scalars that can be compared, as the errors of
-/// its callers are.
+/// It ends at the limit of rounding: all constraints hold as well as rounded positions allow, a correction no longer
+/// changes a position, or corrections no longer help and the rest is rounding. At least one correction is made, so that
+/// no error below a tolerance remains. For scalars that can be compared.
 template <Constrained Model>
 class Newton {
 public:
@@ -26,11 +25,11 @@ public:
     using Half = typename Model::Half;
     using Multipliers = typename Model::Multipliers;
 
-    static constexpr int limit = 50;  // corrections; four are usual
-    static constexpr int many = 8;    // after which what is left may be rounding
+    static constexpr int limit = 50;  // corrections; four are typical
+    static constexpr int many = 8;    // corrections after which the rest may be rounding
 
     Multipliers lambda;  // of the last call
-    long solves = 0;     // linear systems so far
+    long solves = 0;     // number of linear systems solved
 
     Newton(Model& model, const Half& q)
         : lambda(Multipliers::Zero(model.constraints())), c_(lambda), floor_(lambda), rounding_(lambda), move_(q) {
@@ -38,7 +37,8 @@ public:
         floor_ *= Scalar(0.5);  // positions are rounded by half of ε
     }
 
-    /// q ← the point on the constraints; true if one is found. q0 may be q itself: then the directions follow it.
+    /// Sets q to a point on the constraints; returns true if one is found. q0 may be q itself: then the directions
+    /// follow it.
     bool project_positions(Model& model, const Half& q0, Half& q) {
         lambda.setZero();
         for (int i = 0; i < limit; ++i) {
@@ -52,7 +52,7 @@ public:
         return false;
     }
 
-    /// v ← v + M⁻¹Jᵀ(q) λ with J v = 0.
+    /// v ← v + M⁻¹Jᵀ(q) λ such that J v = 0.
     void project_velocities(Model& model, const Half& q, Half& v) {
         model.constraint_velocity(q, v, c_);
         model.solve(q, q, c_);
@@ -61,7 +61,7 @@ public:
         ++solves;
     }
 
-    /// The worst of C where no point was found.
+    /// The largest |C| left if no point was found.
     double remained() const { return static_cast<double>(Scalar(c_.cwiseAbs().maxCoeff())); }
 
 private:
@@ -73,7 +73,7 @@ private:
         return true;
     }
 
-    /// Whether C is no more than its own rounding, and that of the sums it is made of: there corrections go to and fro.
+    /// Whether |C| is within its rounding and that of its terms, where corrections oscillate.
     bool is_rounding(Model& model, const Half& q) {
         model.rounding(q, rounding_);
         rounding_ *= Scalar(4);
@@ -90,15 +90,15 @@ private:
         ++solves;
     }
 
-    Multipliers c_;      // C, then what it takes of λ
-    Multipliers floor_;  // of C, in rounding, at the start
+    Multipliers c_;      // C, then the change of λ
+    Multipliers floor_;  // rounding error of C at the start
     Multipliers rounding_;
     Half move_;
 };
 
-/// A model whose positions go back onto the constraints after every step of any method, then its velocities along them,
-/// both to rounding and along M⁻¹Jᵀ, the shortest way where masses weigh the distance.
-/// Errors  exit 3 where no point on the constraints is found.
+/// A model that projects positions onto the constraints after every step of any method, then velocities onto their
+/// tangents, both to rounding and along M⁻¹Jᵀ, the shortest way in the metric of the masses.
+/// Errors  exit 3 if no point on the constraints is found.
 /// Source  Hairer & Wanner, Solving Ordinary Differential Equations II, §VII.2.
 template <Constrained Model>
 class Projected : public Model {
@@ -109,7 +109,7 @@ public:
     using State = typename Model::State;
     using Half = typename Model::Half;
 
-    /// Of what the model itself is made of.
+    /// `description`: as for the model.
     template <class Description>
     explicit Projected(const Description& description)
         : Model(description), q_(half_of(Model::start(description))), v_(q_), newton_(*this, q_) {}
@@ -135,9 +135,10 @@ private:
     Newton<Model> newton_;
 };
 
-/// A model whose constraints pull back like damped springs (critically, at one rate α in 1/s):
+/// A model with constraint stabilisation: the constraint error behaves as a critically damped oscillator with rate α,
+/// 1/s:
 ///     C″ = −2α C′ − α² C ,     (J M⁻¹ Jᵀ) λ = −J̇ v − J M⁻¹ F − 2α J v − α² C .
-/// What explicit methods do to a residual bounds the step: α dt < 2 (Euler), < 2.785 (Runge–Kutta 4).
+/// Stability of explicit methods for this limits the step: α dt < 2 (Euler), < 2.785 (Runge–Kutta 4).
 /// Source  Baumgarte 1972, Stabilization of constraints and integrals of motion in dynamical systems.
 template <Constrained Model>
 class Baumgarte : public Model {
@@ -148,7 +149,7 @@ public:
     using State = typename Model::State;
     using Half = typename Model::Half;
 
-    /// Of what the model itself is made of, and α in 1/s, ≥ 0.
+    /// `description`: as for the model; α in 1/s, ≥ 0.
     template <class Description>
     Baumgarte(const Description& description, const Scalar& alpha)
         : Model(description),

@@ -8,18 +8,18 @@
 
 namespace doppel {
 
-// What every method's class template over the model offers:
+// The interface of every method, a class template over the model:
 //
 //     (Model&, const State& start, const Scalar& step or tolerance)   allocates all memory
-//     state()                                                         now
-//     evaluations()                                                   of the right-hand side so far
+//     state()                                                         at the current time
+//     evaluations()                                                   of the right-hand side
 //     fixed step   advance(long steps)
-//     adaptive     advance(seconds), look_ahead(seconds), steps() accepted, smallest_step() that error control chose, s
+//     adaptive     advance(seconds), look_ahead(seconds), steps() accepted, smallest_step() chosen by error control, s
 //
-// Errors: Error (exit 3) where a step cannot be made: no convergence, a step size that vanishes, a tolerance that the
-// scalar cannot give.
+// Errors: exit 3 if a step cannot be made (no convergence, vanishing step size), exit 2 for a tolerance that the scalar
+// cannot reach.
 
-/// After every step a model may project the state onto its constraints.
+/// Whether the model projects the state onto its constraints after every step.
 template <class Model>
 concept Projects = requires(Model& model, typename Model::State& y) {
     model.project(y);
@@ -36,7 +36,7 @@ bool projects(const Model& model) {
         return Projects<Model>;
 }
 
-/// Any system with states of one type, behind virtual calls: what steps it is compiled once for all of them.
+/// Any system with states of one type, behind virtual calls, so that its steppers are compiled once for all systems.
 template <class Y>
 class AnySystem {
 public:
@@ -54,7 +54,7 @@ public:
     virtual Scalar longest_step() const = 0;
 };
 
-/// A model as such a system: its own, or that of a `Model&`.
+/// A model as such a system: owned, or by reference (`Model&`).
 template <class Held>
 class HeldSystem final : public AnySystem<typename std::remove_reference_t<Held>::State> {
 public:
@@ -86,7 +86,7 @@ private:
     Held model_;
 };
 
-/// A method at work on a system, as what samples it drives it.
+/// A method with its system, as used by Motion.
 template <class S>
 class Stepper {
 public:
@@ -94,15 +94,15 @@ public:
     using State = doppel::State<Scalar, Eigen::Dynamic>;
 
     virtual ~Stepper() = default;
-    virtual void advance(long steps) = 0;                // of a method with a fixed step
-    virtual void advance_by(const Scalar& seconds) = 0;  // of an adaptive one
-    /// Of an adaptive one: read() tells the state so long after the last advance_by(); later ones are the same
-    /// to the bit as if it had not been asked for.
+    virtual void advance(long steps) = 0;                // for methods with a fixed step
+    virtual void advance_by(const Scalar& seconds) = 0;  // for adaptive methods
+    /// For adaptive methods: read() then gives the state `seconds` after the last advance_by(). Later states have the
+    /// same bits as without this call.
     virtual void look_ahead(const Scalar& seconds) = 0;
-    virtual void read(State& y) const = 0;     // y ← the state now
+    virtual void read(State& y) const = 0;     // y ← the current state
     virtual long evaluations() const = 0;      // of the right-hand side
-    virtual long steps() const = 0;            // of an adaptive method, accepted
-    virtual Scalar smallest_step() const = 0;  // s, of those
+    virtual long steps() const = 0;            // of an adaptive method, accepted ones
+    virtual Scalar smallest_step() const = 0;  // s, of these
 };
 
 }  // namespace doppel

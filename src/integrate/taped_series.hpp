@@ -14,19 +14,18 @@
 
 namespace doppel {
 
-/// What step control goes by in a model's state: the first `coordinates`, whose rates begin at `rates`.
+/// The part of a model's state that step control uses: the first `coordinates`, and the rates from index `rates` on.
 struct SeriesScale {
     Eigen::Index coordinates, rates;
-    double length;   // accelerations a amount to a rate of √(length |a|): 1 for angles, m for places
-    double longest;  // s, of a step
+    double length;   // accelerations a count as a rate of √(length |a|): 1 for angles, in m for positions
+    double longest;  // longest step, s
 };
 
-/// The Taylor series of a model from its right-hand side alone, which a tape takes down once, and again where what was compared
-/// in it has changed. `Model` is one over Taped<Scalar>.
-///
-/// What the right-hand side compares (the sign of a rate in a drag like |ω| ω) may change on the way: a step ends just
-/// behind the first such change, by so little that what it errs there, its third power, is below rounding. Joints that stick
-/// have events of the model (integrate/events.hpp), at which the step ends.
+/// The Taylor series of a model from its right-hand side alone. The right-hand side is recorded on a tape once, and
+/// again when a comparison in it has changed. `Model` is one over Taped<Scalar>. A comparison (such as the sign of a
+/// rate in a drag |ω| ω) may change during a step. The step then ends just after the first change, so close that the
+/// error, of third order in the time, is below rounding. Joints with Coulomb friction have events of the model
+/// (integrate/events.hpp), where the step ends, too.
 template <class Model>
 class TapedSeries : public Series<typename Model::Scalar::Scalar> {
 public:
@@ -62,7 +61,7 @@ public:
     double longest_step() const override { return scale_.longest; }
     double rate(int k, Eigen::Index i) const override { return static_cast<double>(series(scale_.rates + i)[k]); }
 
-    /// Of quads also where no double holds the size: soon after rest, quadratic drag has coefficients like 10^(14 k).
+    /// For quads also if the size exceeds double: soon after rest, quadratic drag has coefficients like 10^(14 k).
     double log2_room(double tolerance, int k) const override {
         if constexpr (std::is_same_v<Scalar, double>) return Series<Scalar>::log2_room(tolerance, k);
         Scalar most = greatest_of(k);
@@ -74,14 +73,14 @@ public:
         return rough_log2(tolerance) - (rough_log2(static_cast<double>(most) / amount_) + shift * shifts);
     }
 
-    /// At most `h`, s: just behind the first change of what the right-hand side compares.
+    /// Just after the first change of a comparison, s; at most `h`.
     double first_event(double h) const override {
         const double beyond = 0.1 * std::cbrt(static_cast<double>(std::numeric_limits<Scalar>::epsilon())) * h;
-        // where the force jumps, and its series is singular: as close to it as the range of its coefficients allows
+        // where the force jumps, its series is singular; the step goes as close to it as the coefficients' range allows
         constexpr int range = std::numeric_limits<Scalar>::max_exponent10;
         const double just_beyond = std::max(1e-15, std::pow(10.0, 1.0 - range / (order_ + 2.0))) * h;
         double first = h;
-        std::vector<double> powers;  // of t / first, made to start below 0
+        std::vector<double> powers;  // in powers of t / first; negative at the start
         const auto at = [&](double t) {
             struct {
                 double value = 0, rate = 0;
@@ -111,7 +110,7 @@ protected:
     Model taped_;
 
 private:
-    /// Of the joints: whether others hold than those recorded, and taped_ ← those that hold.
+    /// Whether the modes of the joints differ from the recorded ones; updates taped_ to the current ones.
     virtual bool has_other_modes() const { return false; }
     virtual void take_modes() {}
 
@@ -135,13 +134,13 @@ private:
     }
 
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
-    /// The greatest coefficient k of the rates of angles or places.
+    /// The largest coefficient k of the rates of angles or positions.
     Scalar greatest_of(int k) const {
         using std::abs;
         Scalar most(0);
         for (Eigen::Index i = 0; i < scale_.coordinates; ++i) {
             const Scalar size = abs(series(scale_.rates + i)[k]);
-            if (!(size <= most) && most == most) most = size;  // NaN stays
+            if (!(size <= most) && most == most) most = size;  // keeps NaN
         }
         return most;
     }
@@ -150,7 +149,7 @@ private:
     int order_;
     Tape<Scalar> tape_;
     SeriesScale scale_;
-    double amount_ = 0;  // of the rates, rad/s or m/s
+    double amount_ = 0;  // scale of the rates, rad/s or m/s
     typename Model::State y_, rate_;
 };
 

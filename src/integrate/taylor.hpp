@@ -25,14 +25,15 @@
 
 namespace doppel {
 
-/// The Taylor method. Each step computes the series of the motion to a high order by recurrence, and goes as far as its
-/// last coefficients allow; output times shorten no step, as the series holds anywhere inside one.
+/// The Taylor method. Each step computes the series of the motion to a high order by recurrence. Its length follows
+/// from the last coefficients; output times do not shorten a step, because the series is valid everywhere inside it.
 ///
-/// Order   p = 10 − ½ ln ε, more than the usual 1 − ½ ln ε, since the work grows more like p than like p².
-/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the rates' amount.
-///         Rates are the harder part: an angle has an error of about h/p times as much. No step is more than twice the one
-///         before.
-/// Rounding of the state is carried over to the next step.
+/// Order   p = 10 − ½ ln ε, more than the usual 1 − ½ ln ε, because the work grows more like p than like p².
+/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the scale of the rates.
+/// Rates
+///         have larger errors than angles, by a factor of about p/h. No step is more than twice as long as the previous
+///         one.
+/// Rounding errors of the state are carried over to the next step.
 /// Source  Jorba & Zou 2005, A software package for the numerical integration of ODEs by means of high-order Taylor
 ///         methods, Experimental Mathematics 14:99.
 template <class S>
@@ -41,8 +42,8 @@ public:
     using Scalar = S;
     using State = typename Series<Scalar>::State;
 
-    /// `series_to` gives the series to an order; `system` where it projects or has events. `order` from 5 to 64, or 0: by the
-    /// tolerance. Throws Error (exit 2) for a tolerance that the scalar cannot give.
+    /// `series_to` returns the series up to an order; `system` is needed if it projects or has events. `order` from 5
+    /// to 64, or 0: from the tolerance. Throws Error (exit 2) for a tolerance that the scalar cannot reach.
     SeriesStepper(const std::function<std::unique_ptr<Series<Scalar>>(int order)>& series_to,
                   std::unique_ptr<AnySystem<State>> system, const State& start, double tolerance, int order)
         : tolerance_(tolerance),
@@ -64,9 +65,9 @@ public:
     }
     const State& state() const { return out_; }
 
-    /// In place of advance(), for what evaluates inside every step: on to the end of the last one, where the next is
-    /// expanded. On it, at(t) holds for 0 ≤ t ≤ step(), s from where it starts; at(step()) is at(0) of the one after,
-    /// to the bit.
+    /// Instead of advance(), for users that evaluate inside every step: moves to the end of the last step and expands
+    /// the next one there. at(t) is valid for 0 ≤ t ≤ step(), s from its start; at(step()) has the same bits as at(0)
+    /// of the next step.
     void take_step() {
         time_ = {};
         next_step(static_cast<double>(step_));
@@ -79,7 +80,7 @@ public:
         return out_;
     }
     const Scalar& step() const { return step_; }
-    /// A coordinate on the step, at whose ends it is what at() says.
+    /// A coordinate in the step; at both ends it equals at().
     Bernstein on_step(Eigen::Index coordinate) {
         std::vector<double> powers{static_cast<double>(at(Scalar(0))[coordinate])};
         for (int k = 0; k <= order_; ++k) powers.push_back(series_->rate(k, coordinate) / (k + 1));
@@ -91,7 +92,7 @@ public:
     int order() const { return order_; }
     long steps() const { return steps_; }
     Scalar smallest_step() const { return smallest_; }
-    /// Orders computed: each costs about what a right-hand side would.
+    /// The number of orders computed, each of which costs about as much as a right-hand side.
     long evaluations() const { return steps_ * order_; }
 
 private:
@@ -108,8 +109,8 @@ private:
         if (system_) system_->project(y);
     }
 
-    /// Goes to the end of the step and expands the next one there. `seconds`, the interval asked for, tells when steps
-    /// have vanished.
+    /// Moves to the end of the step and expands the next one there. `seconds`, the requested interval, is used to
+    /// detect vanishing steps.
     void next_step(double seconds) {
         if (steps_ > 0) {
             series_->move(step_, change_);
@@ -178,10 +179,10 @@ private:
     int order_;
     std::unique_ptr<Series<Scalar>> series_;
     std::unique_ptr<AnySystem<State>> system_;
-    State base_, lost_;                               // where the step starts, and what rounding took from it
+    State base_, lost_;                               // start of the step, and its rounding error
     State change_, out_;                              // the state at the output time
     Scalar step_ = Scalar(0), smallest_ = Scalar(0);  // s
-    double free_step_ = 0;                            // s, what the step would be but for events
+    double free_step_ = 0;                            // s, length of the step without events
     OutputTime<Scalar> time_;
     long steps_ = 0;
     bool ends_at_event_ = false;  // the step
@@ -191,8 +192,8 @@ private:
 extern template class SeriesStepper<double>;
 extern template class SeriesStepper<Quad>;
 
-// The series of a model that has one. A chain of particles on rods is the mechanism of its parts; projected after every step
-// it is the same motion, pulled back by Baumgarte's terms it is not.
+// The series of a model, if there is one. A chain of particles on rods uses the series of the equivalent mechanism.
+// Projection after every step gives the same motion; Baumgarte's terms do not, so that is excluded.
 template <class Scalar, int N>
 std::unique_ptr<Series<Scalar>> series_of(const AngleChain<Scalar, N>& model, int order) {
     return series_of(model.pendulum, order);
@@ -225,7 +226,7 @@ public:
     using Scalar = typename Model::Scalar;
     using State = typename SeriesStepper<Scalar>::State;
 
-    /// `order` as of SeriesStepper.
+    /// `order` as for SeriesStepper.
     TaylorStepper(Model& model, const typename Model::State& start, const Scalar& tolerance, int order = 0)
         : SeriesStepper<Scalar>([&](int to) { return series_of(model, to); }, system_of(model), start,
                                 static_cast<double>(tolerance), order) {}

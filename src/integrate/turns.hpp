@@ -10,15 +10,15 @@
 
 namespace doppel {
 
-/// The whole turns of the rods of a chain whose state is (x1, y1, x2, y2 … vx1, vy1 …): places tell angles only up to
-/// turns, so they are followed from one state to the next, by the rates at both.
+/// Counts the whole turns of a chain's rods for the state (x1, y1, x2, y2 … vx1, vy1 …). Positions only give angles
+/// modulo turns, so the angles are tracked from state to state by the rates.
 class Turns {
 public:
     static constexpr double longest = 1.0 / 500;  // s
     static constexpr double largest_turn = 0.5;   // rad
 
     Turns() = default;
-    /// From the angles of the rods, rad, with all their turns.
+    /// From the angles of the rods, rad, including turns.
     explicit Turns(const std::vector<double>& angles) {
         for (const double angle : angles) {
             const SinCos<double> turn(angle);
@@ -29,7 +29,7 @@ public:
 
     bool followed() const { return !rods_.empty(); }
 
-    /// At a state, so many seconds after the last one; 0 for the state released.
+    /// Updates the turns for a state `seconds` after the previous one; 0 for the release.
     template <class State>
     void update(const State& y, double seconds) {
         fastest_ = 0;
@@ -50,10 +50,10 @@ public:
         }
     }
 
-    /// Until the next update() at the latest, s.
+    /// The longest allowed time to the next update(), s.
     double longest_interval() const { return std::min(longest, largest_turn / fastest_); }
 
-    /// Adds them to the angles of bobs, within (−π, π], of the last update().
+    /// Adds the turns to the angles of bobs, within (−π, π], at the last update().
     template <class Scalar>
     void add_to(Bobs<Scalar>& bobs) const {
         for (std::size_t i = 0; i < rods_.size(); ++i)
@@ -67,8 +67,8 @@ private:
         double turns;  // counter-clockwise
     };
 
-    /// What a rod has turned by, rad, within half a turn. Where the rates at both ends say too different things, of a
-    /// rod that swings to and fro, it has gone the short way.
+    /// The rotation of a rod, rad, to within half a turn. If the rates at both ends differ too much, as for a rod that
+    /// swings to and fro, the shorter way is assumed.
     static double turned(double before, double after, double seconds) {
         const bool agree = std::abs(after - before) * seconds < 2 * largest_turn;
         return agree ? 0.5 * (before + after) * seconds : 0;
@@ -78,14 +78,14 @@ private:
     double fastest_ = 0;  // rad/s, at the last update()
 };
 
-/// The steps of a fixed step that are taken in one go, of a state of so many numbers: few enough that an interruption
-/// is noticed.
+/// The number of fixed steps to take at a time, for a state of this dimension: few enough that an interruption is
+/// noticed.
 inline long steps_in_one_go(Eigen::Index dimensions) {
     constexpr long most = 200'000;
     return std::max(1L, most / static_cast<long>(dimensions));
 }
 
-/// The steps of so many seconds that may be taken until turns must be updated.
+/// The number of steps until turns must be updated.
 inline long steps_within(double longest_interval, double step) {
     return std::max(1L, static_cast<long>(longest_interval / step));
 }

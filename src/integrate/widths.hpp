@@ -4,13 +4,13 @@
 
 namespace doppel {
 
-/// How many doubles the registers may hold that this processor and this build compute in, narrowest first.
+/// The register widths, in doubles, that both this processor and this build support, in ascending order.
 std::vector<int> register_widths();
 
-/// `asked`, or the widest where it is 0. Throws Error (exit 2) where it is none of register_widths().
+/// `asked`, or the widest if it is 0. Throws Error (exit 2) if it is not among register_widths().
 int chosen_width(int asked);
 
-/// call.operator()<width>(), of the code that was compiled for that width (cmake/widths.cmake).
+/// Calls call.operator()<width>() with the code compiled for that width (cmake/widths.cmake).
 template <class Call>
 auto at_width(int width, const Call& call) {
     switch (width) {
