@@ -8,14 +8,14 @@
 
 namespace doppel {
 
-/// N point masses on N massless rigid rods, each hanging below the one before (Lagrange). A step costs O(N): the
-/// tensions T of the rods solve a tridiagonal system, and give the angles' accelerations.
+/// N point masses on N massless rigid rods, each hanging from the previous one (Lagrange). A step costs O(N): the
+/// tensions T of the rods solve a tridiagonal system, and determine the angular accelerations.
 ///
 /// With n_k = (sinθ_k, −cosθ_k) along rod k and t_k = (cosθ_k, sinθ_k) across it, Newton's law for bob k is
 ///     m_k q_k″ = −T_k n_k + T_{k+1} n_{k+1} + m_k g⃗ ,     q_k″ − q_{k−1}″ = l_k (θ_k″ t_k − ω_k² n_k).
-/// Its part along n_k holds no θ″, which leaves, with c_k = cos(θ_{k+1} − θ_k) and 1/m_0 = 0,
+/// The component along n_k does not contain θ″. With c_k = cos(θ_{k+1} − θ_k) and 1/m_0 = 0 it is
 ///     −c_{k−1} T_{k−1} / m_{k−1} + (1/m_{k−1} + 1/m_k) T_k − c_k T_{k+1} / m_k = l_k ω_k² + [k = 1] g cosθ_1,
-/// and its part along t_k, with s_k = sin(θ_{k+1} − θ_k),
+/// and the component along t_k, with s_k = sin(θ_{k+1} − θ_k), is
 ///     l_k θ_k″ = T_{k+1} s_k / m_k − T_{k−1} s_{k−1} / m_{k−1} − [k = 1] g sinθ_1.
 ///
 /// State   (θ1 … θN, ω1 … ωN). Angles are not wrapped.
@@ -31,8 +31,8 @@ struct AngleChain {
     Pendulum<Scalar> pendulum;
     Half w;                  // 1/kg, inverse masses
     Half length, by_length;  // m, 1/m
-    Half sin, cos;           // of θ_1 and of each angle between neighbours, θ_k − θ_{k−1}, of the last update()
-    Half s, c;               // of the angle between a rod and the next, over the mass between them, 1/kg
+    Half sin, cos;           // of θ_1 and the differences θ_k − θ_{k−1}, at the last update()
+    Half s, c;               // of the angle between a rod and the next one, divided by the mass between them, 1/kg
     Half tension;            // N
     ChainMatrix<Scalar, N> matrix;
 
@@ -66,7 +66,7 @@ struct AngleChain {
         update(y);
         rate_of_angles(y, dydt);
     }
-    /// The same at the start of a step and at one of its stages.
+    /// dydt ← d/dt of the state at the start of a step, or at one of its stages.
     void rate(const State& y, State& dydt, Angles& angles) {
         angles.start(turned(y), sin, cos);
         factor();
@@ -78,16 +78,16 @@ struct AngleChain {
         rate_of_angles(y, dydt);
     }
 
-    /// For the angles that `y` begins with: all that depends on them alone, the matrix factored.
+    /// Computes everything that depends only on the angles, the first elements of `y`, and factors the matrix.
     template <class Y>
     void update(const Y& y) {
         take_sin_cos(turned(y), sin, cos);
         factor();
     }
 
-    /// a ← M⁻¹ f at the angles of the last update(), in O(N): the accelerations that generalized forces f (N m) would cause,
-    /// or the rates that belong to momenta f (N m s). P_k = Σ_{j≥k} m_j q_j″ is f_k / l_k across rod k and τ_k along
-    /// it, and τ solves the system of the tensions.
+    /// a ← M⁻¹ f at the angles of the last update(), in O(N): accelerations from generalized forces f (N m), or rates
+    /// from momenta f (N m s). P_k = Σ_{j≥k} m_j q_j″ has the component f_k / l_k across rod k and τ_k along it; τ
+    /// solves the system of the tensions.
     void solve_mass(const Half& f, Half& a) {
         const auto n = w.size();
         const auto across = [&](Eigen::Index k) { return f[k] * by_length[k]; };
@@ -108,7 +108,7 @@ struct AngleChain {
 private:
     static Eigen::Index rows(const Pendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.links()); }
 
-    /// A sine of the difference of two angles keeps its digits where the difference is small.
+    /// The sine of a small angle difference is computed from the difference, to keep its digits.
     template <class Y>
     const Half& turned(const Y& y) {
         turned_[0] = y[0];
@@ -116,7 +116,7 @@ private:
         return turned_;
     }
 
-    /// From sines and cosines: s, c and the matrix, factored.
+    /// Computes s, c and the factored matrix from sines and cosines.
     void factor() {
         const auto n = w.size();
         for (Eigen::Index k = 0; k + 1 < n; ++k) {
@@ -142,12 +142,12 @@ private:
         }
     }
 
-    Half turned_, squares_;  // the angles whose sines are taken, rad; s², 1/kg²
-    Scalar by_last_;         // the inverse of the last entry of the diagonal, kg; that of the first is m_1
+    Half turned_, squares_;  // the angles of `sin` and `cos`, rad; s², 1/kg²
+    Scalar by_last_;         // inverse of the last diagonal element, kg; that of the first is m_1
 };
 
-/// The double pendulum in angles (Lagrange): two point masses on massless rigid rods, swinging in a vertical plane
-/// without friction. Rods keep their length by construction.
+/// The double pendulum in angles (Lagrange): two point masses on massless rigid rods, in a vertical plane, without
+/// friction. The coordinates keep the rod lengths exactly.
 ///
 /// State   (θ1, θ2, ω1, ω2). Angles are not wrapped: whole turns count as flips.
 /// Source  Landau & Lifshitz, Mechanics, §5 problem 1, solved for the accelerations.
@@ -182,7 +182,7 @@ struct DoublePendulum {
         take_sin_cos(turned(y), sin, cos);
         rate_of_angles(y, sin, cos, dydt);
     }
-    /// The same at the start of a step and at one of its stages.
+    /// dydt ← d/dt of the state at the start of a step, or at one of its stages.
     void rate(const State& y, State& dydt, Angles& angles) const {
         Pair sin, cos;
         angles.start(turned(y), sin, cos);

@@ -7,16 +7,18 @@
 
 namespace doppel {
 
-/// The accelerations of a chain of rigid bodies in O(N), from its end to the pivot and back (the articulated-body method).
+/// The accelerations of a chain of rigid bodies in O(N), from its end to the pivot and back (articulated-body
+/// algorithm).
 ///
 /// With n = (sinθ, −cosθ) along a link, t = (cosθ, sinθ) across it, joint at p, centre at p + a n, end at p + l n and
-/// J = I + m a² about the joint, what hangs at the end takes the force A p″ + b of whatever moves the end. So
+/// J = I + m a² about the joint: the rest of the chain at the end takes the force A p″ + b, if p is the end. Then
 ///     d θ″ = c − h·p″ ,     d = J + l² t·At ,     h = m a t + l A t ,     c = l² ω² t·An − l t·b + τ ,
-/// and the whole takes the force A₊ p″ + b₊ at p,
+/// and the chain from the joint on takes the force A₊ p″ + b₊ at p,
 ///     A₊ = m + A − h hᵀ / d ,     b₊ = b + h c / d − ω² (m a n + l A n) .
-/// Gravity is a pivot that is accelerated upwards.
-/// A massless link passes no force across itself: A₊ and b₊ lose all digits there by subtraction. So they are kept by their
-/// parts across and along the link, with det A, as sums of products in which those of a light link do not cancel.
+/// Gravity is equivalent to an upward acceleration of the pivot.
+/// A massless link transmits no force across itself, so that subtraction in A₊ and b₊ would lose all digits. They are
+/// stored by components across and along the link, and det A, as sums of products in which those of a light link do not
+/// cancel.
 /// Source  Featherstone 2008, Rigid Body Dynamics Algorithms, §7.2, in the plane.
 template <class S>
 class ArticulatedBodies {
@@ -40,8 +42,8 @@ public:
         }
     }
 
-    /// For the sines and cosines of θ_1 and of each angle between neighbours, θ_k − θ_{k−1}: where that is small its own sine
-    /// keeps digits that a difference would lose.
+    /// From sines and cosines of θ_1 and the differences θ_k − θ_{k−1}; the sine of a small difference keeps more
+    /// digits than a difference of products.
     void factor(const Half& sin, const Half& cos) {
         for (std::size_t i = 0; i < links_.size(); ++i) {
             auto& link = links_[i];
@@ -79,8 +81,8 @@ public:
         whole_ = a;
     }
 
-    /// θ″ under torques τ on the links, forces on their ends (none where empty), gravity g, at rates ω, where the pivot is
-    /// accelerated. Returns the force with which the pivot holds the chain, N.
+    /// θ″ for torques τ on the links, forces on their ends (none if empty), gravity g, rates ω, and the acceleration of
+    /// the pivot. Returns the force of the pivot on the chain, N.
     template <class Rates>
     Vector accelerate(const Half& torque, const std::vector<Vector>& on_ends, const Rates& omega, const Scalar& gravity,
                       const Vector& pivot, Half& alpha) {
@@ -122,10 +124,10 @@ public:
         return force;
     }
 
-    /// a ← M⁻¹ f: the rates that belong to momenta f, or the accelerations by torques f alone.
+    /// a ← M⁻¹ f: rates from momenta f, or accelerations from torques f alone.
     void solve_mass(const Half& f, Half& a) { accelerate(f, {}, still_, Scalar(0), {Scalar(0), Scalar(0)}, a); }
 
-    /// Of two by two, symmetric, by its parts across and along a link, kg.
+    /// A symmetric 2×2 matrix by its components across and along a link, kg.
     struct Matrix {
         Scalar across, mixed, along, determinant;  // t·At, t·An, n·An
     };
@@ -143,7 +145,7 @@ public:
 private:
     std::vector<Link> links_;
     Matrix whole_;  // A₊ of the first link
-    Half still_;    // no rates
+    Half still_;    // zero rates
 };
 
 }  // namespace doppel

@@ -9,18 +9,18 @@
 
 namespace doppel {
 
-/// One mass as every model reports it.
+/// The state of a mass, the same for every model.
 template <class Scalar>
 struct Bob {
     Scalar mass;              // kg
     Scalar x, y, vx, vy;      // m, m/s
-    Scalar theta{}, omega{};  // of the rod above it, in a chain: rad, rad/s
+    Scalar theta{}, omega{};  // of the rod above it, for a chain: rad, rad/s
 };
 
 template <class Scalar>
 using Bobs = std::vector<Bob<Scalar>>;
 
-/// The bobs of a chain from its state in angles, into `bobs`, which keeps its memory.
+/// Writes the bobs of a chain from its state in angles to `bobs`, whose memory is reused.
 template <class Scalar, int N>
 void place_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
     bobs.clear();
@@ -45,8 +45,8 @@ Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& s
     return bobs;
 }
 
-/// The bobs of a chain from its state as particles, without their angles, into `bobs`, which keeps its memory. Further
-/// particles may follow those of the chain: the first half of the state are places, the second one velocities.
+/// Writes the bobs of a chain, without angles, from its state as particles to `bobs`, whose memory is reused. Other
+/// particles may follow those of the chain. The first half of the state contains positions, the second velocities.
 template <class Scalar, int N>
 void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
     bobs.resize(p.links());
@@ -56,7 +56,7 @@ void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, B
     }
 }
 
-/// The same with their angles, within (−π, π].
+/// Includes angles, within (−π, π].
 template <class Scalar, int N>
 Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
     Bobs<Scalar> bobs;
@@ -71,7 +71,7 @@ Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>
     return bobs;
 }
 
-/// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) of bobs.
+/// The state (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN) for given bobs.
 template <int N = Eigen::Dynamic, class Scalar>
 State<Scalar, times<4, N>> particles_of(const Bobs<Scalar>& bobs) {
     const auto n = static_cast<Eigen::Index>(bobs.size());
@@ -84,7 +84,7 @@ State<Scalar, times<4, N>> particles_of(const Bobs<Scalar>& bobs) {
     return y;
 }
 
-/// The same as released.
+/// The same at the release.
 template <class Scalar, int N>
 State<Scalar, times<4, N>> released_as_particles(const Pendulum<Scalar>& p) {
     return particles_of<N>(bobs_of_angles(p, released_in_angles<Scalar, N>(p)));
@@ -104,8 +104,9 @@ struct Energies {
     Scalar kinetic, potential;
 };
 
-/// Of rigid bodies whose ends are the bobs; the potential is 0 where all centres of mass are level with the origin. The body
-/// between the places p and q, with s = a/l, has its centre at p + s (q − p) and turns at |q′ − p′| / l.
+/// For rigid bodies whose ends are the bobs. The potential energy is 0 if all centres of mass are level with the
+/// origin. The body between positions p and q, with s = a/l, has its centre at p + s (q − p) and rotates at |q′ − p′| /
+/// l.
 template <class Scalar>
 Energies<Scalar> energies(const PhysicalPendulum<Scalar>& p, const Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
     Energies<Scalar> sum{Scalar(0), Scalar(0)};
@@ -123,7 +124,7 @@ Energies<Scalar> energies(const PhysicalPendulum<Scalar>& p, const Bobs<Scalar>&
     return sum;
 }
 
-/// The bobs of a chain whose pivot is at the origin, as they are with it at `pivot`.
+/// Moves the bobs of a chain from a pivot at the origin to `pivot`.
 template <class Scalar>
 void move_with(Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
     for (auto& bob : bobs) {
@@ -134,7 +135,7 @@ void move_with(Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
     }
 }
 
-/// The rod that is furthest from its length, m.
+/// The largest error of a rod's length, m.
 template <class Scalar>
 Scalar length_error(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
     using std::abs;
@@ -143,14 +144,14 @@ Scalar length_error(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
     for (std::size_t i = 0; i < bobs.size(); ++i) {
         const Scalar rx = bobs[i].x - x, ry = bobs[i].y - y;
         const Scalar error = abs(sqrt(rx * rx + ry * ry) - p.length[i]);
-        if (!(error <= worst)) worst = error;  // NaN counts as worst
+        if (!(error <= worst)) worst = error;  // NaN counts as the largest
         x = bobs[i].x;
         y = bobs[i].y;
     }
     return worst;
 }
 
-/// Energy, J: zero at rest with every mass level with the pivot. The true motion keeps it.
+/// Energy, J: zero at rest with every mass level with the pivot. It is conserved.
 ///     E = Σ ½ m v² + m g y
 template <class Scalar>
 Scalar energy(const Bobs<Scalar>& bobs, const Scalar& gravity) {

@@ -7,12 +7,12 @@
 
 namespace doppel {
 
-/// Sine and cosine of an angle that is asked again and again while it hardly changes, as in an iteration: within reach
-/// of the angle a they were last evaluated for, they are those turned by the small angle d,
+/// Sine and cosine of an angle that is evaluated repeatedly with small changes, as in an iteration. Near the angle a of
+/// the last full evaluation they are rotated by the small angle d,
 ///     sin(a + d) = sin a + (cos d − 1) sin a + sin d cos a ,
 ///     cos(a + d) = cos a + (cos d − 1) cos a − sin d sin a ,
-/// with the sums of Taylor to d⁵ and d⁶. The reach makes d⁷/7! vanish far below rounding: it always errs ahead of the
-/// motion, and at ε/16 it already made energy drift by 4e-17 J a second instead of walking.
+/// with Taylor sums up to d⁵ and d⁶. The limit of d makes d⁷/7! far smaller than rounding. This error is systematic:
+/// with a limit of ε/16 it already made the energy drift by 4e-17 J per second, instead of a random walk.
 template <class Scalar>
 class NearbyAngle {
 public:
@@ -33,7 +33,7 @@ public:
 
 private:
     static Scalar part(int n) { return Scalar(1) / Scalar(n); }
-    /// d⁷/7! = 10⁻⁹ ε
+    /// The limit of d: d⁷/7! = 10⁻⁹ ε.
     static Scalar where_rounding_hides() {
         using std::pow;
         return pow(Scalar(5040) / Scalar(1'000'000'000) * std::numeric_limits<Scalar>::epsilon(), part(7));
@@ -45,26 +45,26 @@ private:
     SinCos<Scalar> exact_{angle_};
 };
 
-/// Hamilton's form of a model in angles: y = (θ, ω) becomes z = (θ, p), p = ∂L/∂ω in N m s, with
+/// The Hamiltonian form of a model in angles: y = (θ, ω) becomes z = (θ, p), p = ∂L/∂ω in N m s, with
 ///     θ′ = ∂H/∂p = M⁻¹ p ,     p′ = −∂H/∂θ = ∂L/∂θ .
-/// A symplectic method is one in these variables, not in (θ, ω). One specialisation a model.
+/// Symplectic methods are symplectic in these variables, not in (θ, ω). There is one specialisation for each model.
 template <class Model>
 struct Canonical;
 
-/// A model that has its Hamilton's form.
+/// A model with a Hamiltonian form.
 template <class M>
 concept Hamiltonian = requires(M& model, Canonical<M> form, typename Canonical<M>::Angles angles,
                                const typename M::State& from, typename M::State& to) {
     Canonical<M>(model);
     form.momenta(from, to);       // (θ, ω) → (θ, p)
     form.velocities(from, to);    // (θ, p) → (θ, ω)
-    form.rate(from, angles, to);  // (θ, p) → (θ′, p′); `angles` is memory of its own for each series of calls
+    form.rate(from, angles, to);  // (θ, p) → (θ′, p′); each series of calls has its own memory in `angles`
 };
 
-/// With P_i = Σ_{k≥i} m_k v_k the momentum of what hangs on rod i, μ_i its mass, n = (sinθ, −cosθ) along the rod,
+/// With P_i = Σ_{k≥i} m_k v_k the momentum of all below rod i, μ_i its mass, n = (sinθ, −cosθ) along the rod,
 /// t = (cosθ, sinθ) across it and dt/dθ = −n:
 ///     p_i = l_i t_i·P_i ,     p_i′ = −l_i ω_i n_i·P_i − g l_i μ_i sinθ_i .
-/// The model's solve_mass() finds ω and n_i·P_i together, in O(N).
+/// The model's solve_mass() computes ω and n_i·P_i together, in O(N).
 template <class S, int N>
 struct Canonical<AngleChain<S, N>> {
     using Scalar = S;
@@ -77,7 +77,7 @@ struct Canonical<AngleChain<S, N>> {
     Half mass;          // μ, kg
     Half p, omega;      // N m s, rad/s
     Half sin, cos;      // of the angles
-    Half above, below;  // m/s and N s: of the velocities v, of the momenta P, one component at a time
+    Half above, below;  // m/s and N s: of the velocities v, of the momenta P, by component
 
     explicit Canonical(Model& chain)
         : model(chain),

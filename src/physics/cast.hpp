@@ -10,7 +10,7 @@
 
 namespace doppel {
 
-/// A struct over its scalar that tells its members, in the order of their declaration.
+/// A struct template over a scalar with a function that lists its members in order of declaration.
 template <class Struct>
 concept Described = requires(const Struct& described) {
     described.members();
@@ -22,7 +22,8 @@ bool operator==(const Struct<Scalar>& one, const Struct<Scalar>& other) {
     return one.members() == other.members();
 }
 
-/// A description in another scalar: numbers, places, and lists, choices and structs of such. Indices stay.
+/// Converts a description to another scalar: numbers, positions, and lists, variants and structs of these. Indices are
+/// unchanged.
 template <class To>
 struct Cast {
     std::size_t operator()(std::size_t index) const { return index; }

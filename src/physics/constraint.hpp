@@ -9,7 +9,7 @@
 
 namespace doppel {
 
-/// A place in the plane, m: x to the right, y up. Also a velocity, m/s, or a direction.
+/// A position in the plane, m: x to the right, y up. Also a velocity, m/s, or a direction.
 template <class Scalar>
 using Place = State<Scalar, 2>;
 
@@ -25,11 +25,11 @@ Scalar length_of(const Place<Scalar>& r) {
     return sqrt(inner(r, r));
 }
 
-/// Where a rod or a spring ends: on a particle (its index, from 0) or at a fixed place.
+/// An end of a rod or spring: a particle (its index, from 0) or a fixed position.
 template <class Scalar>
 using End = std::variant<std::size_t, Place<Scalar>>;
 
-/// The share that `particle` has in (x1, y1, x2, y2 …).
+/// The two components of `particle` in (x1, y1, x2, y2 …).
 template <class Vector>
 Place<typename Vector::Scalar> part_of(const Vector& all, std::size_t particle) {
     return all.template segment<2>(2 * static_cast<Eigen::Index>(particle));
@@ -47,9 +47,9 @@ Place<Scalar> velocity_of(const End<Scalar>& end, const Vector& v) {
     return particle ? part_of(v, *particle) : Place<Scalar>(Scalar(0), Scalar(0));
 }
 
-// Every constraint has a `kind`, as presets name it, and its members.
+// Every constraint has a `kind`, its name in presets.
 
-/// A particle held at a fixed place.
+/// A particle held at a fixed position.
 template <class Scalar>
 struct Anchor {
     static constexpr std::string_view kind = "anchor";
@@ -72,7 +72,7 @@ struct Rod {
     auto members() const { return std::tie(a, b, length); }
 };
 
-/// A straight slot, without friction or ends, that a particle slides in: the line of any length through a point.
+/// A straight slot without friction or ends, in which a particle slides: the line through a point.
 template <class Scalar>
 struct SlotLine {
     static constexpr std::string_view kind = "slot-line";
@@ -84,7 +84,7 @@ struct SlotLine {
     auto members() const { return std::tie(particle, point, direction); }
 };
 
-/// A circular slot that a particle slides in: what a rod from the centre is possible, and so does this.
+/// A circular slot in which a particle slides; equivalent to a rod from its centre.
 template <class Scalar>
 struct SlotCircle {
     static constexpr std::string_view kind = "slot-circle";
@@ -96,11 +96,11 @@ struct SlotCircle {
     auto members() const { return std::tie(particle, centre, radius); }
 };
 
-/// Every kind of constraint there is. The list stands here and nowhere else.
+/// All kinds of constraints. This is the only list.
 template <class Scalar>
 using Constraint = std::variant<Anchor<Scalar>, Rod<Scalar>, SlotLine<Scalar>, SlotCircle<Scalar>>;
 
-/// The rod that a constraint is or acts as, a circular slot's from its centre; none where it is straight.
+/// The equivalent rod of a constraint; a circular slot's begins at its centre. None for straight ones.
 template <class Scalar>
 std::optional<Rod<Scalar>> rod_of(const Constraint<Scalar>& constraint) {
     if (const auto* rod = std::get_if<Rod<Scalar>>(&constraint)) return *rod;
@@ -109,16 +109,16 @@ std::optional<Rod<Scalar>> rod_of(const Constraint<Scalar>& constraint) {
     return std::nullopt;
 }
 
-/// A condition C(q) = 0 that ties a particle to another or to a fixed place. With r = q_a − q_b:
-///     C = ½ (|r|² − l²)     of a rod
-///     C = n·r               of a straight one
+/// A condition C(q) = 0 that relates a particle to another or to a fixed position. With r = q_a − q_b:
+///     C = ½ (|r|² − l²)     for a rod
+///     C = n·r               for a straight slot
 template <class Scalar>
 struct ConstraintRow {
     std::size_t a;
     End<Scalar> b;
     bool is_straight;
-    Scalar length;         // l, m, of a rod
-    Place<Scalar> normal;  // n, of a straight one
+    Scalar length;         // l, m, for a rod
+    Place<Scalar> normal;  // n, for a straight slot
 
     template <class Vector>
     Place<Scalar> ends_apart(const Vector& q) const {
@@ -129,12 +129,12 @@ struct ConstraintRow {
         const auto r = ends_apart(q);
         return is_straight ? inner(normal, r) : Scalar((inner(r, r) - length * length) * Scalar(0.5));
     }
-    /// ∂C/∂q_a; where b is a particle, ∂C/∂q_b is the opposite.
+    /// ∂C/∂q_a; if b is a particle, ∂C/∂q_b is its negative.
     template <class Vector>
     Place<Scalar> gradient(const Vector& q) const {
         return is_straight ? normal : ends_apart(q);
     }
-    /// J̇ v, the part of C″ that is there without any acceleration
+    /// J̇ v, the part of C″ without accelerations
     template <class Vector>
     Scalar jdot_v(const Vector& v) const {
         if (is_straight) return Scalar(0);
@@ -144,7 +144,7 @@ struct ConstraintRow {
     const std::size_t* other_particle() const { return std::get_if<std::size_t>(&b); }
 };
 
-/// One, or the two of an anchor.
+/// One condition, or two for an anchor.
 template <class Scalar>
 std::vector<ConstraintRow<Scalar>> rows_of(const Constraint<Scalar>& constraint) {
     const Scalar zero(0), one(1);
@@ -158,7 +158,7 @@ std::vector<ConstraintRow<Scalar>> rows_of(const Constraint<Scalar>& constraint)
     return {straight(particle, place, one, zero), straight(particle, place, zero, one)};
 }
 
-/// How far its particles are from where a constraint wants them, m.
+/// The distance by which its particles violate a constraint, m.
 template <class Scalar, class Vector>
 Scalar error_of(const Constraint<Scalar>& constraint, const Vector& q) {
     using std::abs;
@@ -168,16 +168,16 @@ Scalar error_of(const Constraint<Scalar>& constraint, const Vector& q) {
     return abs(Scalar(length_of(row.ends_apart(q)) - row.length));
 }
 
-/// A first-order system y′ = f(y): what every method steps. rate() may use scratch space of the model: one model a
-/// thread.
+/// A first-order system y′ = f(y), as required by every method. rate() may use scratch memory of the model, so each
+/// thread needs its own model.
 template <class M>
 concept System = requires(M& model, const typename M::State& y, typename M::State& dydt) {
     typename M::Scalar;
     model.rate(y, dydt);
 };
 
-/// A system of particles under constraints C(q) = 0 that a method can hold itself: J = ∂C/∂q, masses M, forces F.
-/// The state is (q, v), both of type Half.
+/// A system of particles with constraints C(q) = 0 that a method can enforce itself: J = ∂C/∂q, masses M, forces F. The
+/// state is (q, v), both of type Half.
 template <class M>
 concept Constrained = System<M> && requires(M model, const typename M::Half& q, typename M::Half& v,
                                             const typename M::Multipliers& lambda, typename M::Multipliers& c) {
@@ -191,7 +191,7 @@ concept Constrained = System<M> && requires(M model, const typename M::Half& q, 
     model.rounding(q, c);                // c ← ε |q| Σ_j |J_ij|, with the largest coordinate: the rounding of C
 };
 
-/// The same, where nothing else holds the constraints (integrate/stabilise.hpp).
+/// The same, without stabilisation of its own (integrate/stabilise.hpp).
 template <class M>
 concept Unstabilised = Constrained<M> && !requires {
     M::is_stabilised;

@@ -9,16 +9,16 @@
 
 namespace doppel {
 
-/// The constraints of a mechanism, and what their J = ∂C/∂q does to vectors. Which entries of J differ from zero is
-/// found once; their values, a gradient for every particle that a row ties, are the caller's to keep. Rows come in the
-/// order of the constraints: J M⁻¹ Jᵀ is narrow where neighbours are listed one after the other.
+/// The constraints of a mechanism, and products of their J = ∂C/∂q with vectors. The sparsity of J is found once. Its
+/// values, a gradient for each particle of a row, are stored by the caller. Rows are in the order of the constraints: J
+/// M⁻¹ Jᵀ has a small envelope if neighbours are listed one after the other.
 template <class Scalar>
 class ConstraintSet {
 public:
     using Column = State<Scalar, Eigen::Dynamic>;
-    using Gradients = std::vector<Place<Scalar>>;  // ∂C_row/∂q_particle, one a block
+    using Gradients = std::vector<Place<Scalar>>;  // ∂C_row/∂q_particle, one for each block
 
-    /// Of particles with these inverse masses, 1/kg.
+    /// For particles with these inverse masses, 1/kg.
     ConstraintSet(const std::vector<Constraint<Scalar>>& constraints, const Column& inverse_masses)
         : w_(inverse_masses) {
         std::vector<std::vector<std::size_t>> of_particle(static_cast<std::size_t>(w_.size()));
@@ -48,10 +48,10 @@ public:
     /// The constraint that a row belongs to.
     std::size_t owner(Eigen::Index row) const { return owner_[static_cast<std::size_t>(row)]; }
 
-    /// The longest rod or radius, m; 0 where all constraints are straight.
+    /// The longest rod or radius, m; 0 if all constraints are straight.
     const Scalar& longest_rod() const { return longest_rod_; }
 
-    /// A J M⁻¹ Jᵀ of zeros, wide enough for what couple() puts into it.
+    /// A zero matrix with the envelope of J M⁻¹ Jᵀ.
     EnvelopeMatrix<Scalar> blank_matrix() const {
         std::vector<Eigen::Index> begin(rows_.size());
         std::iota(begin.begin(), begin.end(), 0);
@@ -100,7 +100,7 @@ public:
         }
     }
 
-    // Of the concept Constrained, which says what they do.
+    // Of the concept Constrained.
 
     void residual(const Column& q, Column& c) const {
         for (std::size_t i = 0; i < rows_.size(); ++i) c[static_cast<Eigen::Index>(i)] = rows_[i].value(q);
@@ -131,18 +131,18 @@ protected:
     Gradients scratch_;
 
 private:
-    /// What is not zero in J.
+    /// A nonzero block of J.
     struct Block {
         Eigen::Index row, particle;
     };
-    /// Two blocks of one particle: together they add to an entry of J M⁻¹ Jᵀ.
+    /// Two blocks of the same particle, whose product is a term of an entry of J M⁻¹ Jᵀ.
     struct Couple {
         std::size_t first, second;
     };
 
     Column w_;  // inverse masses, 1/kg
     std::vector<ConstraintRow<Scalar>> rows_;
-    std::vector<std::size_t> owner_;  // of each row
+    std::vector<std::size_t> owner_;  // for each row
     std::vector<Block> blocks_;
     std::vector<Couple> couples_;
     Scalar farthest_fixed_ = Scalar(0), longest_rod_ = Scalar(0);  // m

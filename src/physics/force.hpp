@@ -4,23 +4,23 @@
 
 namespace doppel {
 
-/// The masses of the particles, as forces see them.
+/// The masses of the particles.
 template <class Scalar>
 struct Masses {
-    State<Scalar, Eigen::Dynamic> m, w;  // kg, and 1/kg: the inverses
+    State<Scalar, Eigen::Dynamic> m, w;  // kg; inverses, 1/kg
 };
 
-/// Newton's constant, m³/(kg s²), to the four digits that the study of the droplet uses.
+/// Newton's constant, m³/(kg s²), with the four digits used in the droplet study.
 template <class Scalar>
 Scalar newton_constant() {
     return Scalar(6674) / Scalar(100'000'000'000'000.0);
 }
 
-// Every force is a struct of its members like these:
+// Every force is a struct with these members:
 //
-//     kind                            as presets name it
+//     kind                            its name in presets
 //     accelerate(masses, q, v, a)     a ← a + M⁻¹ F(q, v)
-//     energy(masses, q)               its potential, J; zero where it says
+//     energy(masses, q)               its potential energy, J; each states its zero
 
 /// Uniform gravity, downwards. Energy: zero at y = 0.
 template <class Scalar>
@@ -45,7 +45,7 @@ struct Gravity {
 
 /// A massless spring of stiffness k and rest length l, with damping c along it. Energy: zero at rest length.
 ///     F_a = −(k (|r| − l) + c |r|′) r/|r| ,   r = q_a − q_b ,   |r|′ = r·r′ / |r|
-/// At |r| = 0 it has no direction, and pulls nowhere.
+/// At |r| = 0 the direction is undefined, and the force is taken as zero.
 template <class Scalar>
 struct Spring {
     static constexpr std::string_view kind = "spring";
@@ -69,13 +69,13 @@ struct Spring {
             pull(a, Scalar(-f));
             if (const auto* particle = std::get_if<std::size_t>(&b)) pull(*particle, f);
         };
-        if constexpr (requires { length.tape(); })  // there |r| has no series where it is 0
+        if constexpr (requires { length.tape(); })  // |r| has no Taylor series at 0
             if (!has_direction()) return pull_ends(stiffness);
         const Scalar now = length_of(r);
         if (now == Scalar(0)) return;
         pull_ends((stiffness * (now - length) + damping * Scalar(inner(r, u) / now)) / now);
     }
-    /// Whether it needs one: without rest length and damping it is k r in any.
+    /// Whether the direction matters: without rest length and damping, the force is just k r.
     bool has_direction() const { return length != Scalar(0) || damping != Scalar(0); }
     template <class Vector>
     Scalar energy(const Masses<Scalar>&, const Vector& q) const {
@@ -92,7 +92,7 @@ Scalar inverse_cube(const Place<Scalar>& r) {
     return Scalar(1) / (square * sqrt(square));
 }
 
-/// Two particles that attract each other (Newton). Energy: zero when infinitely far apart.
+/// Two particles that attract each other (Newton). Energy: zero at infinite distance.
 ///     F_a = −G m_a m_b r/|r|³ = −F_b ,   r = q_a − q_b
 template <class Scalar>
 struct Attraction {
@@ -120,7 +120,7 @@ struct Attraction {
     }
 };
 
-/// A body of mass M that stays where it is and attracts every particle. Energy: zero when infinitely far away.
+/// A fixed body of mass M that attracts every particle. Energy: zero at infinite distance.
 ///     F = −G m M r/|r|³ ,   r = q − p
 template <class Scalar>
 struct Droplet {
@@ -150,7 +150,7 @@ struct Droplet {
     }
 };
 
-/// Every kind of force there is. The list stands here and nowhere else.
+/// All kinds of forces. This is the only list.
 template <class Scalar>
 using Force = std::variant<Gravity<Scalar>, Spring<Scalar>, Attraction<Scalar>, Droplet<Scalar>>;
 

@@ -12,41 +12,41 @@
 
 namespace doppel {
 
-/// A constraint that follows from others before it, here or everywhere: J M⁻¹ Jᵀ is singular.
+/// A constraint that depends on earlier ones, in this configuration or in all: J M⁻¹ Jᵀ is singular.
 struct Dependence {
     std::size_t constraint;
     std::vector<std::size_t> others;
 };
 
-/// Exit 3: what the dependence means for a motion that has come to these places, (x1, y1, x2, y2 …) in m, and is off
-/// the constraints by a fraction `off` of the longest rod.
+/// Exit 3: the meaning of the dependence for a motion at these positions, (x1, y1, x2, y2 …) in m, where the constraint
+/// error is `off` times the longest rod.
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,
                              double off);
 
 template <class Scalar>
 class MechanismSeries;
 
-/// Particles, constraints and forces in a vertical plane: any mechanism of them, loops too.
+/// Particles, constraints and forces in a vertical plane: any mechanism of these, including loops.
 ///
 ///     M q″ = F(q, q′) + Jᵀ λ ,   J = ∂C/∂q ,   (J M⁻¹ Jᵀ) λ = −J̇ q′ − J M⁻¹ F
 ///
-/// so that C″ = 0. Nothing corrects what a method has let drift (stabilise = "none").
+/// so that C″ = 0. The drift of a method is not corrected (stabilise = "none").
 ///
 /// State   (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN), m and m/s.
-/// Energy  zero at rest with all particles at y = 0, springs at their rest length, and attracting bodies infinitely far
-///         apart.
-/// Errors  Error (exit 3) where a constraint comes to depend on others, so that the forces are not determined.
+/// Energy  zero at rest with all particles at y = 0, springs at their rest length, and attracting bodies at infinite
+///         distance.
+/// Errors  exit 3 if a constraint becomes dependent on others, so that the forces are not determined.
 /// Source  Witkin 1997, Physically Based Modeling: Constrained Dynamics.
 template <class S>
 struct Mechanism : ConstraintSet<S> {
     using Scalar = S;
     using State = doppel::State<Scalar, Eigen::Dynamic>;
     using Half = State;         // positions, velocities or accelerations
-    using Multipliers = State;  // one a row of J
+    using Multipliers = State;  // one for each row of J
 
     Assembly<Scalar> parts;
 
-    /// Of an assembly that check() has nothing against.
+    /// `assembly` must pass check().
     explicit Mechanism(const Assembly<Scalar>& assembly) : Mechanism(assembly, masses_of(assembly)) {}
 
     static State start(const Assembly<Scalar>& assembly) {
@@ -69,7 +69,7 @@ struct Mechanism : ConstraintSet<S> {
         free_acceleration(q, v, a);
 
         turn_to(q);
-        if constexpr (requires { y[0].tape(); })  // its series checks the path
+        if constexpr (requires { y[0].tape(); })  // the series checks the path
             this->couple(gradients_, gradients_, matrix_);
         else
             factor_and_check_path(q, gradients_);
@@ -94,7 +94,7 @@ struct Mechanism : ConstraintSet<S> {
         matrix_.solve(x);
     }
 
-    // What is reported of a state.
+    // Functions of a state for output.
 
     Scalar energy(const State& y) const {
         Scalar total = kinetic_energy(bobs(y));
@@ -104,20 +104,19 @@ struct Mechanism : ConstraintSet<S> {
         return total;
     }
 
-    /// The constraint that is furthest from being met, m.
+    /// The largest constraint error, m.
     template <class Vector>
     Scalar length_error(const Vector& y) const {
         Scalar worst(0);
         for (const auto& constraint : parts.constraints) {
             const Scalar error = error_of(constraint, y);
-            if (!(error <= worst)) worst = error;  // NaN counts as worst
+            if (!(error <= worst)) worst = error;  // NaN counts as the largest
         }
         return worst;
     }
 
-    /// The rod tensions, N, > 0 where one pulls, in the order of the constraints that are rods: the λ of C″ = 0,
-    /// without what a stabilisation adds. NaN where a constraint depends on others, so that none is
-    /// determined.
+    /// The rod tensions, N, > 0 if a rod pulls, in the order of the constraints that are rods: λ from C″ = 0 without
+    /// stabilisation. NaN if a constraint depends on others, so that no tension is determined.
     std::vector<Scalar> tensions(const State& y) {
         const Half q = y.head(y.size() / 2), v = y.tail(y.size() / 2);
         Half a(q.size());
@@ -143,7 +142,7 @@ struct Mechanism : ConstraintSet<S> {
         return all;
     }
 
-    /// The first constraint that follows from those before it at positions q, if there is one.
+    /// The first constraint that depends on earlier ones at positions q, if there is one.
     std::optional<Dependence> dependence(const Half& q) {
         this->update(q, scratch_);
         this->couple(scratch_, scratch_, matrix_);
@@ -179,7 +178,7 @@ private:
         return masses;
     }
 
-    /// λ from C″ = 0, of the factored matrix and the accelerations a without constraints
+    /// λ from C″ = 0, for the factored matrix and the accelerations a without constraints
     template <class Vector, class Sum>
     void find_multipliers(const Gradients& gradients, const Vector& v, const Sum& a) {
         this->jdot_v(v, v, lambda_);
@@ -188,15 +187,15 @@ private:
         solve_factored(matrix_, lambda_);
     }
 
-    /// J(q), and that of the call before.
+    /// Computes J(q), and keeps the previous one.
     template <class Vector>
     void turn_to(const Vector& q) {
         gradients_.swap(gradients_before_);
         this->update(q, gradients_);
     }
 
-    /// Factors J(q) M⁻¹ J0ᵀ, and near a singular configuration finds out whether one lies between this call and the one
-    /// before: integrated over, it would look like any other step, and end in another motion.
+    /// Factors J(q) M⁻¹ J0ᵀ. Near a singular configuration, also checks whether one lies between the previous call and
+    /// this one. Integrated over, it would look like any other step, but lead to another motion.
     template <class Vector>
     void factor_and_check_path(const Vector& q, const Gradients& zero) {
         factor(q, zero);
@@ -206,10 +205,10 @@ private:
         factor(q, zero);
     }
 
-    /// Factors J(q) M⁻¹ J0ᵀ, unless a constraint depends on others at q or between the two.
+    /// Factors J(q) M⁻¹ J0ᵀ, unless a constraint depends on others at q or between the two positions.
     ///
-    /// det(J1 M⁻¹ J0ᵀ) is the scalar product of two volumes, each spanned by gradients. A negative pivot says that one
-    /// of them turned over. If gradients have hardly turned otherwise, it did so by passing through zero.
+    /// det(J1 M⁻¹ J0ᵀ) is the scalar product of two volumes, each spanned by gradients. A negative pivot shows that one
+    /// of them changed its sign. If the gradients have otherwise hardly rotated, it passed through zero.
     template <class Vector>
     void factor(const Vector& q, const Gradients& zero) {
         this->couple(gradients_, zero, matrix_);
@@ -238,7 +237,7 @@ private:
                                      off);
     }
 
-    /// Row j counts where its share in row i is more than rounding could make it.
+    /// Row j counts if its share in row i exceeds rounding.
     Dependence dependence_of(Eigen::Index row) const {
         using std::abs;
         Dependence found{this->owner(row), {}};
@@ -258,8 +257,8 @@ private:
     Masses<Scalar> masses_;
     EnvelopeMatrix<Scalar> matrix_;
     Multipliers lambda_;
-    Gradients gradients_, gradients_before_;  // where a system was solved last, and before that
-    bool is_near_ = false;                    // a singular configuration
+    Gradients gradients_, gradients_before_;  // at the last and the previous solution
+    bool is_near_ = false;                    // near a singular configuration
 };
 
 }  // namespace doppel

@@ -12,7 +12,7 @@
 
 namespace doppel {
 
-/// A point mass and how it is released.
+/// A point mass and its initial state.
 template <class Scalar>
 struct Particle {
     Scalar mass;                                                   // kg, > 0
@@ -22,7 +22,7 @@ struct Particle {
     auto members() const { return std::tie(mass, place, velocity); }
 };
 
-/// What a mechanism is made of and how it is released. Constraints and forces name particles by their index, from 0;
+/// The parts of a mechanism and their initial states. Constraints and forces refer to particles by index from 0;
 /// messages count from 1.
 template <class Scalar>
 struct Assembly {
@@ -37,7 +37,7 @@ struct Assembly {
         return Cast<To>()(*this);
     }
 
-    /// Whether the true motion keeps its energy: no spring is damped.
+    /// Whether energy is conserved: no spring is damped.
     bool conserves_energy() const {
         for (const auto& force : forces)
             if (const auto* spring = std::get_if<Spring<Scalar>>(&force); spring && spring->damping != Scalar(0))
@@ -46,7 +46,7 @@ struct Assembly {
     }
 };
 
-/// A chain as its parts: bobs, rods and gravity, where there is any.
+/// A chain as parts: bobs, rods and, if it is not zero, gravity.
 template <class Scalar>
 Assembly<Scalar> parts_of(const Pendulum<Scalar>& chain) {
     Assembly<Scalar> parts;
@@ -61,7 +61,7 @@ Assembly<Scalar> parts_of(const Pendulum<Scalar>& chain) {
     return parts;
 }
 
-/// "rod 2–4", "rod 2–fixed", "anchor of particle 1", "gravity": a part as messages call it.
+/// The name of a part in messages: "rod 2–4", "rod 2–fixed", "anchor of particle 1", "gravity".
 template <class Part>
 std::string words_for(const Part& part) {
     if constexpr (requires { part.particle; }) {
@@ -82,8 +82,7 @@ std::string name_of(std::size_t index, const Constraint<Scalar>& constraint) {
     return fmt::format("constraint {} ({})", index + 1, words);
 }
 
-/// "force 2 (spring 1–fixed)": the second of those that a preset lists, for gravity, which is there by itself, is not
-/// counted.
+/// "force 2 (spring 1–fixed)": the second of the forces in the preset; gravity is not in that list and not counted.
 template <class Scalar>
 std::string name_of(const std::vector<Force<Scalar>>& forces, std::size_t index) {
     const auto is_listed = [](const auto& force) { return !std::holds_alternative<Gravity<Scalar>>(force); };
@@ -92,16 +91,15 @@ std::string name_of(const std::vector<Force<Scalar>>& forces, std::size_t index)
     return fmt::format("force {} ({})", before + 1, words);
 }
 
-/// What lengths of a mechanism are measured by, m: the distance from end to end of its particles at the start, or its
-/// longest rod, radius or spring, or the way from a particle to the point of its slot, whichever is most. Where all
-/// that is 0, the way to the nearest droplet; where there is none, 1.
+/// The unit of lengths of a mechanism, m: the largest of the extent of its particles at the start, its longest rod,
+/// radius or spring, and the distances from particles to the points of their slots. If these are all 0, the distance of
+/// the nearest droplet, or 1 without droplets.
 double size_of(const Assembly<double>& assembly);
 
-/// Whether an assembly can be built, and released as it says. Throws Error (exit 2) that names the part, the value and
-/// what would be right:
-/// a mass not > 0; a particle that does not exist, or is joined with itself; a rod or circle of length zero, a slot
-/// without direction; a spring not stiff; a start that violates a constraint, in place or in velocity, by more than
-/// 1e-9 of the mechanism's size or speed; a constraint that follows from those before it.
+/// Checks that an assembly can be built and released. Throws Error (exit 2) with the part, the value and what would be
+/// right: a mass not > 0; a particle that does not exist, or is connected to itself; a rod or circle of length zero, a
+/// slot without direction; a spring of zero stiffness; initial positions or velocities that violate a constraint by
+/// more than 1e-9 of the size or speed; a constraint that depends on earlier ones.
 void check(const Assembly<double>& assembly);
 
 }  // namespace doppel

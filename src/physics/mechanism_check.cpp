@@ -9,7 +9,7 @@ namespace {
 
 using Places = State<double, Eigen::Dynamic>;  // (x1, y1, x2, y2 …), m
 
-constexpr double tolerance = 1e-9;  // of the size, or of the greatest speed
+constexpr double tolerance = 1e-9;  // relative to the size, or to the largest speed
 
 std::string text(const Place<double>& place) {
     return fmt::format("({}, {})", place[0], place[1]);
@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::size_t>& indices) {
     return (indices.size() == 1 ? "constraint " : "constraints ") + all;
 }
 
-/// Throws unless the numbers of the part of that name are right, and every particle that it names is there.
+/// Throws unless the numbers of the named part are valid, and every particle that it refers to exists.
 class PartCheck {
 public:
     PartCheck(std::string name, const std::vector<Particle<double>>& particles)
@@ -116,7 +116,7 @@ private:
     const std::vector<Particle<double>>& particles_;
 };
 
-/// What is wrong with where a constraint's particles start, `error` m away, and what would satisfy it.
+/// How the initial positions violate a constraint, by `error` m, and what would satisfy it.
 std::string remedy(const Constraint<double>& constraint, const Places& q, double error) {
     const auto row = rows_of(constraint)[0];
     const auto place = part_of(q, row.a);
@@ -146,8 +146,8 @@ void check_places(const Assembly<double>& assembly, const Places& q) {
     }
 }
 
-/// An error names the velocity of the last particle that a row ties, without the part of it that the row forbids: with it and
-/// the others as they are, the row holds.
+/// An error suggests a velocity for the last particle of a row, without the component that violates the row. With it,
+/// and the other velocities unchanged, the row is satisfied.
 void check_velocities(const Assembly<double>& assembly, const Places& q) {
     const auto& particles = assembly.particles;
     double speed = 0;
@@ -187,7 +187,7 @@ double size_of(const Assembly<double>& assembly) {
         if (const auto* slot = std::get_if<SlotLine<double>>(&constraint))
             size = std::max(size, (place(slot->particle) - slot->point).norm());
     }
-    double nearest = std::numeric_limits<double>::infinity();  // of droplets
+    double nearest = std::numeric_limits<double>::infinity();  // distance of droplets
     for (const auto& force : assembly.forces) {
         if (const auto* spring = std::get_if<Spring<double>>(&force)) {
             const auto* other = std::get_if<std::size_t>(&spring->b);
@@ -224,10 +224,11 @@ Error singular_configuration(const std::string& name, const Dependence& dependen
     std::string where;
     for (std::size_t i = 0; i + 1 < places.size(); i += 2)
         where += fmt::format("{}({:.6g}, {:.6g})", i == 0 ? "" : ", ", places[i], places[i + 1]);
-    constexpr double farthest = 1e100;  // m; the squares of more soon leave the range of a double
+    constexpr double farthest = 1e100;  // m; squares of larger numbers could overflow
     if (!std::all_of(places.begin(), places.end(), [](double x) { return std::abs(x) < farthest; }))
         return method_failed("the particles are at {} m: the motion diverged; use a smaller step", where);
-    constexpr double torn = 0.1;  // of the longest rod; what drifts is far from it where forces are still determined
+    constexpr double torn =
+        0.1;  // relative to the longest rod; drift is this large only where forces are not determined any more
     if (!(off < torn))
         return method_failed(
             "the particles are at {} m, where a constraint has an error of {:.2g} times the longest rod: the motion "

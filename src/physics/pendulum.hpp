@@ -7,8 +7,8 @@
 
 namespace doppel {
 
-/// What a chain of point masses on massless rigid rods is made of and how it is released; the same for every model.
-/// Link i hangs below link i − 1.
+/// A chain of point masses on massless rigid rods, and its release; the same for every model. Link i hangs from link i
+/// − 1.
 ///
 ///     pivot o──l1──● m1        angles θ from the downward vertical, counter-clockwise, rad
 ///                   ╲l2        rates  ω = dθ/dt, rad/s
@@ -30,9 +30,9 @@ struct Pendulum {
         return Cast<To>()(*this);
     }
 
-    /// Between hanging straight down and standing straight up, J: the scale of its energies.
+    /// Energy difference between hanging straight down and standing straight up, J: the scale of its energies.
     Scalar potential_range() const { return potential_range(length); }
-    /// The same of bodies, whose centres of mass are so far from their joints, m.
+    /// The same for rigid bodies with centres of mass at these distances from their joints, m.
     Scalar potential_range(const std::vector<Scalar>& center) const {
         Scalar range(0), reach(0);
         for (std::size_t i = 0; i < links(); ++i) {
@@ -50,7 +50,7 @@ struct Pendulum {
     }
 };
 
-/// (θ1 … θN, ω1 … ωN) as released.
+/// (θ1 … θN, ω1 … ωN) at the release.
 template <class Scalar, int N>
 State<Scalar, times<2, N>> released_in_angles(const Pendulum<Scalar>& p) {
     const auto n = static_cast<Eigen::Index>(p.links());

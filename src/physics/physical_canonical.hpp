@@ -8,14 +8,14 @@
 
 namespace doppel {
 
-/// Of rigid bodies, with the joint of link i at j_i, P_i the momentum of link i and all below, and
+/// The Hamiltonian form of rigid bodies, with the joint of link i at j_i, P_i the momentum of link i and all below, and
 /// S_i = m_i a_i + l_i Σ_{k>i} m_k:
 ///     p_i  = (I_i + m_i a_i²) ω_i + t_i·(m_i a_i j_i′ + l_i P_{i+1}) = Σ_k M_ik ω_k + S_i t_i·j_1′
 ///     p_i′ = −ω_i n_i·(m_i a_i j_i′ + l_i P_{i+1}) − g S_i sinθ_i + Q_i
-/// Q_i are the torque on the link and l_i t_i·(Σ_{k≥i} drag_k). j_1′ is the velocity of the pivot, given by the time; time and
-/// work are as in (θ, ω). The flow is symplectic in (θ, p) where there is no friction; with friction a method is what it is
-/// for any equation.
-/// Errors  exit 2 with Coulomb friction, whose joints rest at the end of steps.
+/// Q_i is the torque on the link plus l_i t_i·(Σ_{k≥i} drag_k). j_1′ is the velocity of the pivot, a function of time.
+/// Time and work are as in (θ, ω). Without friction the flow is symplectic in (θ, p); with friction methods are of
+/// their order.
+/// Errors  exit 2 with Coulomb friction, whose joints come to rest at the end of steps.
 template <class S>
 struct Canonical<PhysicalChain<S>> {
     using Scalar = S;
@@ -28,7 +28,7 @@ struct Canonical<PhysicalChain<S>> {
     Model& model;
     Half first;                       // S, kg m
     Half p, omega;                    // N m s, rad/s
-    std::vector<Vector> joint, push;  // m/s: of each link's joint; N s: m a j′ + l P_{i+1}
+    std::vector<Vector> joint, push;  // m/s: velocity of each link's joint; N s: m a j′ + l P_{i+1}
 
     explicit Canonical(Model& chain)
         : model(chain),
@@ -102,7 +102,7 @@ private:
         model.solve_mass(p, omega);
     }
 
-    /// joint and push at ω.
+    /// Computes joint and push from ω.
     void take_momenta(const Vector& pivot_velocity) {
         Vector v = pivot_velocity;
         for (std::size_t i = 0; i < joint.size(); ++i) {

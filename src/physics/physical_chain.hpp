@@ -12,10 +12,11 @@
 
 namespace doppel {
 
-/// A chain of rigid bodies in angles, with friction, motors and a pivot that moves: M θ″ = f in O(N) (ArticulatedBodies).
+/// A chain of rigid bodies in angles, with friction, drive torques and a moving pivot: M θ″ = f in O(N)
+/// (ArticulatedBodies).
 ///
-/// A joint with Coulomb friction comes to rest where its rate is 0, and is held while a torque of at most c holds it: then
-/// it keeps its angle exactly. Between such events the right-hand side is smooth.
+/// A joint with Coulomb friction that comes to rest is held as long as a torque of at most c can hold it; its angle is
+/// then exactly constant. Between such events the right-hand side is smooth.
 ///
 /// State   (q, v) of PhysicalLayout, q = (θ1 … θN …). Angles are not wrapped.
 template <class S>
@@ -51,8 +52,8 @@ public:
         return y;
     }
 
-    /// dydt ← d/dt of the state, with joints that stick and slide as take_modes() and settle() left them, without those as
-    /// they do at y.
+    /// dydt ← d/dt of the state. The modes of the joints (held, or sliding in one direction) are those set by
+    /// take_modes() and settle(), or if none were set, those at y.
     void rate(const State& y, State& dydt) {
         const auto n = layout.coordinates;
         const auto omega = y.segment(layout.half, n);
@@ -65,7 +66,7 @@ public:
         layout.rate(y, Scalar(forces_.power + by_pivot), dydt);
     }
 
-    // Events (integrate/events.hpp): a sliding joint comes to rest; a held one is let go.
+    // Events (integrate/events.hpp): a sliding joint stops, or a held one starts to slide.
     bool switches() const { return !pendulum.friction.coulomb.empty(); }
     void take_modes(State& y) {
         has_modes_ = false;
@@ -86,13 +87,13 @@ public:
         for (const auto i : joints) least = std::min(least, Scalar(Scalar(1) - load(i)));
         return least;
     }
-    /// Half a period of the fastest drive: joints that rest do not shorten steps.
+    /// Half a period of the fastest drive, because joints at rest do not limit steps.
     Scalar longest_step() const {
         Scalar fastest = pendulum.pivot.moves() ? pendulum.pivot.frequency : Scalar(0);
         for (const auto& motor : pendulum.torques) fastest = std::max(fastest, motor.frequency);
         return fastest > Scalar(0) ? Scalar(pi_of<Scalar>() / fastest) : Scalar(std::numeric_limits<double>::max());
     }
-    /// For the same law on a tape.
+    /// Copies the modes, for a model on a tape.
     template <class Other>
     void keep_modes_of(const PhysicalChain<Other>& other) {
         slides_ = other.modes();
@@ -100,7 +101,7 @@ public:
     }
     const std::vector<int>& modes() const { return slides_; }
 
-    /// For Hamilton's form (Canonical), at the angles of y = (q, …).
+    /// For the Hamiltonian form (Canonical), at the angles of y = (q, …).
     void take_angles(const State& y) {
         turned_[0] = y[0];
         for (Eigen::Index i = 1; i < turned_.size(); ++i) turned_[i] = y[i] - y[i - 1];
@@ -114,7 +115,7 @@ public:
         take_forces(t, pivot_velocity);
         return forces_;
     }
-    /// With which the pivot holds the chain, N, at those rates and forces.
+    /// The force of the pivot on the chain, N, at these rates and forces.
     Planar<Scalar> pivot_force(const Planar<Scalar>& acceleration) {
         return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, acceleration, alpha_) -
                forces_.at_pivot;
@@ -139,14 +140,14 @@ private:
             if (is_held(i)) joints.push_back(i);
         return joints;
     }
-    /// What a held joint bears of what friction gives; rounding alone lets none go.
+    /// The friction torque of a held joint relative to its limit; within rounding it is not exceeded.
     Scalar load(Eigen::Index i) const {
         using std::abs;
         const Scalar most =
             pendulum.friction.coulomb[at(i)] * (Scalar(1) + Scalar(64) * std::numeric_limits<Scalar>::epsilon());
         return abs(holding_[i]) / most;
     }
-    /// The held joint that bears too much, by most.
+    /// The held joint that exceeds its limit the most.
     std::optional<Eigen::Index> overloaded() const {
         std::optional<Eigen::Index> worst;
         Scalar most(1);
@@ -155,7 +156,7 @@ private:
         return worst;
     }
 
-    /// Joints that have come to rest are held where friction can hold them; others begin to turn.
+    /// Holds joints at rest if friction can hold them; the others start to slide.
     void choose_modes(const State& y) {
         const auto n = layout.coordinates;
         const auto omega = y.segment(layout.half, n);
@@ -175,7 +176,7 @@ private:
             let_go.push_back(*joint);
             accelerate(y, resting);
         }
-        // one that was let go may well be held now that others slide
+        // a released joint may be held again now that others slide
         for (const auto joint : let_go) {
             const int sign = std::exchange(slides_[at(joint)], 0);
             accelerate(y, resting);
@@ -184,15 +185,15 @@ private:
         rates_ = resting;
     }
 
-    /// rates ← omega, but those of held joints, which turn with the link above.
+    /// rates ← omega, except that held joints rotate with the link above.
     template <class Rates>
     void rest(const Rates& omega, Half& rates) const {
         for (Eigen::Index i = 0; i < rates.size(); ++i)
             rates[i] = !is_held(i) ? Scalar(omega[i]) : i == 0 ? Scalar(0) : Scalar(rates[i - 1]);
     }
 
-    /// rates_ ← omega, where held joints rest, alpha_ at them, and holding_, the torques that hold these. Returns the power of
-    /// the pivot, W.
+    /// Computes rates_ (omega with held joints at rest), alpha_ and holding_, the torques of held joints. Returns the
+    /// power of the pivot, W.
     template <class Rates>
     Scalar accelerate(const State& y, const Rates& omega) {
         take_angles(y);
@@ -220,14 +221,14 @@ private:
             const Scalar own = link.length * rates_[i];
             forces_.update_air(i, link, v, rates_[i]);
             v = v + link.across * own;
-            // on a circle the speed vanishes again and again, and its root says so no more: |ω| does
+            // on a circle the speed can vanish repeatedly, where its root has no series, but |ω| has
             const bool on_circle = i == 0 && !pendulum.pivot.moves();
             forces_.update_drag(i, v, on_circle ? Scalar(abs(own)) : forces_.speed_of(v));
         }
     }
 
-    /// The torques λ that keep the held joints at rest: (D M⁻¹ Dᵀ) λ = −D θ″, where D takes the rates of links to those of
-    /// joints.
+    /// The torques λ that keep the held joints at rest: (D M⁻¹ Dᵀ) λ = −D θ″, where D converts the rates of links to
+    /// those of joints.
     void add_holding_torques(const std::vector<Eigen::Index>& joints) {
         const auto m = static_cast<Eigen::Index>(joints.size());
         Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> matrix(m, m);
@@ -252,11 +253,12 @@ private:
 
     PhysicalForces<Scalar> forces_;
     ArticulatedBodies<Scalar> bodies_;
-    Half turned_, sin_, cos_;  // of θ_1 and of each angle between neighbours
+    Half turned_, sin_, cos_;  // of θ_1 and the differences of neighbouring angles
     Half rates_, alpha_;
-    Half holding_;             // of held joints, N m
-    std::vector<int> slides_;  // the sign of a joint's rate in Coulomb's law until the next event; 0 where it is held
-    bool has_modes_ = false;   // slides_ are those of a motion
+    Half holding_;  // of held joints, N m
+    std::vector<int>
+        slides_;  // the sign of the rate of each joint in Coulomb's law until the next event; 0 if it is held
+    bool has_modes_ = false;  // slides_ has been set for a motion
 };
 
 }  // namespace doppel

@@ -7,12 +7,11 @@
 
 namespace doppel {
 
-/// How the state (q, v) of a physical pendulum is laid out: the coordinates of its links; then, of a driven one, the time t,
-/// whose rate is 1; then, where energy is not kept, a number whose rate is the work W done on it so far, J, by friction
-/// and drive, so that the energy less W is constant; what does not ask for it leaves it out. Every method steps them like
-/// coordinates.
+/// The layout of the state (q, v) of a rigid-body chain. q contains the coordinates of its links; with a drive, the
+/// time t, whose rate is 1; if energy is not conserved, a number whose rate is the work W by friction and drive, J, so
+/// that energy − W is constant. Users that do not need W leave it out. Methods treat these like coordinates.
 struct PhysicalLayout {
-    Eigen::Index coordinates, time = -1, work = -1, half;  // `half`: of q; −1 where there is none
+    Eigen::Index coordinates, time = -1, work = -1, half;  // `half`: size of q; −1 if not present
 
     template <class Scalar>
     PhysicalLayout(const PhysicalPendulum<Scalar>& p, Eigen::Index of_links, bool with_work = true)
@@ -21,7 +20,7 @@ struct PhysicalLayout {
         if (with_work && !p.conserves_energy()) work = half++;
     }
 
-    /// Of y = (q, v): the time, s, and the work, J.
+    /// From y = (q, v): the time, s, and the work, J.
     template <class State>
     auto time_of(const State& y) const {
         return time < 0 ? typename State::Scalar(0) : y[time];
@@ -51,7 +50,7 @@ struct PhysicalLayout {
     }
 };
 
-/// Where the pivot is at time t, how fast it is, and how fast that changes: m, m/s, m/s².
+/// Position, velocity and acceleration of the pivot at time t: m, m/s, m/s².
 template <class Scalar>
 struct PivotPlace {
     Planar<Scalar> place{Scalar(0), Scalar(0)}, velocity = place, acceleration = place;
@@ -68,7 +67,7 @@ struct PivotPlace {
     }
 };
 
-/// The torques on the links, N m, and forces on their ends, N, by friction and motors, and their power, W.
+/// The torques on links, N m, and forces on their ends, N, by friction and drive torques, and their power, W.
 template <class S>
 class PhysicalForces {
 public:
@@ -76,8 +75,8 @@ public:
     using Half = State<Scalar, Eigen::Dynamic>;
 
     Half torque;                                    // on each link
-    std::vector<Planar<Scalar>> drag;               // on each link's end; empty where there is none
-    Planar<Scalar> at_pivot{Scalar(0), Scalar(0)};  // on the first link at its joint
+    std::vector<Planar<Scalar>> drag;               // on the end of each link; empty if there is none
+    Planar<Scalar> at_pivot{Scalar(0), Scalar(0)};  // on the first joint
     Scalar power{0};
 
     explicit PhysicalForces(const PhysicalPendulum<Scalar>& p)
@@ -88,7 +87,8 @@ public:
         if (friction_.has_drag()) drag.resize(p.chain.links());
     }
 
-    /// At the rates ω of the links and the time t. slides[i] is the sign of joint i in Coulomb's law; 0 where it is held.
+    /// Updates them for the rates ω of the links and the time t. slides[i] is the sign of joint i in Coulomb's law; 0
+    /// if it is held.
     template <class Rates>
     void update(const Rates& omega, const Scalar& t, const std::vector<int>& slides) {
         if (is_none_) return;
@@ -117,7 +117,7 @@ public:
                 on_arm(Scalar(-(of(friction_.arm_quadratic, i) * (size(omega[i]) * omega[i]))));
         }
     }
-    /// On the end of link i, at its velocity and speed.
+    /// Adds the drag at the end of link i, for its velocity and speed.
     void update_drag(Eigen::Index i, const Planar<Scalar>& v, const Scalar& speed) {
         Planar<Scalar> force{Scalar(0), Scalar(0)};
         if (!friction_.drag_linear.empty()) force = force - v * of(friction_.drag_linear, i);
@@ -126,7 +126,7 @@ public:
         auto& sum = drag[static_cast<std::size_t>(i)];
         sum = sum + force;
     }
-    /// Of the air that link i (of ArticulatedBodies) meets, whose joint has that velocity.
+    /// Adds the air drag of link i (of ArticulatedBodies), for the velocity of its joint.
     template <class Link>
     void update_air(Eigen::Index i, const Link& link, const Planar<Scalar>& joint, const Scalar& rate) {
         if (friction_.air_quadratic.empty()) return;
@@ -139,7 +139,7 @@ public:
         sum = sum + link.across * Scalar(on_it * by_arm);
     }
 
-    /// |v|, whose derivatives at 0 are 0.
+    /// |v| with derivatives 0 at 0.
     static Scalar speed_of(const Planar<Scalar>& v) {
         using std::sqrt;
         if constexpr (requires { norm(v.x, v.y); }) {
@@ -161,7 +161,7 @@ private:
 
     Friction<Scalar> friction_;
     std::vector<JointTorque<Scalar>> motors_;
-    bool is_none_;  // neither friction nor motors
+    bool is_none_;  // neither friction nor drive torques
 };
 
 }  // namespace doppel

@@ -4,17 +4,18 @@
 
 namespace doppel {
 
-/// What slows a chain down. A joint is where a link hangs: joint 1 at the pivot, joint i at the end of link i − 1; its rate
-/// is that of its link less that of the link above. Each list has one number a link, ≥ 0, or is empty: none.
+/// The friction of a chain. Joint 1 is the pivot, joint i is at the end of link i − 1. The rate of a joint is that of
+/// its link minus that of the previous link. Each list has one number ≥ 0 per link, or is empty: no friction.
 ///
-///     at a joint       −b ω − c sign ω                  torque on its link, the opposite on the link above
-///     on a link        −k1 ω − k2 |ω| ω                 torque, by the link's own rate
-///     by the air       −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p and, m a / J times it along t, force
-///     on a link's end  −d1 v − d2 |v| v                 force, by its velocity
+///     at a joint       −b ω − c sign ω                  torque on its link, and the opposite on the previous link
+///     on a link        −k1 ω − k2 |ω| ω                 torque, with the link's own rate
+///     by the air       −k3 |u| u , u = ω + t·p′ m a / J  torque about the joint p, and a force m a / J times it along
+///     t
+///     on a link's end  −d1 v − d2 |v| v                 force, with its velocity
 ///
-/// The third one acts at the centre of oscillation of a link, J / (m a) from the joint, by its normal velocity u J / (m a).
-/// t is across the link, J its inertia about the joint. The second term at a joint is Coulomb friction: it holds a joint at
-/// rest as long as a torque of at most c does.
+/// The third one acts at the centre of oscillation of a link, J / (m a) from the joint, with its normal velocity u J /
+/// (m a). t is across the link, J its moment of inertia about the joint. The term c is Coulomb friction: it holds a
+/// joint at rest as long as a torque of at most c is enough.
 template <class Scalar>
 struct Friction {
     std::vector<Scalar> viscous;         // b, N m s
@@ -29,12 +30,12 @@ struct Friction {
         return std::tie(viscous, coulomb, arm_linear, arm_quadratic, air_quadratic, drag_linear, drag_quadratic);
     }
 
-    /// Whether forces act on the links' ends.
+    /// Whether there are forces on the links' ends.
     bool has_drag() const { return !drag_linear.empty() || !drag_quadratic.empty() || !air_quadratic.empty(); }
     bool is_none() const { return *this == Friction(); }
 };
 
-/// A pivot that moves: its place is a cos(ν t + φ) along one direction, from the origin.
+/// An oscillating pivot: its position is a cos(ν t + φ) along one direction, from the origin.
 template <class Scalar>
 struct PivotMotion {
     Scalar x = Scalar(0), y = Scalar(0);  // of the amplitude, m
@@ -46,7 +47,7 @@ struct PivotMotion {
     bool moves() const { return x != Scalar(0) || y != Scalar(0); }
 };
 
-/// A motor at a joint: the torque q cos(ν t + φ) on its link, the opposite on the link above.
+/// A driving torque at a joint: q cos(ν t + φ) on its link, and the opposite on the previous link.
 template <class Scalar>
 struct JointTorque {
     std::size_t joint = 0;         // from 0
@@ -57,8 +58,8 @@ struct JointTorque {
     auto members() const { return std::tie(joint, amplitude, frequency, phase); }
 };
 
-/// A chain of rigid bodies (a physical pendulum), with friction and a drive. `chain.mass` is that of the bodies.
-/// Its ideal form, all centres at the ends and no inertia, is the chain itself.
+/// A chain of rigid bodies (a physical pendulum) with friction and drive. `chain.mass` contains the masses of the
+/// bodies. With all centres at the ends and no inertia it equals the ideal chain.
 template <class Scalar>
 struct PhysicalPendulum {
     Pendulum<Scalar> chain;
@@ -71,7 +72,7 @@ struct PhysicalPendulum {
     bool is_driven() const { return pivot.moves() || !torques.empty(); }
     bool conserves_energy() const { return friction.is_none() && !is_driven(); }
 
-    /// Between hanging straight down and standing straight up, J.
+    /// Energy difference between hanging straight down and standing straight up, J.
     Scalar potential_range() const { return chain.potential_range(center); }
 
     auto members() const { return std::tie(chain, center, inertia, friction, pivot, torques); }
@@ -82,7 +83,7 @@ struct PhysicalPendulum {
     }
 };
 
-/// A chain of point masses on massless rods, as one.
+/// A chain of point masses on massless rods as a rigid-body chain.
 template <class Scalar>
 PhysicalPendulum<Scalar> physical(const Pendulum<Scalar>& chain) {
     return {chain, chain.length, std::vector<Scalar>(chain.links(), Scalar(0)), {}, {}, {}};

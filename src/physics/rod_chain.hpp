@@ -11,12 +11,12 @@
 
 namespace doppel {
 
-/// N free particles that constraints hold on the rods of a chain (force-based dynamics).
+/// N particles held by constraints on the rods of a chain (force-based dynamics).
 ///
 ///     C_k = ½ (|r_k|² − l_k²) = 0,   r_k = q_k − q_{k−1},   q_0 = the pivot
 ///
 /// The multipliers λ of the constraint forces Jᵀλ follow from C″ = 0, as (J M⁻¹ Jᵀ) λ = −J̇ q̇ − J M⁻¹ F: for a chain a
-/// tridiagonal system, O(N). Nothing pulls the rods back once a method has let them stretch (stabilise = "none").
+/// tridiagonal system, O(N). The drift of a method from the rod lengths is not corrected (stabilise = "none").
 ///
 /// State   (x1, y1 … xN, yN, vx1, vy1 … vxN, vyN), m and m/s.
 /// Source  Witkin 1997, Physically Based Modeling: Constrained Dynamics.
@@ -25,7 +25,7 @@ struct RodChain {
     using Scalar = S;
     using State = doppel::State<Scalar, is_lanes<Scalar> ? times<4, N> : Eigen::Dynamic>;
     using Half = doppel::State<Scalar, times<2, N>>;  // positions, velocities or accelerations
-    using Multipliers = doppel::State<Scalar, N>;     // one a rod
+    using Multipliers = doppel::State<Scalar, N>;     // one for each rod
 
     Pendulum<Scalar> pendulum;
     Multipliers w;   // 1/kg, inverse masses: the diagonal of M⁻¹
@@ -61,7 +61,7 @@ struct RodChain {
     /// dydt ← d/dt of the state. With u_k = r_k′ the system for λ has the rows
     ///     −r_{k−1}·r_k λ_{k−1} / m_{k−1} + r_k·r_k (1/m_{k−1} + 1/m_k) λ_k − r_k·r_{k+1} λ_{k+1} / m_k
     ///         = −u_k·u_k + [k = 1] g r_1y
-    /// (all masses fall alike, so gravity drops out of all rows but the first).
+    /// (all masses have the same free-fall acceleration, so gravity cancels in all rows but the first).
     void rate(const State& y, State& dydt) {
         if constexpr (N == 2 || N == 3)
             rate_of_few(y, dydt);
@@ -69,7 +69,7 @@ struct RodChain {
             rate_of_any(y, dydt);
     }
 
-    /// The rod tensions, N, > 0 where one pulls: on particle k acts λ_k r_k, so T_k = −λ_k |r_k|.
+    /// The rod tensions, N, > 0 if a rod pulls: λ_k r_k acts on particle k, so T_k = −λ_k |r_k|.
     std::vector<Scalar> tensions(const State& y) {
         using std::sqrt;
         find_multipliers(y.head(2 * w.size()), y.tail(2 * w.size()));
@@ -78,7 +78,7 @@ struct RodChain {
         return all;
     }
 
-    // Of the concept Constrained, which says what they do.
+    // Of the concept Constrained.
 
     Eigen::Index constraints() const { return w.size(); }
     void free_acceleration(const Half&, const Half&, Half& a) const {
@@ -119,7 +119,7 @@ struct RodChain {
 private:
     static Eigen::Index rows(const Pendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.links()); }
 
-    /// Component `axis` of what particle k has more than the one above it.
+    /// Component `axis` of particle k minus that of the previous one.
     template <class Vector>
     static Scalar along(const Vector& q, Eigen::Index k, Eigen::Index axis) {
         return k == 0 ? Scalar(q[axis]) : Scalar(q[2 * k + axis] - q[2 * k - 2 + axis]);
@@ -130,7 +130,7 @@ private:
         return x * x + y * y;
     }
 
-    /// r_k × r_{k+1}, to all digits also where the rods are nearly aligned.
+    /// r_k × r_{k+1}, to full precision even if the rods are nearly aligned.
     template <class Vector>
     static Scalar cross(const Vector& q, Eigen::Index k) {
         const auto rod = [&](Eigen::Index of, Eigen::Index axis) {
@@ -151,7 +151,7 @@ private:
         find_multipliers(q, v);
         dydt.head(2 * n) = v;
         auto a = dydt.tail(2 * n);
-        // r_k″ = α_k turned r_k − (|u_k|² / |r_k|²) r_k: along a rod the forces on a light mass would all but cancel
+        // r_k″ = α_k (rotated r_k) − (|u_k|² / |r_k|²) r_k: along a rod, the forces on a light mass would almost cancel
         Scalar x(0), y_up(0);
         for (Eigen::Index k = 0; k < n; ++k) {
             Scalar across = k == 0 ? Scalar(-(g * q[0])) : Scalar(crosses_[k - 1] * lambda_[k - 1]);
@@ -196,7 +196,7 @@ private:
         if (!all_of(moves)) [[unlikely]]
             take_carefully(moves, y, dydt);
     }
-    /// In equilibrium these sums leave exactly nothing, and they keep the digits of a light mass.
+    /// In equilibrium these sums are exactly zero; they also keep the digits of a light mass.
     template <class Mask>
     [[gnu::noinline]] void take_carefully(const Mask& moves, const State& y, State& dydt) {
         State careful = dydt;
@@ -234,16 +234,17 @@ private:
     }
 
     ChainMatrix<Scalar, N> matrix_;
-    Multipliers lambda_;                        // N/m
-    Multipliers squares_, crosses_, products_;  // |r_k|², w_k r_k × r_{k+1}, its square (of RATTLE's two places)
-    // of two or three rods
+    Multipliers lambda_;  // N/m
+    Multipliers squares_, crosses_,
+        products_;  // |r_k|², w_k r_k × r_{k+1}, its square (for RATTLE, from two positions)
+    // for two or three rods
     RodMultipliers<Scalar> pulls_;
     Scalar by_rho2_{1};
-    Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ serves; infinite with a mass below 1/8 of the next
+    Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ is used; infinite if a mass is below 1/8 of the next
 };
 
-/// The rod tensions of a chain whose bobs are there, N, from the pivot down: > 0 where a rod pulls, < 0 where it
-/// pushes. Whatever model the bobs are from, for they follow from places and velocities alone.
+/// The rod tensions of a chain from the state of its bobs, N, from the pivot down: > 0 if a rod pulls, < 0 if it
+/// pushes. It works for every model, because tensions follow from positions and velocities.
 template <class Scalar>
 std::vector<Scalar> tensions(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
     return RodChain<Scalar, Eigen::Dynamic>(p).tensions(particles_of(bobs));

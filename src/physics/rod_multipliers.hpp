@@ -2,7 +2,7 @@
 
 namespace doppel {
 
-/// A vector of the plane.
+/// A plane vector.
 template <class Scalar>
 struct Planar {
     Scalar x, y;
@@ -13,13 +13,13 @@ struct Planar {
     [[gnu::always_inline]] friend Planar operator-(const Planar& a, const Planar& b) { return {a.x - b.x, a.y - b.y}; }
 };
 
-/// How much the rods of two or three particles pull, with one division. Of the rods r_k = q_k − q_{k−1} and u_k = r_k′,
-/// with α_k = |r_k|², β_k = r_k·r_{k+1} and ρ_k = m_1/m_k, the unknowns x_k = λ_k ρ_{k−1} / m_1 (ρ_0 = 1) solve a
+/// The forces of two or three rods on the particles, with one division. With r_k = q_k − q_{k−1}, u_k = r_k′,
+/// α_k = |r_k|², β_k = r_k·r_{k+1} and ρ_k = m_1/m_k, the unknowns x_k = λ_k ρ_{k−1} / m_1 (ρ_0 = 1) solve a
 /// system with 1 before each β, the rows of that for λ (physics/rod_chain.hpp) divided by ρ_{k−1}:
 ///     | α1      −β1            |                     κ_2 = 1 + ρ_2
 ///     | −β1   κ_2 α2    −β2    | x = s,              κ_3 = (ρ_2 + ρ_3) / ρ_2²
 ///     |         −β2    κ_3 α3  |                     s = (g r_1y − |u_1|², −|u_2|², −|u_3|² / ρ_2),
-/// by its adjugate, where r_3 and u_3 stand for themselves divided by ρ_2. The pulls p_k = x_k r_k give
+/// by its adjugate, where r_3 and u_3 are divided by ρ_2. With p_k = x_k r_k the accelerations are
 ///     q_1″ = p_1 − p_2 − g ŷ,     q_2″ = ρ_2 p_2 − p_3 − g ŷ,     q_3″ = (m_2/m_3) p_3 − g ŷ .
 template <class Scalar>
 struct RodMultipliers {
@@ -30,7 +30,7 @@ struct RodMultipliers {
     Scalar kappa2{0}, kappa3{0};  // as above
 
     RodMultipliers() = default;
-    /// Of inverse masses.
+    /// From inverse masses.
     template <class Masses>
     RodMultipliers(const Masses& w, const Scalar& g) : gravity(g), rho2(w[1] / w[0]), kappa2(Scalar(1) + rho2) {
         if (w.size() == 2) return;
