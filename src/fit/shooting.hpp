@@ -81,7 +81,7 @@ struct FitEffort {
     bool finds_scale =
         true;  // finds the scale of the residuals, from what the model leaves; otherwise the initial one is kept
     double step_share =
-        0.02;  // allowed integration error relative to the residuals' scale; steps are halved to reach it; 0: steps are kept
+        0.02;  // allowed integration error relative to the scale; steps are halved to reach it; 0: steps are kept
     double relative = 1e-6;  // stops if a step gains less than this share of the cost
 };
 
