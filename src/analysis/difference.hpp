@@ -59,27 +59,28 @@ private:
 /// Finds when a pair that starts nearly equal diverges: its distance stays above the limit for one second from then on.
 class Divergence {
 public:
-    static constexpr double apart_at = 1;  // state-space distance from which the pair counts as diverged
-    static constexpr double together_at = 0.1 * apart_at;  // only a pair that starts below this distance can diverge
-    static constexpr double least_s = 1;
+    static constexpr double diverged_distance = 1;  // state-space distance from which the pair counts as diverged
+    // only a pair that starts below this distance can diverge
+    static constexpr double max_start_distance = 0.1 * diverged_distance;
+    static constexpr double min_s = 1;
 
     /// Adds a sample; all are required in order, from time 0 on. s.
     void add(double time, double distance) {
-        if (time == 0) start_as_one_ = distance < together_at;
-        if (!start_as_one_ || since_) return;
-        if (!(distance >= apart_at)) return apart_from_.reset();
-        if (!apart_from_) apart_from_ = time;
-        if (time - *apart_from_ >= least_s) since_ = apart_from_;
+        if (time == 0) starts_together_ = distance < max_start_distance;
+        if (!starts_together_ || since_) return;
+        if (!(distance >= diverged_distance)) return candidate_.reset();
+        if (!candidate_) candidate_ = time;
+        if (time - *candidate_ >= min_s) since_ = candidate_;
     }
 
-    bool start_as_one() const { return start_as_one_; }
+    bool starts_together() const { return starts_together_; }
     /// The time of divergence, s; known one second later. Nothing if the pair does not diverge, comes back within a
     /// second, or starts apart.
     std::optional<double> since() const { return since_; }
 
 private:
-    bool start_as_one_ = false;
-    std::optional<double> apart_from_{}, since_{};
+    bool starts_together_ = false;
+    std::optional<double> candidate_{}, since_{};
 };
 
 }  // namespace doppel

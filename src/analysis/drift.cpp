@@ -20,7 +20,6 @@ bool is_adaptive(const MotionSpec& motion) {
     return find_method(motion.method)->adaptive;
 }
 
-/// The motion with its n-th setting.
 MotionSpec at_setting(MotionSpec motion, long n) {
     constexpr long samples_per_s = 4;  // at least, if steps are not longer
     if (is_adaptive(motion)) {
@@ -39,7 +38,6 @@ WatchedMotion watched(const MotionSpec& spec) {
     return {spec, chain.potential_range(), chain.reach()};
 }
 
-/// The time of a sample, s.
 double time_of(const MotionSpec& spec, long sample) {
     return static_cast<double>(sample) * static_cast<double>(spec.sample_interval.numerator) /
            static_cast<double>(spec.sample_interval.denominator);
@@ -60,12 +58,12 @@ double evaluation_rate(const MotionSpec& spec, double duration_s, const std::ato
 /// The motion at the finest setting within the cost. A setting that fails at once counts as too coarse.
 MotionSpec calibrated(const MotionSpec& motion, double evaluations_per_s, double seconds,
                       const std::atomic<bool>& stop) {
-    const double most = evaluations_per_s * (1 + 1e-9);
-    const auto affordable = [&](long n) { return !(evaluation_rate(at_setting(motion, n), seconds, stop) > most); };
+    const double maximum = evaluations_per_s * (1 + 1e-9);
+    const auto affordable = [&](long n) { return !(evaluation_rate(at_setting(motion, n), seconds, stop) > maximum); };
     const bool adaptive = is_adaptive(motion);
     if (adaptive && affordable(finest_tolerance)) return at_setting(motion, finest_tolerance);
     long coarse = adaptive ? 0 : 1;
-    long fine = adaptive ? finest_tolerance : static_cast<long>(all_steps_s * most) + 1;
+    long fine = adaptive ? finest_tolerance : static_cast<long>(all_steps_s * maximum) + 1;
     while (fine - coarse > 1) {
         const long middle = coarse + (fine - coarse) / 2;
         (affordable(middle) ? coarse : fine) = middle;

@@ -20,10 +20,10 @@ struct DriftRun : DriftCost {
     std::vector<double> energy_error, length_error;  // relative (analysis/watched_motion.hpp); m
 };
 
-/// Integrates `motion` by its method, model and stabilisation at the finest setting that `evaluations_per_s` allow, up
-/// to the last of the ascending `times_s`, which are the points. The run ends if it fails: a step cannot be made, the
-/// energy error reaches the total energy, or a rod error reaches the shortest rod. Step sizes are 100 s divided by a
-/// whole number; tolerances have three digits. If even the finest tolerance costs less, it is used. Evaluations for
+/// Integrates `motion` by its method, model and stabilisation, at the finest setting that `evaluations_per_s` allow.
+/// The points are at the ascending `times_s`; the last one is the end. The run ends if it fails: a step cannot be made,
+/// the energy error reaches the total energy, or a rod error reaches the shortest rod. Step sizes are 100 s divided by
+/// a whole number; tolerances have three digits. If even the finest tolerance costs less, it is used. Evaluations for
 /// sampling an embedded pair are included. Throws Error (exit 130) soon after `stop` is set.
 DriftRun drift(MotionSpec motion, double evaluations_per_s, std::span<const double> times_s,
                const std::atomic<bool>& stop);

@@ -24,7 +24,7 @@ public:
           links_(static_cast<Eigen::Index>(p.chain.links())),
           size_(flow.start.size() / 2),
           unit_(unit_s),
-          least_(p.friction.is_none() ? -huge : tenth) {
+          rescale_at_(p.friction.is_none() ? -huge : tenth) {
         // 1, 1/2, 1/3 …: a direction without any symmetry
         auto y = flow.start;
         for (Eigen::Index i = 0; i < links_; ++i) {
@@ -41,7 +41,7 @@ public:
         TangentState y = motion_.advance(seconds);
         const double now = log_norm(y), growth = now - last_;
         last_ = now;
-        if (now > huge || now < least_ || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
+        if (now > huge || now < rescale_at_ || y.head(links_).cwiseAbs().maxCoeff() > many_turns) {
             y.tail(size_) *= portable_exp(-now);
             last_ = log_norm(y);
             motion_.restart(y);
@@ -66,14 +66,14 @@ private:
     TangentMotion motion_;
     Eigen::Index links_, size_;  // size of the state without the tangent
     double unit_;                // s
-    double least_;               // ln|δ| above which it is rescaled to 1; error control hardly sees small tangents
+    double rescale_at_;          // ln|δ| above which it is rescaled to 1; error control hardly sees small tangents
     double last_ = 0;
 };
 
 /// The factor on a standard error from `count` numbers that makes Student's distribution cover as much as one standard
 /// deviation of a normal one, within 2 %.
 /// Source  Abramowitz & Stegun, 26.7.5, for x = 1.
-double student(std::size_t count) {
+double student_factor(std::size_t count) {
     const double n = static_cast<double>(count - 1);
     return 1 + 1 / (2 * n) + 1 / (4 * n * n) + 1 / (16 * n * n * n);
 }
@@ -86,7 +86,7 @@ double standard_error(const std::vector<double>& local, std::size_t count) {
     for (std::size_t i = 0; i < count * parts; ++i) blocks[i / parts] += local[i] / static_cast<double>(parts);
     for (const double block : blocks) mean += block / static_cast<double>(count);
     for (const double block : blocks) square += (block - mean) * (block - mean);
-    return student(count) * std::sqrt(square / static_cast<double>(count * (count - 1)));
+    return student_factor(count) * std::sqrt(square / static_cast<double>(count * (count - 1)));
 }
 
 /// The number of blocks after the transient; block lengths up to four times as long are tried.
@@ -123,7 +123,7 @@ TangentFlow flow_of(const PhysicalPendulum<double>& p) {
 }
 
 /// The largest real part of a matrix's eigenvalues; 0 if it is zero within rounding.
-double greatest_real_part(const Eigen::MatrixXd& matrix) {
+double largest_real_part(const Eigen::MatrixXd& matrix) {
     constexpr double rounding = 1e-12;  // apparent growth of an undamped oscillation by rounding
     // like Eigen's eigenvalues() without vectors, at half the compile time
     const double scale = matrix.cwiseAbs().maxCoeff();
@@ -131,13 +131,13 @@ double greatest_real_part(const Eigen::MatrixXd& matrix) {
     Eigen::RealSchur<Eigen::MatrixXd> schur(matrix.rows());
     schur.computeFromHessenberg(hessenberg.matrixH(), Eigen::MatrixXd(), false);
     const Eigen::MatrixXd t = schur.matrixT() * scale;
-    double most = -std::numeric_limits<double>::infinity();
+    double maximum = -std::numeric_limits<double>::infinity();
     for (Eigen::Index i = 0; i < t.rows(); ++i) {
         const bool is_pair = i + 1 < t.rows() && t(i + 1, i) != 0;  // of complex eigenvalues
-        most = std::max(most, is_pair ? t(i + 1, i + 1) + 0.5 * (t(i, i) - t(i + 1, i + 1)) : t(i, i));
+        maximum = std::max(maximum, is_pair ? t(i + 1, i + 1) + 0.5 * (t(i, i) - t(i + 1, i + 1)) : t(i, i));
         i += is_pair;
     }
-    return std::abs(most) < rounding * scale ? 0 : most;
+    return std::abs(maximum) < rounding * scale ? 0 : maximum;
 }
 
 /// Nothing if the release is no equilibrium, as for driven pendulums.
@@ -158,12 +158,11 @@ std::optional<double> equilibrium_exponent(const PhysicalPendulum<double>& p) {
         flow.rate(y, rates);
         jacobian.col(j) = rates.tail(size);
     }
-    if (!p.friction.is_none()) return greatest_real_part(jacobian);
+    if (!p.friction.is_none()) return largest_real_part(jacobian);
     // θ″ = A θ
-    return std::sqrt(std::max(0.0, greatest_real_part(jacobian.bottomLeftCorner(size / 2, size / 2))));
+    return std::sqrt(std::max(0.0, largest_real_part(jacobian.bottomLeftCorner(size / 2, size / 2))));
 }
 
-/// `flow` = the tangent flow of the pendulum.
 Exponent exponent_of(const TangentFlow& flow, const PhysicalPendulum<double>& p, const ExponentSpec& spec,
                      const std::atomic<bool>& stop) {
     if (const auto exact = equilibrium_exponent(p)) return {*exact, 0};

@@ -15,8 +15,8 @@ struct ExponentSpec {
 /// The largest Lyapunov exponent, λ = lim ln|δ(t)|/t.
 struct Exponent {
     double value;  // 1/s
-    /// 1/s. A run four times as long from a nearby release has its value within this in at least two of three cases,
-    /// and within twice this in at least nine of ten (docs/methods.md has the frequencies).
+    /// 1/s. The value of a run four times as long from a nearby release is within this in two of three cases. It is
+    /// within twice this in nine of ten (docs/methods.md has the frequencies).
     double uncertainty;
     /// Whether long parts of the run differ no more than short parts suggest. If they differ more (a chaotic transient,
     /// sticky orbits), one run does not represent the whole motion, and the uncertainty is too small.

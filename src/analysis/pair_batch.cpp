@@ -25,7 +25,7 @@ struct SideBatch {
         return static_cast<std::size_t>(known);
     }
 
-    void look() {
+    void read_bobs() {
         seen.resize(members.size());
         for (std::size_t i = 0; i < members.size(); ++i) {
             batch->read(i, state);
@@ -61,7 +61,7 @@ void step_pairs(std::span<const PendulumPair> pairs, const PairBatchSpec& run, c
         throw_if_set(stop);
         for (auto& batch : batches) {
             if (n > 0) batch.batch->advance(batch.side.steps_per_sample);
-            batch.look();
+            batch.read_bobs();
         }
         for (std::size_t i = 0; i < pairs.size(); ++i)
             watch(i, n, batch_a.seen[members[i].first], batch_b.seen[members[i].second]);

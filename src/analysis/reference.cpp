@@ -10,7 +10,6 @@
 namespace doppel {
 namespace {
 
-/// The end of a motion by Taylor series in quad.
 Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& seconds,
                         const std::atomic<bool>& stop) {
     constexpr long parts = 64;  // an interruption is noticed between parts
@@ -22,16 +21,16 @@ Observation end_in_quad(MotionSpec spec, const char* tolerance, const Rational& 
     return motion->observe();
 }
 
-/// The number of roundings, half an ulp each, by which some_roundings_away() changes a number. A number is wrong by at
+/// The number of roundings, half an ulp each, by which perturbed() changes a number. A number is wrong by at
 /// most one; the rest allows for the errors of the steps.
-constexpr double roundings_away = 24;
+constexpr double perturbation_ulps = 24;
 
 /// Light masses amplify the rounding errors of steps more than those of the start: by up to 5.5 times in trials.
-constexpr double caution = 9;
+constexpr double safety_factor = 9;
 
 /// The same system with each number changed by some roundings of its precision.
-MotionSpec some_roundings_away(MotionSpec spec) {
-    Quad change = roundings_away / 2 *
+MotionSpec perturbed(MotionSpec spec) {
+    Quad change = perturbation_ulps / 2 *
                   (spec.precision == Precision::in_quad ? std::numeric_limits<Quad>::epsilon()
                                                         : Quad(std::numeric_limits<double>::epsilon()));
     const auto move = [&](Quad& number) {
@@ -59,10 +58,11 @@ MotionSpec some_roundings_away(MotionSpec spec) {
     return spec;
 }
 
-/// Follows a motion and a neighbouring one sample by sample. Beyond the point where `caution` times their distance
-/// exceeds `enough`, it continues until `further` times that time. The uncertainty is the largest distance up to then.
-ReferenceTrajectory followed(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples, double enough,
-                             double further, const std::atomic<bool>& stop) {
+/// Follows a motion and a neighbouring one sample by sample. Beyond the point where `safety_factor` times their
+/// distance exceeds `max_error`, it continues until `further` times that time. The uncertainty is the largest distance
+/// up to then.
+ReferenceTrajectory compared(Motion& motion, Motion& beside, const ErrorMeasure& measure, long samples,
+                             double max_error, double further, const std::atomic<bool>& stop) {
     ReferenceTrajectory all{measure};
     const auto advance = [&](Motion& one) { return advanced(one, stop, &all.failure); };
     long last = samples, sample = -1;
@@ -70,9 +70,9 @@ ReferenceTrajectory followed(Motion& motion, Motion& beside, const ErrorMeasure&
     do {
         ++sample;
         all.seen.push_back(measure.coordinates(motion.observe()));
-        const double apart = caution * all.off_at(all.seen.size() - 1, beside.observe());
-        all.uncertainty.push_back(worst = apart <= worst ? worst : apart);
-        if (last == samples && !(apart <= enough))
+        const double distance = safety_factor * all.error_at(all.seen.size() - 1, beside.observe());
+        all.uncertainty.push_back(worst = distance <= worst ? worst : distance);
+        if (last == samples && !(distance <= max_error))
             last = std::min(samples, std::lround(further * static_cast<double>(sample)));
     } while (sample < last && advance(motion) && advance(beside));
     return all;
@@ -97,13 +97,13 @@ double ErrorMeasure::distance(std::span<const Quad> one, std::span<const Quad> o
     double worst = 0;
     for (std::size_t i = 0; i < one.size(); i += in_angles ? 1 : 2) {
         const Quad first = one[i] - other[i];
-        double off = std::abs(static_cast<double>(Quad(remainder(first, turn))));
+        double distance = std::abs(static_cast<double>(Quad(remainder(first, turn))));
         if (!in_angles) {
             const auto x = static_cast<double>(first), y = static_cast<double>(Quad(one[i + 1] - other[i + 1]));
-            off = std::sqrt(x * x + y * y) / reach;
+            distance = std::sqrt(x * x + y * y) / reach;
         }
-        if (!std::isfinite(off)) return off;
-        worst = std::max(worst, off);
+        if (!std::isfinite(distance)) return distance;
+        worst = std::max(worst, distance);
     }
     return worst;
 }
@@ -123,11 +123,11 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
     const ErrorMeasure measure{spec.chain.has_value()};
     Reference reference{end_in_quad(spec, "1e-32", seconds, stop), 0, NAN};
     for (std::size_t i = 0; is_plain && i < spec.chain->links(); ++i) {
-        constexpr double apart = 1e-14;  // rad: far above the tolerance, yet its growth remains small
+        constexpr double perturbation = 1e-14;  // rad: far above the tolerance, yet its growth remains small
         auto beside = spec;
-        beside.chain->angle[i] += Quad(apart);
+        beside.chain->angle[i] += Quad(perturbation);
         const double grown = measure.distance(end_in_quad(beside, "1e-24", seconds, stop), reference.end);
-        reference.sensitivity = std::fmax(reference.sensitivity, grown / apart);
+        reference.sensitivity = std::fmax(reference.sensitivity, grown / perturbation);
     }
     if (is_plain) spec.model = Model::constraints;
     reference.disagreement =
@@ -142,38 +142,37 @@ Reference reference_end(MotionSpec spec, const Rational& seconds, const std::ato
     return reference;
 }
 
-ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
-                                         const std::atomic<bool>& stop, double most_work) {
+ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double max_error,
+                                         const std::atomic<bool>& stop, double max_work) {
     const ErrorMeasure measure{spec.chain.has_value(), reach};
     const auto made = [](const MotionSpec& of, const char* tolerance) {
         return make_motion(by_taylor_series(of, parse_quad(tolerance)));
     };
     const bool quad = spec.precision == Precision::in_quad;
     const auto fine = made(spec, quad ? "1e-33" : "1e-15");
-    auto own =
-        followed(*fine, *made(some_roundings_away(spec), quad ? "3e-33" : "3e-15"), measure, samples, enough, 1, stop);
+    auto own = compared(*fine, *made(perturbed(spec), quad ? "3e-33" : "3e-15"), measure, samples, max_error, 1, stop);
     if (!std::isfinite(own.uncertainty.back())) own.seen.pop_back(), own.uncertainty.pop_back();
     const auto bodies = static_cast<double>(spec.parts ? spec.parts->particles.size() : spec.chain->links());
     // a taped series takes as long as one of so many ideal links; joints with Coulomb friction need tiny steps
     constexpr double of_tape = 30;
     const double work = static_cast<double>(fine->effort().evaluations) * bodies * (spec.physical ? of_tape : 1);
-    if (quad || work > most_work || (spec.physical && !spec.physical->friction.coulomb.empty())) return own;
+    if (quad || work > max_work || (spec.physical && !spec.physical->friction.coulomb.empty())) return own;
     auto in_quad = spec;
     in_quad.precision = Precision::in_quad;
     constexpr double further =
         1.25;  // times as long as a run in double is useful; quad at that tolerance reaches further by this factor
-    auto wide =
-        followed(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, caution * enough, further, stop);
+    auto wide = compared(*made(in_quad, "1e-20"), *made(spec, "1e-15"), measure, samples, safety_factor * max_error,
+                         further, stop);
     wide.is_wider = true;
     // a run in double starts from rounded numbers; a smaller error may be coincidence
     wide.uncertainty.assign(wide.seen.size(), 0);
     for (std::size_t sample = 0; sample < wide.seen.size() && !own.uncertainty.empty(); ++sample)
         wide.uncertainty[sample] =
-            own.uncertainty[std::min(sample, own.uncertainty.size() - 1)] / (caution * roundings_away);
+            own.uncertainty[std::min(sample, own.uncertainty.size() - 1)] / (safety_factor * perturbation_ulps);
     return wide;
 }
 
-ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,
+ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double max_error,
                            const std::atomic<bool>& stop) {
     auto watched = spec;
     watched.follows_turns = watched.wants_tension = false;
@@ -183,18 +182,18 @@ ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& re
     double worst = 0;
     for (std::size_t sample = 0; sample < reference.seen.size(); ++sample) {
         if (sample > 0 && !advanced(*run, stop, &why)) {
-            if (worst <= enough) history.failure = why;
+            if (worst <= max_error) history.failure = why;
             return history;
         }
         history.effort = run->effort();
         history.effort_samples = static_cast<long>(sample);
-        if (worst > enough) continue;
-        const double off = reference.off_at(sample, run->observe()) + reference.uncertainty[sample];
-        if (!std::isfinite(off)) return history;
-        worst = std::max(worst, off);
+        if (worst > max_error) continue;
+        const double error = reference.error_at(sample, run->observe()) + reference.uncertainty[sample];
+        if (!std::isfinite(error)) return history;
+        worst = std::max(worst, error);
         history.error.push_back(worst);
     }
-    if (worst <= enough) history.failure = reference.failure;
+    if (worst <= max_error) history.failure = reference.failure;
     return history;
 }
 

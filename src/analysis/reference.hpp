@@ -57,7 +57,7 @@ struct ReferenceTrajectory : ErrorMeasure {
     std::string failure{};  // why it ended early
 
     /// The distance of a motion from the reference at a sample.
-    double off_at(std::size_t sample, const Observation& observed) const {
+    double error_at(std::size_t sample, const Observation& observed) const {
         return distance(coordinates(observed), seen[sample]);
     }
     std::string description() const {
@@ -66,13 +66,13 @@ struct ReferenceTrajectory : ErrorMeasure {
 };
 
 /// The limit of the cost in quad, in evaluations of the right-hand side times links or particles: some two seconds.
-inline constexpr double most_quad_work = 3e5;
+inline constexpr double max_quad_work = 3e5;
 
 /// Up to `samples`, or somewhat beyond the sample where the error of a run in the motion's own precision exceeds
-/// `enough`. The system is that of `spec`; its method does not matter. `most_work` in quad; 0 = none.
+/// `max_error`. The system is that of `spec`; its method does not matter. `max_work` in quad; 0 = none.
 /// Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
-ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double enough,
-                                         const std::atomic<bool>& stop, double most_work = most_quad_work);
+ReferenceTrajectory reference_trajectory(const MotionSpec& spec, long samples, double reach, double max_error,
+                                         const std::atomic<bool>& stop, double max_work = max_quad_work);
 
 /// The motion of `spec` by the method of a reference in the motion's own precision.
 MotionSpec by_taylor_series(MotionSpec spec, const Quad& tolerance);
@@ -95,10 +95,10 @@ struct ErrorHistory {
     }
 };
 
-/// The error of `spec` compared with the reference, sample by sample, until it exceeds `enough`, the run fails, or the
-/// reference ends.
+/// The error of `spec` compared with the reference, sample by sample, until it exceeds `max_error`, the run fails, or
+/// the reference ends.
 /// Errors  exit 2 as make_motion(), exit 130 soon after `stop` is set.
-ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double enough,
+ErrorHistory error_history(const MotionSpec& spec, const ReferenceTrajectory& reference, double max_error,
                            const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -26,9 +26,9 @@ public:
     void step(std::vector<SectionPoint>& points) {
         stepper_.take_step();
         const auto angle = stepper_.on_step(0);
-        const auto [least, greatest] = std::minmax_element(angle.b.begin(), angle.b.end());
+        const auto [minimum, largest] = std::minmax_element(angle.b.begin(), angle.b.end());
         const auto before = static_cast<std::ptrdiff_t>(points.size());
-        for (double turns = std::floor(*least / (2 * pi)); turns <= std::ceil(*greatest / (2 * pi)); ++turns)
+        for (double turns = std::floor(*minimum / (2 * pi)); turns <= std::ceil(*largest / (2 * pi)); ++turns)
             for (const auto& bracket : angle.rises(2 * pi * turns)) points.push_back(crossing(bracket, 2 * pi * turns));
         std::sort(points.begin() + before, points.end(),
                   [](auto& one, auto& other) { return one.time_s < other.time_s; });
@@ -41,11 +41,11 @@ private:
         constexpr double rounding = 1e-15;  // rad, and relative
         const double at = root(bracket, [&](double t) {
             const auto& y = stepper_.at(t);
-            const bool is_there = std::abs(y[0] - level) <= rounding * (1 + std::abs(y[0]));
+            const bool is_at_level = std::abs(y[0] - level) <= rounding * (1 + std::abs(y[0]));
             struct Height {
                 double value, rate;
             };
-            return Height{is_there ? 0 : y[0] - level, y[2]};
+            return Height{is_at_level ? 0 : y[0] - level, y[2]};
         });
         canonical_.momenta(stepper_.at(at), z_);
         const double theta2 = std::remainder(z_[1], 2 * pi);

@@ -127,11 +127,11 @@ std::vector<SpectrumSample> estimates(const PhysicalPendulum<double>& p, const S
 
 std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
                                               const std::atomic<bool>& stop) {
-    constexpr std::size_t most_links = 4;
+    constexpr std::size_t max_links = 4;
     const std::size_t links = p.chain.links();
-    if (links > most_links) throw bad_input("a spectrum is for 1 to {} links; there are {}", most_links, links);
+    if (links > max_links) throw bad_input("a spectrum is for 1 to {} links; there are {}", max_links, links);
     require_smooth(p);
-    return links <= 2 ? estimates<4>(p, spec, stop) : estimates<2 * most_links>(p, spec, stop);
+    return links <= 2 ? estimates<4>(p, spec, stop) : estimates<2 * max_links>(p, spec, stop);
 }
 
 double pair_mismatch(const SpectrumSample& sample) {

@@ -65,8 +65,8 @@ double adams_amplitude(double z, long steps) {
 }
 
 /// Updates `greatest` with one error; NaN is kept.
-void take(double error, double& greatest) {
-    greatest = error <= failure_error ? std::max(greatest, error) : NAN;
+void take(double error, double& largest) {
+    largest = error <= failure_error ? std::max(largest, error) : NAN;
 }
 
 /// For methods that integrate in SIMD lanes.
@@ -75,7 +75,7 @@ std::vector<double> side_by_side(const MotionSpec& spec, std::span<const Pendulu
     std::vector<Pendulum<double>> chains;
     for (const auto& release : releases) chains.push_back(release.cast<double>());
     Batch batch(chains, spec.model, spec.method, quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value());
-    std::vector<double> start, greatest(chains.size(), 0);
+    std::vector<double> start, largest(chains.size(), 0);
     for (long n = 0; n <= samples; ++n) {
         throw_if_set(stop);
         if (n > 0) batch.advance(spec.steps_per_sample);
@@ -85,10 +85,10 @@ std::vector<double> side_by_side(const MotionSpec& spec, std::span<const Pendulu
             const auto bobs = spec.model == Model::angles ? bobs_of_angles(p, y) : bobs_of_particles(p, y);
             const double now = energy(bobs, p.gravity);
             if (n == 0) start.push_back(now);
-            take(std::abs(now - start[i]) / released_energy(p), greatest[i]);
+            take(std::abs(now - start[i]) / released_energy(p), largest[i]);
         }
     }
-    return greatest;
+    return largest;
 }
 
 }  // namespace
@@ -181,18 +181,18 @@ double released_energy(const Pendulum<double>& release) {
     return sum;
 }
 
-std::vector<double> greatest_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
-                                           const std::atomic<bool>& stop) {
-    if (!releases.empty() && Batch::serves(spec.method, releases[0].links()))
+std::vector<double> max_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
+                                      const std::atomic<bool>& stop) {
+    if (!releases.empty() && Batch::supports(spec.method, releases[0].links()))
         return side_by_side(spec, releases, samples, stop);
     std::vector<double> errors;
     for (const auto& release : releases) {
         spec.chain = release;
         const double scale = released_energy(release.cast<double>());
         const auto motion = make_motion(spec);
-        auto& greatest = errors.emplace_back(0);
-        for (long n = 0; n < samples && !std::isnan(greatest); ++n)
-            take(advanced(*motion, stop) ? std::abs(motion->observe().energy_change) / scale : NAN, greatest);
+        auto& largest = errors.emplace_back(0);
+        for (long n = 0; n < samples && !std::isnan(largest); ++n)
+            take(advanced(*motion, stop) ? std::abs(motion->observe().energy_change) / scale : NAN, largest);
     }
     return errors;
 }

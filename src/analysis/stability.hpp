@@ -43,7 +43,7 @@ double released_energy(const Pendulum<double>& release);
 /// energy. NaN for a failed run: an error above `failure_error`, NaN, or a step that cannot be made. All releases must
 /// have the same number of links. Throws Error: exit 2 if the method does not support the model, exit 130 soon after
 /// `stop` is set.
-std::vector<double> greatest_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
-                                           const std::atomic<bool>& stop);
+std::vector<double> max_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
+                                      const std::atomic<bool>& stop);
 
 }  // namespace doppel

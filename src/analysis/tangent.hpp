@@ -71,7 +71,7 @@ TangentFlow tangent_flow(Model model, const typename Model::State& start) {
 }
 
 /// Integrates state and tangents by dop853, with restarts. Error control is relative to the size of tangents, so they
-/// must be neither huge nor tiny, and the first `angles` numbers must not be many turns.
+/// must be neither huge nor tiny. The first `angles` numbers must not be many turns.
 class TangentMotion {
 public:
     TangentMotion(TangentFlow flow, std::size_t angles, double tolerance);

@@ -9,9 +9,9 @@ bool advanced(Motion& motion, const std::atomic<bool>& stop, std::string* why) {
     try {
         motion.advance(stop);
         return true;
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::method_failed) throw;
-        if (why) *why = fault.what();
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed) throw;
+        if (why) *why = error.what();
         return false;
     }
 }
@@ -21,7 +21,7 @@ bool WatchedMotion::advance(const std::atomic<bool>& stop) {
     const auto seen = motion->observe();
     energy_error = proportion.energy_error(seen);
     length_error = seen.length_error;
-    return proportion.holds(seen);
+    return proportion.is_plausible(seen);
 }
 
 }  // namespace doppel

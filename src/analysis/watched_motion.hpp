@@ -20,7 +20,7 @@ struct ErrorScale {
           reach(whole_reach) {}
 
     double energy_error(const Observation& seen) const { return std::abs(seen.energy_change / energy); }
-    bool holds(const Observation& seen) const {
+    bool is_plausible(const Observation& seen) const {
         return std::isfinite(seen.energy_change) && seen.energy_change <= gain && seen.length_error <= reach;
     }
 };

@@ -45,10 +45,10 @@ public:
         outcome.steps = static_cast<double>(motion->effort().steps);
         if (!ends) return outcome;
         const auto end = motion->observe();
-        if (!proportion.holds(end) || (spec.watched && !external_ && !is_sound(outcome, stop))) return outcome;
-        const double off = ErrorMeasure{problem_.has_angles(), problem_.size}.distance(end, reference.end);
-        if (!std::isfinite(off)) return outcome;
-        outcome.error = off;
+        if (!proportion.is_plausible(end) || (spec.watched && !external_ && !is_sound(outcome, stop))) return outcome;
+        const double error_of_end = ErrorMeasure{problem_.has_angles(), problem_.size}.distance(end, reference.end);
+        if (!std::isfinite(error_of_end)) return outcome;
+        outcome.error = error_of_end;
         if (spec.timed) outcome.cpu_s = timed(first_s, stop);
         return outcome;
     }
@@ -87,10 +87,10 @@ private:
     double timed(double first_s, const std::atomic<bool>& stop) const {
         constexpr double long_enough_s = 1e-3;  // reduces the clock's error to some tenths of a percent
         constexpr double warm_enough_s = 3e-3;  // warms the caches
-        constexpr long most_runs = 32;          // at a time: all of them fit into the first-level cache
+        constexpr long max_runs = 32;           // at a time: all of them fit into the first-level cache
         if (first_s > warm_enough_s) return first_s;
         const auto wanted = static_cast<long>(std::ceil(long_enough_s / std::max(first_s, 1e-9)));
-        std::vector<std::unique_ptr<Motion>> motions(static_cast<std::size_t>(std::clamp(wanted, 1L, most_runs)));
+        std::vector<std::unique_ptr<Motion>> motions(static_cast<std::size_t>(std::clamp(wanted, 1L, max_runs)));
         for (auto& motion : motions) motion = made();
         const double all = cpu_of([&] {
             for (const auto& motion : motions) motion->advance(stop);
@@ -105,12 +105,12 @@ private:
 
 /// Step sizes of 2^(k/2)/30000 s, from the problem's natural time down, or tolerances of 10^(−k/2) rounded to three
 /// digits, from 0.1 to the limit of double.
-std::vector<Trial> trials_of(const WorkProblem& problem, const Solver& solver, long most_steps) {
+std::vector<Trial> trials_of(const WorkProblem& problem, const Solver& solver, long max_steps) {
     const auto* external = solver.external;
     std::vector<Trial> all;
     const auto add = [&](long steps, const Quad& tolerance) {
         const Trial trial(problem, solver, steps, tolerance);
-        if (!external || (trial.setting() >= external->least && trial.setting() <= external->most))
+        if (!external || (trial.setting() >= external->minimum && trial.setting() <= external->maximum))
             all.push_back(trial);
     };
     if (external ? external->adaptive : find_method(solver.method)->adaptive) {
@@ -118,12 +118,12 @@ std::vector<Trial> trials_of(const WorkProblem& problem, const Solver& solver, l
         for (int k = 2; k <= finest; ++k) add(0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2)));
         return all;
     }
-    const double at_study = problem.duration() / study_step;
+    const double kao_steps = problem.duration() / kao_step;
     long last = 0;
-    for (int k = static_cast<int>(2 * std::log2(problem.natural_time / study_step));; --k) {
+    for (int k = static_cast<int>(2 * std::log2(problem.natural_time / kao_step));; --k) {
         const double factor = std::ldexp(k % 2 == 0 ? 1 : std::numbers::sqrt2, -((k + (k % 2 != 0)) / 2));
-        const long steps = std::max(1L, std::lround(at_study * factor));
-        if (steps > most_steps && last > 0) return all;
+        const long steps = std::max(1L, std::lround(kao_steps * factor));
+        if (steps > max_steps && last > 0) return all;
         if (steps > last) add(last = steps, 0);
     }
 }
@@ -151,13 +151,15 @@ std::vector<StepResult> run_step_study(const WorkProblem& problem, const Referen
         return best < near * reference.floor() ? since_best >= patience : best < useful && since_best >= long_patience;
     };
     std::vector<StepResult> outcomes;
-    for (const auto& trial : trials_of(problem, solver, spec.most_evaluations)) {
+    for (const auto& trial : trials_of(problem, solver, spec.max_evaluations)) {
         const auto& outcome = outcomes.emplace_back(trial.outcome(reference, spec, stop));
-        const bool enough = std::numbers::sqrt2 * outcome.evaluations > static_cast<double>(spec.most_evaluations);
-        if (enough || outcome.error < spec.least_error || is_at_floor(outcome.error)) break;
+        const bool next_too_costly =
+            std::numbers::sqrt2 * outcome.evaluations > static_cast<double>(spec.max_evaluations);
+        if (next_too_costly || outcome.error < spec.min_error || is_at_floor(outcome.error)) break;
     }
-    if (solver.is_study() && std::none_of(outcomes.begin(), outcomes.end(), [](auto& r) { return r.is_study(); })) {
-        const long steps = std::lround(problem.duration() / study_step);
+    if (solver.is_kao_study() &&
+        std::none_of(outcomes.begin(), outcomes.end(), [](auto& r) { return r.is_kao_study(); })) {
+        const long steps = std::lround(problem.duration() / kao_step);
         outcomes.push_back(Trial(problem, solver, steps, 0).outcome(reference, spec, stop));
     }
     if (outcomes.empty()) outcomes.emplace_back();
@@ -179,21 +181,21 @@ StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>
     return study;
 }
 
-std::vector<StepResult> front_of(std::span<const StepStudy> studies, Cost cost, const ErrorRange& range) {
+std::vector<StepResult> pareto_front(std::span<const StepStudy> studies, Cost cost, const ErrorRange& range) {
     std::vector<StepResult> points;
     for (const auto& [solver, outcomes] : studies)
         for (std::size_t i = 0; i < outcomes.size(); ++i) {
             const double error = outcomes[i].error;
             const bool is_lucky =
-                i + 1 < outcomes.size() && error > range.least && !(outcomes[i + 1].error <= 2 * error);
-            if (error <= range.most && outcomes[i].cost(cost) > 0 && !is_lucky) points.push_back(outcomes[i]);
+                i + 1 < outcomes.size() && error > range.minimum && !(outcomes[i + 1].error <= 2 * error);
+            if (error <= range.maximum && outcomes[i].cost(cost) > 0 && !is_lucky) points.push_back(outcomes[i]);
         }
     std::stable_sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
         return std::pair(a.cost(cost), a.error) < std::pair(b.cost(cost), b.error);
     });
     std::vector<StepResult> front;
     for (const auto& point : points) {
-        if (!front.empty() && front.back().error <= range.least) break;
+        if (!front.empty() && front.back().error <= range.minimum) break;
         if (front.empty() || point.error < front.back().error) front.push_back(point);
     }
     return front;
@@ -206,10 +208,10 @@ Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error,
         const auto& outcomes = study.outcomes;
         if (!counts(study.solver)) continue;
         for (std::size_t i = 0; i < outcomes.size(); ++i) {
-            const bool holds =
+            const bool reaches =
                 outcomes[i].error <= error && (i + 1 == outcomes.size() || outcomes[i + 1].error <= error);
             const double value = outcomes[i].cost(cost);
-            if (holds && value > 0 && value < best.cost) best = {&study, value};
+            if (reaches && value > 0 && value < best.cost) best = {&study, value};
         }
     }
     return best;
@@ -264,7 +266,7 @@ std::pair<double, double> time_spread(std::span<const std::vector<StepStudy>> pr
     std::vector<double> spreads;
     for (const auto& studies : problems)
         for (const auto& study : studies)
-            for (const auto& point : front_of({&study, 1}, Cost::time, {0, 1})) spreads.push_back(point.spread);
+            for (const auto& point : pareto_front({&study, 1}, Cost::time, {0, 1})) spreads.push_back(point.spread);
     if (spreads.empty()) return {NAN, NAN};
     std::sort(spreads.begin(), spreads.end());
     return {spreads[spreads.size() / 2], spreads.back()};

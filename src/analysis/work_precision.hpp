@@ -9,9 +9,9 @@ namespace doppel {
 
 /// A method of another library, for comparison. Doppel itself links none; a program that does passes them in.
 struct ExternalMethod {
-    std::string name;    // "GSL rk8pd"
-    bool adaptive;       // its setting is a tolerance instead of a step size in s
-    double least, most;  // of its settings
+    std::string name;         // "GSL rk8pd"
+    bool adaptive;            // its setting is a tolerance instead of a step size in s
+    double minimum, maximum;  // of its settings
     /// A motion from the release. Its first sample is the end after `seconds`.
     std::function<std::unique_ptr<Motion>(const Pendulum<double>& chain, double seconds, double setting)> make;
 };
@@ -41,16 +41,15 @@ struct Solver {
 
     std::string name() const { return external ? "peer:" + external->name : method; }
     /// The method of the published study.
-    bool is_study() const { return method == "euler" && model == Model::angles; }
+    bool is_kao_study() const { return method == "euler" && model == Model::angles; }
     /// Whether it can compute the problem.
-    bool serves(const WorkProblem& problem) const {
+    bool supports(const WorkProblem& problem) const {
         return problem.is_plain_chain() || (!external && model == problem.motion.model);
     }
 };
 
-inline constexpr double study_step = 1.0 / 30000;  // s
+inline constexpr double kao_step = 1.0 / 30000;  // s
 
-/// The measure of cost.
 enum class Cost { time, evaluations };
 
 /// The result of one setting of a method; NaN for missing numbers. A run has failed if a step cannot be made, it is not
@@ -65,19 +64,19 @@ struct StepResult {
 
     bool failed() const { return !std::isnan(setting) && !std::isfinite(error); }
     /// Whether its step size is that of Kao's study, as nearly as whole steps allow.
-    bool is_study() const { return std::abs(setting / study_step - 1) < 1e-3; }
+    bool is_kao_study() const { return std::abs(setting / kao_step - 1) < 1e-3; }
     double cost(Cost of) const { return of == Cost::time ? cpu_s : evaluations; }
 };
 
 struct StepStudySpec {
-    long most_evaluations;  // for one setting
-    double least_error;     // smaller errors end the study
+    long max_evaluations;  // for one setting
+    double min_error;      // smaller errors end the study
     bool timed = false;
     bool watched = true;  // errors of energies and lengths are measured in a separate run; not for external methods
 };
 
 /// Runs a solver's settings from coarse to fine: step sizes by factors of √2, including 1/30000 s, or tolerances by
-/// half decades. The study ends when the errors reach the floor or fall below `least_error`, or the next setting would
+/// half decades. The study ends when the errors reach the floor or fall below `min_error`, or the next setting would
 /// take too many evaluations; never because of time. Kao's step size is always included. A failed setting has no
 /// numbers. CPU times are those of the thread for the whole motion, without set-up, after a run that warms the caches;
 /// short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
@@ -93,15 +92,15 @@ struct StepStudy {
 /// Merges the repeats of a step-size study; the first repeat has all results.
 StepStudy merged(const Solver& solver, const std::vector<std::vector<StepResult>>& repeats);
 
-/// The range of shown errors; errors below `least` are at the floor.
+/// The range of shown errors; errors below `minimum` are at the floor.
 struct ErrorRange {
-    double least, most;
+    double minimum, maximum;
 };
 
 /// The Pareto front of a problem's step-size studies: settings without a cheaper and more accurate one, cheapest first,
 /// until one is at the floor. A setting is left out if the next finer one has more than twice its error: it was
 /// accurate by coincidence.
-std::vector<StepResult> front_of(std::span<const StepStudy> studies, Cost cost, const ErrorRange& range);
+std::vector<StepResult> pareto_front(std::span<const StepStudy> studies, Cost cost, const ErrorRange& range);
 
 /// The step-size study with the least cost for an error of at most `error`. The next finer setting must reach it, too,
 /// because a coarse one may be accurate by coincidence.

@@ -65,10 +65,10 @@ Machine within_control_groups(Machine machine, const fs::path& root) {
     }
 }
 
-std::size_t affordable(std::size_t bytes, std::size_t most, const Machine& machine) {
-    constexpr std::uintmax_t enough = std::uintmax_t{2} << 30;
-    const auto fit = std::min(machine.memory / 4, enough) / std::max<std::uintmax_t>(bytes, 1);
-    return static_cast<std::size_t>(std::clamp<std::uintmax_t>(fit, 1, std::max<std::size_t>(most, 1)));
+std::size_t affordable(std::size_t bytes, std::size_t maximum, const Machine& machine) {
+    constexpr std::uintmax_t limit = std::uintmax_t{2} << 30;
+    const auto fit = std::min(machine.memory / 4, limit) / std::max<std::uintmax_t>(bytes, 1);
+    return static_cast<std::size_t>(std::clamp<std::uintmax_t>(fit, 1, std::max<std::size_t>(maximum, 1)));
 }
 
 const Machine& this_machine() {

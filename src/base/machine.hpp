@@ -20,9 +20,9 @@ const Machine& this_machine();
 /// sys/fs/cgroup. A fraction of a core counts as one core.
 Machine within_control_groups(Machine machine, const std::filesystem::path& root);
 
-/// How many objects of `bytes` bytes may exist at the same time, from 1 to `most`. Together they take at most a quarter
-/// of the memory, and at most 2 GiB.
-std::size_t affordable(std::size_t bytes, std::size_t most, const Machine& machine = this_machine());
+/// How many objects of `bytes` bytes may exist at the same time, from 1 to `maximum`. Together they take at most a
+/// quarter of the memory, and at most 2 GiB.
+std::size_t affordable(std::size_t bytes, std::size_t maximum, const Machine& machine = this_machine());
 
 /// The number of threads to use: the cores that this process may use, at least 1.
 inline int cores() {

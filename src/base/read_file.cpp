@@ -40,8 +40,8 @@ std::string read_whole_file(const std::filesystem::path& path, const WantedFile&
     const bool is_pipe = S_ISFIFO(status.st_mode) && stop;
     if (!S_ISREG(status.st_mode) && !is_pipe) throw bad_input("{} is not a file; {}", path.string(), wanted.what);
     const auto bound = [&](std::size_t bytes) {
-        if (bytes > wanted.most_bytes)
-            throw bad_input("{} has more than {} MB; {}", path.string(), wanted.most_bytes >> 20, wanted.what);
+        if (bytes > wanted.max_bytes)
+            throw bad_input("{} has more than {} MB; {}", path.string(), wanted.max_bytes >> 20, wanted.what);
     };
     bound(static_cast<std::size_t>(status.st_size));
     std::string text, portion(std::size_t{1} << 16, '\0');

@@ -11,7 +11,7 @@ namespace doppel {
 /// The kind of file that a reader accepts.
 struct WantedFile {
     std::string_view what;  // "a track is a CSV file"
-    std::size_t most_bytes;
+    std::size_t max_bytes;
     std::string_view missing = "there is no such file";
 };
 

@@ -8,17 +8,17 @@
 namespace doppel {
 
 SharedLibrary::SharedLibrary(const std::vector<std::string>& names) {
-    std::string faults;
+    std::string errors;
     for (const auto& name : names) {
         handle_ = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
         name_ = name;
         if (handle_) return;
         // the message about a library that exists but cannot be used is the more helpful one
-        const std::string fault = dlerror();
-        if (!fault.starts_with(name + ": cannot open shared object file: No such file"))
-            faults += (faults.empty() ? "" : "; ") + fault;
+        const std::string error = dlerror();
+        if (!error.starts_with(name + ": cannot open shared object file: No such file"))
+            errors += (errors.empty() ? "" : "; ") + error;
     }
-    throw io_failed("{}", faults.empty() ? fmt::format("there is no {}", fmt::join(names, " or ")) : faults);
+    throw io_failed("{}", errors.empty() ? fmt::format("there is no {}", fmt::join(names, " or ")) : errors);
 }
 
 SharedLibrary::Symbol SharedLibrary::operator[](const char* name) const {

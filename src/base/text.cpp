@@ -109,11 +109,11 @@ std::string in_address(std::string_view name) {
     return address;
 }
 
-std::string shortened(std::string_view text, std::size_t most) {
-    if (text.size() <= most) return std::string(text);
-    while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80)
-        --most;  // do not cut within a character
-    return std::string(text.substr(0, most)) + "…";
+std::string shortened(std::string_view text, std::size_t maximum) {
+    if (text.size() <= maximum) return std::string(text);
+    while (maximum > 0 && (static_cast<unsigned char>(text[maximum]) & 0xC0) == 0x80)
+        --maximum;  // do not cut within a character
+    return std::string(text.substr(0, maximum)) + "…";
 }
 
 std::string bytes_text(double bytes) {

@@ -32,8 +32,8 @@ std::string in_script(std::string json);
 /// A name escaped as a part of a URL (RFC 3986): every byte except letters, digits and -._~ becomes %XX.
 std::string in_address(std::string_view name);
 
-/// At most the first `most` bytes of the text, cut between characters; "…" is appended if it was cut.
-std::string shortened(std::string_view text, std::size_t most);
+/// At most the first `maximum` bytes of the text, cut between characters; "…" is appended if it was cut.
+std::string shortened(std::string_view text, std::size_t maximum);
 
 /// A size for people: "512 bytes", "64 kB", "1.5 MB", "2.0 GB", "17.6 TB".
 std::string bytes_text(double bytes);

@@ -57,7 +57,7 @@ void parallel_for(std::size_t count, int jobs, Work&& work) {
         try {
             for (std::size_t i = next++; i < count; i = next++) work(i);
         } catch (...) {
-            const std::lock_guard hold(error_mutex);
+            const std::lock_guard lock(error_mutex);
             if (!error) error = std::current_exception();
             next = count;
         }

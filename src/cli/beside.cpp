@@ -12,13 +12,13 @@ namespace {
 
 /// How the other pendulum is integrated while its start is fitted: with the preset's method, or by Taylor series if the
 /// preset requires an accuracy.
-MotionSpec simulated_motion(SideSpec twin, const Rational& sample_hz) {
-    if (twin.accuracy) {
-        twin.accuracy.reset();
-        twin.integrator = "taylor";
-        twin.tolerance = parse_quad("1e-9");
+MotionSpec simulated_motion(SideSpec side, const Rational& sample_hz) {
+    if (side.accuracy) {
+        side.accuracy.reset();
+        side.integrator = "taylor";
+        side.tolerance = parse_quad("1e-9");
     }
-    return make_side(twin, sample_hz).motion;
+    return make_side(side, sample_hz).motion;
 }
 
 std::string degrees_list(const std::array<double, 2>& radians) {

@@ -37,8 +37,8 @@ std::string format_words(const VideoSpec& video) {
 
 /// "1 800 000", for numbers of any size.
 std::string counted(double number) {
-    constexpr double most = 1e18;
-    return number < most ? grouped(std::llround(number)) : scientific(number);
+    constexpr double maximum = 1e18;
+    return number < maximum ? grouped(std::llround(number)) : scientific(number);
 }
 
 void print_side(char name, const Side& side) {
@@ -54,32 +54,35 @@ void print_side(char name, const Side& side) {
 void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) {
     const auto unit = side.has_angles ? "rad" : "of its size";
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
-    const auto say = [](const std::string& words) { print_line("         {}", words); };
+    const auto print_indented = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
-        say(fmt::format("error below {} {} up to {:.3g} s; no setting holds much longer in {}",
-                        scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon), precision));
+        print_indented(fmt::format("error below {} {} up to {:.3g} s; no setting is accurate much longer in {}",
+                                   scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon),
+                                   precision));
     else if (side.choice)
-        say(fmt::format("error at most {} {} to the end; verified by {}", scientific(side.choice->estimated_error),
-                        unit, side.choice->reference->description()));
+        print_indented(fmt::format("error at most {} {} to the end; verified by {}",
+                                   scientific(side.choice->estimated_error), unit,
+                                   side.choice->reference->description()));
     else if (seen.error_s < scene.time(scene.samples))
-        say(error_words(side, seen.error_s));
+        print_indented(error_words(side, seen.error_s));
     else
-        say(fmt::format("error about {} {} at the end", scientific(seen.error), unit));
+        print_indented(fmt::format("error about {} {} at the end", scientific(seen.error), unit));
     if (seen.exponent) {
         const auto& [value, uncertainty, is_settled] = *seen.exponent;
         const double tenfold = std::log(10) / value;
         switch (seen.kind) {
             case Forecast::Kind::regular:
-                say(fmt::format("regular: the Lyapunov exponent is not above 0 ({:.2g} ± {:.1g} 1/s)", value,
-                                uncertainty));
+                print_indented(fmt::format("regular: the Lyapunov exponent is not above 0 ({:.2g} ± {:.1g} 1/s)", value,
+                                           uncertainty));
                 break;
             case Forecast::Kind::chaotic:
-                say(fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
+                print_indented(
+                    fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
                                 tenfold, value, uncertainty));
-                if (!is_settled) say(unsettled_words);
+                if (!is_settled) print_indented(unsettled_words);
                 break;
             case Forecast::Kind::unstable:
-                say(
+                print_indented(
                     fmt::format("released at an unstable equilibrium: near it errors grow tenfold every {:.2g} s "
                                 "(exponent {:.2g} 1/s); this alone is not chaos",
                                 tenfold, value));
@@ -87,27 +90,28 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
     }
     if (seen.limit) {
         const auto from = fmt::format("{:.2g}", seen.limit->from), to = fmt::format("{:.2g}", seen.limit->to);
-        say(fmt::format("predictability limit in {}: about {}{} s", precision, from, from == to ? "" : " to " + to));
+        print_indented(
+            fmt::format("predictability limit in {}: about {}{} s", precision, from, from == to ? "" : " to " + to));
     }
 }
 
 /// The work for half or ten times the accuracy, compared with the required one.
-std::vector<std::string> rivals_of(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
+std::vector<std::string> alternatives_of(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
     std::vector<std::string> all;
     const auto& choice = *(scene.*which).choice;
     for (const auto& [factor, title] : {std::pair(2.0, "half"), {0.1, "ten times"}}) {
         if (factor * choice.accuracy > 1) continue;
         std::string words = "is out of reach";
         try {
-            const auto rivals = scene.chooser->choose(factor, stop);
-            const auto& rival = *rivals[which == &Scene::a ? 0 : 1];
+            const auto alternatives = scene.chooser->choose(factor, stop);
+            const auto& alternative = *alternatives[which == &Scene::a ? 0 : 1];
             // if round-off limits how long it is accurate, it determines the work, too
-            words = rival.choice->horizon < scene.samples
-                        ? fmt::format("holds up to {:.3g} s", scene.time(rival.choice->horizon))
-                        : fmt::format("takes {:.2f} times the work ({}, {})", rival.choice->work / choice.work,
-                                      rival.method.name, step_control_text(rival));
-        } catch (const Error& fault) {
-            if (fault.code() != ExitCode::bad_input) throw;
+            words = alternative.choice->horizon < scene.samples
+                        ? fmt::format("is kept up to {:.3g} s", scene.time(alternative.choice->horizon))
+                        : fmt::format("takes {:.2f} times the work ({}, {})", alternative.choice->work / choice.work,
+                                      alternative.method.name, step_control_text(alternative));
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::bad_input) throw;
         }
         all.push_back(fmt::format("{} the accuracy {}", title, words));
     }
@@ -118,7 +122,7 @@ std::vector<std::string> rivals_of(const Scene& scene, Side Scene::*which, const
 struct SceneCheck {
     struct OfSide {
         std::optional<Forecast> forecast;  // if it takes little time
-        std::vector<std::string> rivals;
+        std::vector<std::string> alternatives;
     };
     const Scene& scene;
     SimulationEstimate simulation;
@@ -132,18 +136,18 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
     SceneCheck check{scene, estimated_simulation(scene, stop), {}, {}, {}};
     try {
         check.render_s = estimated_render(scene, check.simulation, stop);
-    } catch (const Error& fault) {
-        if (fault.code() == ExitCode::interrupted) throw;
-        check.why_not = fault.what();
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::interrupted) throw;
+        check.why_not = error.what();
     }
     constexpr double patience = 2;  // limit for runs that only give information, s
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
-        auto& [forecast, rivals] = check.sides[letter == 'a' ? 0 : 1];
+        auto& [forecast, alternatives] = check.sides[letter == 'a' ? 0 : 1];
         if (side.replay) continue;
         if (!check.simulation.at_least && check.simulation.seconds < patience)
             forecast = forecast_of(scene, side, stop);
-        if (side.choice) rivals = rivals_of(scene, letter == 'a' ? &Scene::a : &Scene::b, stop);
+        if (side.choice) alternatives = alternatives_of(scene, letter == 'a' ? &Scene::a : &Scene::b, stop);
     }
     return check;
 }
@@ -155,10 +159,10 @@ void print(const SceneCheck& check) {
     print_line("{}: {}", scene.preset.name, scene.preset.title);
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
-        const auto& [forecast, rivals] = check.sides[letter == 'a' ? 0 : 1];
+        const auto& [forecast, alternatives] = check.sides[letter == 'a' ? 0 : 1];
         print_side(letter, side);
         if (forecast) print_forecast(scene, side, *forecast);
-        for (const auto& rival : rivals) print_line("         {}", rival);
+        for (const auto& alternative : alternatives) print_line("         {}", alternative);
     }
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),
@@ -199,7 +203,7 @@ Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
     if (side.replay) return {{"model", "track"}, {"why", side.why}, {"file", track.file}};
     auto json = method_json(scene, side);
     json["precision"] = side.motion.precision == Precision::in_quad ? "quad" : "double";
-    const auto& [forecast, rivals] = check.sides[which];
+    const auto& [forecast, alternatives] = check.sides[which];
     const auto warn = [&](const std::string& words) {
         warnings.push_back(fmt::format("side {}: {}", which == 0 ? 'a' : 'b', words));
     };
@@ -208,7 +212,7 @@ Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
         warn(error_words(side, forecast->error_s));
     if (forecast && forecast->exponent && forecast->kind == Forecast::Kind::chaotic && !forecast->exponent->is_settled)
         warn(unsettled_words);
-    if (side.choice) json["other_accuracies"] = rivals;
+    if (side.choice) json["other_accuracies"] = alternatives;
     return json;
 }
 
@@ -247,7 +251,6 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     return json;
 }
 
-/// All results of check for a figure.
 struct FigureCheck {
     const FigurePreset& figure;
     double units = 0;
@@ -278,7 +281,7 @@ void print(const FigureCheck& check) {
     else
         print_line("  chart  {}×{} px, {}", layout.picture.width, layout.picture.height, figure.chart.theme);
     print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
-               estimate.seconds, threads, threads == 1 ? "" : "s", roughly(units / estimate.seconds),
+               estimate.seconds, threads, threads == 1 ? "" : "s", two_digits(units / estimate.seconds),
                figure.experiment->unit());
 }
 
@@ -310,7 +313,7 @@ void check_presets(const CheckOptions& options) {
     for (const auto& name : options.presets) {
         const auto preset = find_preset(name, &stop);
         auto warnings = Json::array();
-        if (const auto fault = schema_line_fault(preset)) warnings.push_back(*fault);
+        if (const auto error = schema_line_error(preset)) warnings.push_back(*error);
         if (!options.as_json)
             for (const auto& warning : warnings) print_line("{}", warning.get<std::string>());
         const auto report = [&](const auto& check) {
@@ -331,7 +334,7 @@ void check_presets(const CheckOptions& options) {
 
 void add_check(CLI::App& app) {
     auto options = std::make_shared<CheckOptions>();
-    auto& command = *app.add_subcommand("check", "Says what a preset would run: model, method, errors, steps, time");
+    auto& command = *app.add_subcommand("check", "Shows what a preset would run: model, method, errors, steps, time");
     command.footer(
         "Examples:\n"
         "  doppel check butterfly\n"

@@ -113,10 +113,10 @@ void compare_folders(Comparison& comparison, const fs::path& out, std::optional<
 
 /// A report that was asked for: its place is taken before the work, so that one that cannot be is said at once.
 /// `start` = what such a report begins with, by which an older one is known.
-std::optional<LoneFile> place_of_report(const std::string& file, std::string_view start) {
+std::optional<SingleFile> place_of_report(const std::string& file, std::string_view start) {
     if (file.empty()) return std::nullopt;
     if (!fs::path(file).has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
-    return std::optional<LoneFile>(std::in_place, file, start);
+    return std::optional<SingleFile>(std::in_place, file, start);
 }
 
 /// True if all pass. Throws Error where some could not be read, after the reports are written.

@@ -66,7 +66,7 @@ void write_junit(const std::filesystem::path& place, const Comparison& compariso
 
 namespace {
 
-constexpr std::size_t most_bytes = 100'000'000;  // that a browser opens with ease
+constexpr std::size_t max_bytes = 100'000'000;  // that a browser opens with ease
 
 std::string heading(const Comparison& comparison) {
     const auto all = comparison.pictures.size();
@@ -196,7 +196,7 @@ void write_compare_page(const std::filesystem::path& place, const Comparison& co
     write(header(comparison) + contents(comparison) + "<main>\n" + list(comparison, false));
     for (std::size_t i = 0; i < comparison.pictures.size(); ++i)
         if (comparison.pictures[i].match == Match::differs)
-            write(section(comparison.pictures[i], i + 1, written < most_bytes));
+            write(section(comparison.pictures[i], i + 1, written < max_bytes));
     write(list(comparison, true));
     write(
         fmt::format("</main>\n<footer><p>A picture passes where it differs no more than graphics drivers do: in few "

@@ -51,9 +51,8 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
 std::optional<Shard> shard_of(const FigureCommandOptions& options) {
     if (options.shard.empty()) return std::nullopt;
     const auto parts = two_numbers(options.shard, '/');
-    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > most_parts)
-        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", most_parts,
-                        options.shard);
+    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > max_parts)
+        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", max_parts, options.shard);
     if (options.merge) throw bad_input("--shard makes a part and --merge joins them; give one");
     return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
 }
@@ -66,7 +65,7 @@ public:
 
     template <class Tell>
     void operator()(std::size_t figure, Tell&& tell) {
-        const std::lock_guard hold(mutex_);
+        const std::lock_guard lock(mutex_);
         auto& report = reports_[figure];
         if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].experiment->unit(), streamed_);
         tell(*report);
@@ -85,7 +84,6 @@ private:
     std::vector<std::optional<ProgressReport>> reports_;
 };
 
-/// The files that the run of a figure writes to DIR/NAME/.
 std::vector<std::string> files_of(const FigurePreset& figure, const FigureCommandOptions& options) {
     const auto& name = figure.name;
     const auto shard = shard_of(options);

@@ -66,8 +66,7 @@ void add_fit(CLI::App& app) {
     command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
     add_choice(command, "--model", options->model, "KIND",
                "Bodies: auto, point (masses on massless rods) or rigid (bodies)", {"auto", "point", "rigid"});
-    add_value(command, "--name", options->fit.name, "NAME",
-              "Name of the results; that of the first file where not given");
+    add_value(command, "--name", options->fit.name, "NAME", "Name of the results; default: that of the first file");
     add_value(command, "--every", options->every_s, "S", "Seconds from the beginning of a piece to that of the next")
         ->check(CLI::Range(1e-3, 1e6));
     add_value(command, "--gravity", options->fit.convention.gravity, "G",

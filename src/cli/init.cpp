@@ -42,7 +42,6 @@ bool is_used(const FieldTable& table, std::string_view key, std::string_view kin
            std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();
 }
 
-/// The value of a key in the starting preset.
 std::string starting_value(const ListedField& field) {
     if (field.key == "column") return "\"distance\"";
     if (field.key == "scene") return "\"butterfly\"";
@@ -127,10 +126,10 @@ void write_preset(const fs::path& path, std::string_view kind) {
     ignore_sigpipe();
     const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
-    const LoneFile file(path, "");
+    const SingleFile file(path, "");
     write_file(file.place(), preset.text);
     file.publish();
-    tell_of_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
+    report_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
 }
 
 }  // namespace
@@ -143,7 +142,7 @@ void add_init(CLI::App& app) {
         "Examples:\n"
         "  doppel init mine.toml && doppel render mine.toml\n"
         "  doppel init --figure section sections.toml && doppel figure sections.toml");
-    command.add_option("FILE", *name, "The new file, which ends in .toml; of a figure KIND.toml where not given");
+    command.add_option("FILE", *name, "The new file, which ends in .toml; default for a figure: KIND.toml");
     std::vector<std::string> kinds;
     for (const auto& figure : figure_kinds()) kinds.emplace_back(figure.name);
     auto* figure =

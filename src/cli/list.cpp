@@ -33,9 +33,9 @@ Entry entry_of(const PresetText& preset, const std::string& path) {
     try {
         const auto kind = kind_of_preset(preset);
         return {preset.name, kind == pair_kind ? read_preset(preset).title : read_figure(preset).title, kind, path};
-    } catch (const Error& fault) {
-        if (path.empty() || fault.code() != ExitCode::bad_input) throw;
-        return {preset.name, fault.what(), "", path};
+    } catch (const Error& error) {
+        if (path.empty() || error.code() != ExitCode::bad_input) throw;
+        return {preset.name, error.what(), "", path};
     }
 }
 
@@ -130,7 +130,7 @@ void add_list(CLI::App& app) {
         ->capture_default_str();
     command.add_flag("--json", *as_json, "The presets as JSON");
     command.callback([what, as_json] {
-        if (*as_json && *what == "methods") throw bad_input("--json is of presets; list methods has none");
+        if (*as_json && *what == "methods") throw bad_input("--json is only for presets, not for methods");
         if (*what == "methods") return list_methods();
         if (*as_json) return list_as_json();
         list_presets();
@@ -174,7 +174,7 @@ std::string with_schema_line(const std::string& text) {
     return text.starts_with(directive) ? schema_line() + text.substr(text.find('\n') + 1) : text;
 }
 
-std::optional<std::string> schema_line_fault(const PresetText& preset) {
+std::optional<std::string> schema_line_error(const PresetText& preset) {
     if (!is_file(preset.path)) return std::nullopt;  // built in
     std::istringstream lines(preset.text);
     int number = 0;
@@ -188,13 +188,13 @@ std::optional<std::string> schema_line_fault(const PresetText& preset) {
     if (name.starts_with(address_of_file)) name.erase(0, address_of_file.size());
     if (name.find("://") != std::string::npos) return std::nullopt;
     const auto path = fs::path(preset.path).parent_path() / name;
-    const auto fault = [&](std::string_view what) {
+    const auto error = [&](std::string_view what) {
         return fmt::format("{}:{}:1: #:schema names {}, {}; \"doppel schema\" prints the one that editors want",
                            preset.path, number, path.string(), what);
     };
-    if (!is_file(path)) return fault("and there is no such file");
+    if (!is_file(path)) return error("and there is no such file");
     const auto text = read_whole_file(path, {"a schema is a JSON file", std::size_t{8} << 20});
-    return text == preset_schema() ? std::nullopt : std::optional(fault("which is not this program's schema"));
+    return text == preset_schema() ? std::nullopt : std::optional(error("which is not this program's schema"));
 }
 
 void add_schema(CLI::App& app) {

@@ -54,7 +54,7 @@ Destination::Destination(const std::string& out, std::size_t runs, const std::st
     streamed_ = ending;
 }
 
-LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(std::move(path)) {
+SingleFile::SingleFile(std::filesystem::path path, std::string_view start) : path_(std::move(path)) {
     using Type = std::filesystem::file_type;
     const auto type = type_of(path_);
     if (type != Type::not_found && type != Type::regular)
@@ -70,12 +70,12 @@ LoneFile::LoneFile(std::filesystem::path path, std::string_view start) : path_(s
     write_file(place_, "");  // so that an unwritable place is reported before the work starts
 }
 
-LoneFile::~LoneFile() {
+SingleFile::~SingleFile() {
     std::error_code ignored;
     std::filesystem::remove(place_, ignored);
 }
 
-void LoneFile::publish() const {
+void SingleFile::publish() const {
     rename_file(place_, path_);
 }
 
@@ -97,10 +97,10 @@ void add_gl_option(CLI::App& command, std::string& gl) {
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
     long first = 0, second = 0;
     const char* const end = text.data() + text.size();
-    const auto [middle, fault] = std::from_chars(text.data(), end, first);
-    if (fault != std::errc() || middle == end || *middle != separator) return std::nullopt;
-    const auto [stop, second_fault] = std::from_chars(middle + 1, end, second);
-    if (second_fault != std::errc() || stop != end) return std::nullopt;
+    const auto [middle, error] = std::from_chars(text.data(), end, first);
+    if (error != std::errc() || middle == end || *middle != separator) return std::nullopt;
+    const auto [stop, second_error] = std::from_chars(middle + 1, end, second);
+    if (second_error != std::errc() || stop != end) return std::nullopt;
     return std::pair{first, second};
 }
 

@@ -91,13 +91,13 @@ private:
 
 /// A single output file in any folder, which is made if it is missing. It is written under a hidden name and moved to
 /// its place when complete. If it is destroyed before that, nothing stays.
-class LoneFile {
+class SingleFile {
 public:
     /// Throws Error (exit 4) if the file cannot be written, or exists and does not begin with `start`.
-    LoneFile(std::filesystem::path path, std::string_view start);
-    ~LoneFile();
-    LoneFile(const LoneFile&) = delete;
-    LoneFile& operator=(const LoneFile&) = delete;
+    SingleFile(std::filesystem::path path, std::string_view start);
+    ~SingleFile();
+    SingleFile(const SingleFile&) = delete;
+    SingleFile& operator=(const SingleFile&) = delete;
 
     /// The path to write to.
     const std::filesystem::path& place() const { return place_; }
@@ -113,7 +113,6 @@ void list_outputs(const OutOptions& options, const std::string& name, const std:
 /// Prints to standard output.
 void print_json(const Json& json);
 
-/// The presets in presets/ and presets/figures/ of the current folder.
 std::vector<std::filesystem::path> preset_files_here();
 
 /// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ of the current folder, or the
@@ -124,7 +123,7 @@ std::string schema_line(const std::filesystem::path& folder = ".");
 std::string with_schema_line(const std::string& text);
 
 /// The error in the schema line of a preset's file: it names a missing file, or not this program's schema.
-std::optional<std::string> schema_line_fault(const PresetText& preset);
+std::optional<std::string> schema_line_error(const PresetText& preset);
 
 /// The output of "doppel complete WORD…" for the scripts of "doppel completion": completions of the last word, one per
 /// line, each with a tab and a description. The words are without quotes; the last may be incomplete.

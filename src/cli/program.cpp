@@ -57,8 +57,8 @@ void fill_standard_streams() {
 
 /// Prints the message as one readable line; never throws.
 int failed(ExitCode code, std::string_view message) {
-    constexpr std::size_t most = 4000;  // bytes
-    const auto line = shortened(on_one_line(message), most);
+    constexpr std::size_t maximum = 4000;  // bytes
+    const auto line = shortened(on_one_line(message), maximum);
     std::fprintf(stderr, "doppel: %s\n", line.c_str());
     return static_cast<int>(code);
 }
@@ -104,25 +104,25 @@ int run_program(int argc, char** argv) {
         if (words.size() > 1 && !words[1].starts_with('-')) refuse_unknown_command(app, words[1]);
         try {
             app.parse(argc, argv);
-        } catch (const CLI::ParseError& fault) {
-            if (fault.get_exit_code() == 0) {
+        } catch (const CLI::ParseError& error) {
+            if (error.get_exit_code() == 0) {
                 std::ostringstream help;
-                app.exit(fault, help);
+                app.exit(error, help);
                 write_out(help.str());
                 return 0;
             }
-            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", fault.what()));
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", error.what()));
         }
         return exit_code;
-    } catch (const Error& fault) {
-        const bool is_terminated = fault.code() == ExitCode::interrupted && was_terminated();
-        const int code = failed(is_terminated ? ExitCode::terminated : fault.code(), fault.what());
-        for (const auto& line : fault.further()) failed(fault.code(), line);
+    } catch (const Error& error) {
+        const bool is_terminated = error.code() == ExitCode::interrupted && was_terminated();
+        const int code = failed(is_terminated ? ExitCode::terminated : error.code(), error.what());
+        for (const auto& line : error.further()) failed(error.code(), line);
         return code;
     } catch (const std::bad_alloc&) {
         return failed(ExitCode::io_failed, "there is not enough memory");
-    } catch (const std::exception& fault) {
-        return failed(ExitCode::io_failed, fault.what());
+    } catch (const std::exception& error) {
+        return failed(ExitCode::io_failed, error.what());
     }
 }
 

@@ -63,7 +63,6 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     return scenes;
 }
 
-/// The files that scenes are read from: presets, tracks and fonts.
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
                                              const std::vector<Scene>& scenes) {
     std::vector<std::filesystem::path> inputs;
@@ -117,7 +116,7 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
 }
 
 /// Sets the range from --frames, or from --from and --to.
-void take_range(const RenderOptions& options, RunOptions& run) {
+void set_range(const RenderOptions& options, RunOptions& run) {
     if (!options.from.empty()) run.from_s = seconds_of_option("--from", options.from);
     if (!options.to.empty()) run.to_s = seconds_of_option("--to", options.to);
     if (options.frames.empty()) return;
@@ -175,7 +174,7 @@ void add_render(CLI::App& app) {
                        .jobs = options->jobs,
                        .gl = gl_named(options->gl),
                        .columns = columns_of_option(options->columns)};
-        take_range(*options, run);
+        set_range(*options, run);
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first one is rendered
         for (const auto& scene : scenes) check_video(video_options(scene));

@@ -74,7 +74,7 @@ std::string bar(double share) {
 
 /// Prints to standard error; if nobody reads it, the run continues.
 template <class... Args>
-void say(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
+void print_to(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
     std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), to);
 }
 
@@ -111,7 +111,7 @@ void write_out(std::string_view text) {
     check_written(write_error(text));
 }
 
-void tell_of_files(std::string_view text) {
+void report_files(std::string_view text) {
     const int error = write_error(text);
     if (error != EPIPE && error != EBADF) check_written(error);
 }
@@ -148,20 +148,20 @@ void ProgressReport::operator()(const Progress& progress) {
     const double left = static_cast<double>(progress.total - progress.done) / rate;
     const double share = static_cast<double>(progress.done) / static_cast<double>(progress.total);
     if (style_ == ProgressStyle::json) {
-        tell({{"event", "progress"},
-              {"preset", name_},
-              {"unit", unit_},
-              {"done", progress.done},
-              {"total", progress.total},
-              {"per_second", rate},
-              {"seconds_left", left}});
+        write_event({{"event", "progress"},
+                     {"preset", name_},
+                     {"unit", unit_},
+                     {"done", progress.done},
+                     {"total", progress.total},
+                     {"per_second", rate},
+                     {"seconds_left", left}});
     } else if (style_ == ProgressStyle::bar) {
-        say(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
-            progress.done, progress.total, unit_, rate, unit_, duration(left));
+        print_to(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
+                 progress.done, progress.total, unit_, rate, unit_, duration(left));
         on_screen_ = true;
     } else {
-        say(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
-            100 * share, rate, unit_, duration(left));
+        print_to(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
+                 100 * share, rate, unit_, duration(left));
     }
 }
 
@@ -172,20 +172,20 @@ void ProgressReport::note(const std::string& sentence) {
 void ProgressReport::warn(const std::string& sentence) {
     clear();
     if (style_ == ProgressStyle::json)
-        tell({{"event", "note"}, {"preset", name_}, {"text", sentence}});
+        write_event({{"event", "note"}, {"preset", name_}, {"text", sentence}});
     else
-        say(stderr, "{}: {}\n", name_, on_one_line(sentence));
+        print_to(stderr, "{}: {}\n", name_, on_one_line(sentence));
 }
 
-void ProgressReport::tell(const nlohmann::ordered_json& event) {
+void ProgressReport::write_event(const nlohmann::ordered_json& event) {
     const auto line = event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    if (!streamed_.empty()) return say(stderr, "{}", line);
+    if (!streamed_.empty()) return print_to(stderr, "{}", line);
     const int error = write_error(line);
     if (error != 0 && error != EPIPE) write_error_ = error;  // the reader may close the pipe
 }
 
 void ProgressReport::clear() {
-    if (on_screen_) say(stderr, "\r\033[K");
+    if (on_screen_) print_to(stderr, "\r\033[K");
     on_screen_ = false;
 }
 
@@ -201,19 +201,19 @@ void ProgressReport::done(const RunResult& result) {
             {"event", "done"}, {"preset", name_}, {"unit", unit_}, {"done", count}, {"wall_s", result.wall_s}};
         for (const auto& file : result.files)
             if (streamed_.empty()) line["files"].push_back(file.string());
-        tell(line);
+        write_event(line);
         return check_written(write_error_);
     }
     constexpr long few = 10;  // too few for a meaningful rate
     if (style_ != ProgressStyle::none && count < few)
-        say(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
+        print_to(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
     else if (style_ != ProgressStyle::none)
-        say(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
-            static_cast<double>(count) / result.wall_s, unit_);
+        print_to(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
+                 static_cast<double>(count) / result.wall_s, unit_);
     if (!streamed_.empty()) return;
     std::string lines;
     for (const auto& file : result.files) lines += file_line(file) + "\n";
-    tell_of_files(lines);
+    report_files(lines);
 }
 
 }  // namespace doppel

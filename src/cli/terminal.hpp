@@ -30,7 +30,7 @@ void ignore_sigpipe();
 void write_out(std::string_view text);
 
 /// As write_out(), about files that are complete: a closed standard output or a reader that left is no failure.
-void tell_of_files(std::string_view text);
+void report_files(std::string_view text);
 
 /// Writes one line for people; quoted text is sanitised.
 template <class... Args>
@@ -51,7 +51,6 @@ public:
     ProgressReport(ProgressStyle style, std::string name, std::string unit, std::string streamed = {});
 
     void operator()(const Progress& progress);
-    /// Prints a sentence about the run.
     void note(const std::string& sentence);
     /// Prints a warning, in every style.
     void warn(const std::string& sentence);
@@ -65,7 +64,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     /// Writes a JSON line; a failure does not end the run.
-    void tell(const nlohmann::ordered_json& event);
+    void write_event(const nlohmann::ordered_json& event);
 
     ProgressStyle style_;
     std::string name_, unit_, streamed_;  // unit: "frames"

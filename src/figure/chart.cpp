@@ -40,17 +40,17 @@ void check_chart(const TomlReader& table, const ChartSpec& chart) {
     const auto [width, height] = layout.picture;
     const double height_pt = layout.width_pt * height / width;
     // in text heights: the smallest chart with space for axes, labels and a curve
-    constexpr double least_width = 12, least_height = 10;
-    if (const double most = std::min(layout.width_pt / least_width, height_pt / least_height);
-        chart.width_cm && chart.font_pt > most)
-        throw table.fault("font_pt",
+    constexpr double min_width = 12, min_height = 10;
+    if (const double maximum = std::min(layout.width_pt / min_width, height_pt / min_height);
+        chart.width_cm && chart.font_pt > maximum)
+        throw table.error("font_pt",
                           "is too large for a chart of {:.3g}×{:.3g} cm; at most {:.2g} pt is possible; it is {:g}",
-                          layout.width_pt / pt_per_cm, height_pt / pt_per_cm, most, chart.font_pt);
+                          layout.width_pt / pt_per_cm, height_pt / pt_per_cm, maximum, chart.font_pt);
     if (std::min(width, height) < smallest || std::max(width, height) > largest) {
         const auto what = chart.width_cm
                               ? fmt::format("{:g} cm at {} dpi", *chart.width_cm, chart.dpi)
                               : fmt::format("{:g} times {}×{} px", chart.scale, chart.size.width, chart.size.height);
-        throw table.fault(chart.width_cm ? "width_cm" : "scale",
+        throw table.error(chart.width_cm ? "width_cm" : "scale",
                           "must leave a picture of {} to {} px a side; {} is {}×{} px", smallest, largest, what, width,
                           height);
     }

@@ -36,7 +36,7 @@ template <class Visit, class Chart>
 void chart_fields(Visit& visit, Chart& chart) {
     const bool on_paper = chart.width_cm.has_value();
     const auto of_paper = [&](std::string_view what) {
-        return Only{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
+        return Condition{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
     };
     visit({"format", "format of the picture: pixels, or text and lines for a paper"}, chart.format);
     visit(size_field, chart.size);
@@ -70,7 +70,7 @@ void chart_fields(Visit& visit, Chart& chart) {
            "",
            {.low = 0, .high = 8, .is_open = true},
            "",
-           Only{!on_paper, "is of a size in pixels; with width_cm dpi says it"}},
+           Condition{!on_paper, "is for a size in pixels; with width_cm, dpi sets it"}},
           chart.scale);
     visit({.key = "title",
            .help = "text in place of title and subtitle, one or a list of both; `false`: none",

@@ -72,10 +72,10 @@ std::filesystem::path Computation::publish_shard() {
 /// Groups of unknown trials that are best computed together. If there are many, some evenly spaced ones come first, so
 /// that the time of the rest can be estimated.
 void Computation::find_groups() {
-    const std::size_t most = figure_.experiment->together();
+    const std::size_t maximum = figure_.experiment->together();
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
         if (!known_[trial].empty()) continue;
-        if (!groups_.empty() && groups_.back().second == trial && trial - groups_.back().first < most)
+        if (!groups_.empty() && groups_.back().second == trial && trial - groups_.back().first < maximum)
             ++groups_.back().second;
         else
             groups_.emplace_back(trial, trial + 1);
@@ -92,7 +92,7 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
     try {
         throw_if_set(stop);
         {
-            const std::lock_guard hold(mutex_);
+            const std::lock_guard lock(mutex_);
             if (start_s_ == 0) start_s_ = flushed_s_ = now();
         }
         const auto [first, last] = groups_[group];
@@ -103,21 +103,21 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
             if (!figure_.experiment->fits(first + i, numbers[i]))
                 throw method_failed("{}: the result of trial {} is infinite or NaN", figure_.name, first + i);
         return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
-    } catch (const Error& fault) {
-        throw with_record(fault);
+    } catch (const Error& error) {
+        throw with_record(error);
     }
 }
 
-Error Computation::with_record(const Error& fault) {
-    const std::lock_guard hold(mutex_);
-    if (!has_record_) return fault;
+Error Computation::with_record(const Error& error) {
+    const std::lock_guard lock(mutex_);
+    if (!has_record_) return error;
     if (writer_) writer_->flush();
-    return {fault.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command resumes", fault.what(),
+    return {error.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command resumes", error.what(),
                                       percent(kept_units_), record_.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
-    const std::lock_guard hold(mutex_);
+    const std::lock_guard lock(mutex_);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         known_[group.first + i] = std::move(numbers[i]);
         const double units = figure_.experiment->units(group.first + i);
@@ -140,15 +140,15 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
         }
     }
     if (writer_) kept_units_ = done_units_;
-    if (groups_done_ == groups_ahead && groups_.size() >= many_groups) tell_estimate(time);
+    if (groups_done_ == groups_ahead && groups_.size() >= many_groups) report_estimate(time);
     report_.progress({done_units_, total_units_});
     return is_last;
 }
 
-void Computation::tell_estimate(double time) {
+void Computation::report_estimate(double time) {
     const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
     report_.note(fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
-                             figure_.experiment->unit(), roughly(rate), threads_, duration_words(left / rate)));
+                             figure_.experiment->unit(), two_digits(rate), threads_, duration_words(left / rate)));
 }
 
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
@@ -182,8 +182,8 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
             seconds += now() - from;
             for (std::size_t k = 0; k < numbers.size(); ++k) done += experiment.units(first + k);
         }
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::interrupted || stop) throw;
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::interrupted || stop) throw;
     }
     if (done == 0) seconds = now() - start;
     const auto groups = static_cast<double>((counted + together - 1) / together);

@@ -10,7 +10,6 @@
 
 namespace doppel {
 
-/// The progress of a figure, in its units.
 struct FigureProgress {
     double done = 0, total = 0;
 };
@@ -38,7 +37,7 @@ public:
     bool compute(std::size_t group, const std::atomic<bool>& stop);
     KnownTrials take_all() { return std::move(known_); }
     /// The same error, with the share of results kept in the record and its path.
-    Error with_record(const Error& fault);
+    Error with_record(const Error& error);
 
     /// Turns the record of all trials into the shard. Throws Error (exit 4).
     std::filesystem::path publish_shard();
@@ -54,7 +53,7 @@ private:
     std::filesystem::path shard() const { return *folder_ / shard_name(header_); }
     void find_groups();
     bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
-    void tell_estimate(double time);
+    void report_estimate(double time);
     double percent(double units) const { return total_units_ > 0 ? 100 * units / total_units_ : 100; }
 
     const FigurePreset& figure_;

@@ -16,23 +16,23 @@ namespace doppel {
 namespace {
 
 /// The name of a law of growth, and the hue of its curves.
-struct GrowthLook {
+struct GrowthStyle {
     Growth::Kind kind;
     std::string_view words, law;
     int hue;
 };
-constexpr std::array looks{GrowthLook{Growth::Kind::bounded, "stays bounded", "", 1},
-                           GrowthLook{Growth::Kind::root, "grows like √t", " ∝ √t", 2},
-                           GrowthLook{Growth::Kind::linear, "grows linearly", " ∝ t", 0},
-                           GrowthLook{Growth::Kind::steeper, "grows like t²", " ∝ t²", 3},
-                           GrowthLook{Growth::Kind::failed, "fails", "", 6}};
+constexpr std::array styles{GrowthStyle{Growth::Kind::bounded, "stays bounded", "", 1},
+                            GrowthStyle{Growth::Kind::root, "grows like √t", " ∝ √t", 2},
+                            GrowthStyle{Growth::Kind::linear, "grows linearly", " ∝ t", 0},
+                            GrowthStyle{Growth::Kind::steeper, "grows like t²", " ∝ t²", 3},
+                            GrowthStyle{Growth::Kind::failed, "fails", "", 6}};
 
-const GrowthLook& look_of(const Growth& growth) {
-    return *std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.kind == growth.kind; });
+const GrowthStyle& style_of(const Growth& growth) {
+    return *std::find_if(styles.begin(), styles.end(), [&](const auto& style) { return style.kind == growth.kind; });
 }
 
 /// The running maximum; NaN is kept.
-std::vector<double> worst_so_far(std::vector<double> worst) {
+std::vector<double> running_maximum(std::vector<double> worst) {
     for (std::size_t i = 1; i < worst.size(); ++i)
         if (!std::isnan(worst[i])) worst[i] = std::fmax(worst[i], worst[i - 1]);
     return worst;
@@ -45,14 +45,14 @@ public:
         : release_(reader.release()), duration_s_(keys.duration_s), evaluations_per_s_(keys.evaluations_per_s) {
         find_times(keys.points_per_decade);
         const auto &methods = keys.methods, &projected = keys.projected;
-        if (methods.empty()) throw table.fault("methods", "must name at least one");
+        if (methods.empty()) throw table.error("methods", "must name at least one");
         for (const auto& name : methods)
             if (known(table, "methods", name).angles) add_run(name, Model::angles);
         for (const auto& name : methods)
             if (find_method(name)->constraints) add_run(name, Model::constraints);
         for (const auto& name : projected) {
             if (!known(table, "projected", name).constraints)
-                throw table.fault("projected", "needs methods that integrate constraints; \"{}\" does not", name);
+                throw table.error("projected", "needs methods that integrate constraints; \"{}\" does not", name);
             add_run(name, Model::constraints, Stabilise::projection);
         }
         check_distinct(table, "methods", methods);
@@ -97,7 +97,7 @@ public:
             if (plot.curves.empty()) continue;
             figure.panels.push_back(std::move(plot));
         }
-        figure.captions.push_back(seen_words(numbers));
+        figure.captions.push_back(error_caption(numbers));
     }
 
     std::string subtitle() const override {
@@ -127,7 +127,7 @@ public:
                 if (of_rods && runs_[r].model == Model::angles) continue;
                 const auto found = growth(run, of_rods);
                 const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
-                all.push_back({quantity + "growth", std::string(look_of(found).words)});
+                all.push_back({quantity + "growth", std::string(style_of(found).words)});
                 all.push_back({quantity + "exponent", found.exponent});
                 if (run.failed_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
             }
@@ -152,7 +152,7 @@ private:
     static const MethodEntry& known(const TomlReader& table, std::string_view key, const std::string& name) {
         const auto* method = find_method(name);
         if (method && (method->angles || method->constraints)) return *method;
-        throw table.fault(key, "must be names of methods (doppel list methods); \"{}\" is none", name);
+        throw table.error(key, "must be names of methods (doppel list methods); \"{}\" is none", name);
     }
 
     void add_run(const std::string& method, Model model, Stabilise stabilise = Stabilise::none) {
@@ -180,7 +180,7 @@ private:
     /// The time of a point, or of an earlier failure, s.
     double time(const DriftRun& run, std::size_t point) const { return std::fmin(times_s_[point], run.failed_at_s); }
     Growth growth(const DriftRun& run, bool of_rods) const {
-        return growth_of(times_s_, worst_so_far(of_rods ? run.length_error : run.energy_error), run.failed_at_s);
+        return growth_of(times_s_, running_maximum(of_rods ? run.length_error : run.energy_error), run.failed_at_s);
     }
 
     /// The energy is shown for the best model of a method; the rods for all models with rods.
@@ -208,10 +208,10 @@ private:
     /// Adds a line, with a mark if the run fails.
     void add_curves(const DriftRun& run, const std::string& name, bool of_rods, Plot& plot) const {
         const auto found = growth(run, of_rods);
-        const auto& look = look_of(found);
-        Curve curve{.label = name, .hue = look.hue};
-        curve.label += look.law;
-        const auto errors = worst_so_far(of_rods ? run.length_error : run.energy_error);
+        const auto& style = style_of(found);
+        Curve curve{.label = name, .hue = style.hue};
+        curve.label += style.law;
+        const auto errors = running_maximum(of_rods ? run.length_error : run.energy_error);
         for (std::size_t i = 0; i < errors.size(); ++i) {
             if (!(errors[i] > 0)) continue;
             add_point(curve, time(run, i), errors[i]);
@@ -224,7 +224,7 @@ private:
     }
 
     /// The final energy errors, and how to read the curves.
-    std::string seen_words(std::span<const TrialNumbers> numbers) const {
+    std::string error_caption(std::span<const TrialNumbers> numbers) const {
         std::vector<std::string> bounded;
         bool breaks = false;
         for (std::size_t run = 0; run < runs_.size(); ++run) {

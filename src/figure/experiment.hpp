@@ -21,7 +21,6 @@ namespace doppel {
 /// The results of one trial, at least one number; NaN if one is missing.
 using TrialNumbers = std::vector<double>;
 
-/// Whether all are finite.
 inline bool all_finite(std::span<const double> numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
@@ -43,7 +42,6 @@ concept NumberRow = std::is_trivially_copyable_v<Row> && sizeof(Row) % sizeof(do
 template <NumberRow Row>
 inline constexpr std::size_t numbers_in = sizeof(Row) / sizeof(double);
 
-/// The first row of the numbers.
 template <NumberRow Row>
 Row row_of(std::span<const double> numbers) {
     std::array<double, numbers_in<Row>> first;

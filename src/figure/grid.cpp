@@ -38,29 +38,32 @@ void Grid::find_axes(FigureReader& reader) {
 void Grid::check(const TomlReader& table) const {
     std::vector<std::string_view> names;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
-        if (axis->is_there() && std::find(names.begin(), names.end(), axis->key) != names.end())
-            throw table.fault("x", "and the other axes must have different keys; \"{}\" is there twice", axis->key);
+        if (axis->exists() && std::find(names.begin(), names.end(), axis->key) != names.end())
+            throw table.error("x", "and the other axes must have different keys; \"{}\" is there twice", axis->key);
         names.push_back(axis->key);
     }
     for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}, {"color", &color_}, {"panel", &panel_}}) {
         const bool is_curves = axis == &color_ || axis == &panel_;
         if (!axis->levels.empty() && !is_curves)
-            throw table.fault(role, "takes numbers; \"{}\" is for panel or color", axis->key);
-        if (axis->is_setting() && axis != &x_) throw table.fault(role, "cannot be \"setting\", which is only for x");
+            throw table.error(role, "takes numbers; \"{}\" is for panel or color", axis->key);
+        if (axis->is_setting() && axis != &x_) throw table.error(role, "cannot be \"setting\", which is only for x");
     }
     if (x_.is_of_one_side && difference_ != 0)
-        throw table.fault("difference", "must be 0 for {}, in which the sides do not differ", x_.key);
+        throw table.error("difference", "must be 0 for {}, in which the sides do not differ", x_.key);
     for (const auto& end : {x_.value(0), x_.value(x_.count - 1)})
         x_.require(table, "difference", Quad(end + difference_));
-    if (is_map() && color_.is_there()) throw table.fault("color", "is of curves; the colours of a map are its numbers");
-    if (is_map() && right_) throw table.fault("right", "is of curves; a map has one quantity");
+    if (is_map() && color_.exists())
+        throw table.error("color", "is only for curves; in a map the colours show the quantity");
+    if (is_map() && right_) throw table.error("right", "is only for curves; a map shows one quantity");
     if (right_ == name_of(quantity_) || right_ == name_of(Quantity::stroboscopic))
-        throw table.fault("right", "must be another quantity, of one number a pair; it is \"{}\"", *right_);
+        throw table.error("right", "must be another quantity with one number per pair; it is \"{}\"", *right_);
     if (quantity_ == Quantity::convergence && (!x_.is_setting() || is_map() || right_))
-        throw table.fault("quantity", "\"convergence\" takes [grid.x] key = \"setting\", and no [grid.y] or right");
+        throw table.error("quantity", "\"convergence\" takes [grid.x] key = \"setting\", and no [grid.y] or right");
     if (quantity_ == Quantity::stroboscopic && (is_map() || right_))
-        throw table.fault("quantity", "\"stroboscopic\" has many numbers, which are points over x alone");
-    if (!is_map() && threshold_) throw table.fault("threshold", "is of maps, which have [grid.y]");
+        throw table.error(
+            "quantity",
+            "\"stroboscopic\" has many numbers per pair, which are drawn as points over x; leave the other axes out");
+    if (!is_map() && threshold_) throw table.error("threshold", "is only for maps, which have [grid.y]");
     check_overlay(table);
 }
 
@@ -69,14 +72,14 @@ void Grid::check_overlay(const TomlReader& table) const {
     const bool is_shaken = x_.key == "system.pivot.frequency_hz" && y_.key == "system.pivot.amplitude_m" &&
                            a.particles.empty() && a.links() == 1 && a.physical.pivot.direction_deg == 90;
     if (overlay_ == Overlay::energy_bound && !(is_of_releases() && is_zero(a.omega_deg_per_s)))
-        throw table.fault("overlay",
-                          "\"energy-bound\" is of two ideal links released at rest, theta2_deg over theta1_deg");
+        throw table.error("overlay",
+                          "\"energy-bound\" is for two ideal links released at rest, theta2_deg over theta1_deg");
     if ((overlay_ == Overlay::kapitza || overlay_ == Overlay::mathieu) && !is_shaken)
-        throw table.fault("overlay",
-                          "is of one link whose pivot moves up and down, over system.pivot.frequency_hz and "
+        throw table.error("overlay",
+                          "is for one link whose pivot moves up and down, over system.pivot.frequency_hz and "
                           "system.pivot.amplitude_m");
     if (overlay_ == Overlay::linear_limit && !(is_map() && quantity_ == Quantity::stability && x_.is_setting()))
-        throw table.fault("overlay", "\"linear-limit\" is of a map of stability over the setting");
+        throw table.error("overlay", "\"linear-limit\" is for a map of stability over the setting");
 }
 
 void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c) {
@@ -94,65 +97,65 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     x_.require_in(table, "x", group.pair);
     y_.require_in(table, "y", group.pair);
     const auto number = groups_.size() - 1;
-    if (!x_.is_of_method && !y_.is_of_method) step_all_alike(group.pair, pair_at({number, 0, 0}), reader.stop);
+    if (!x_.is_of_method && !y_.is_of_method) use_common_method(group.pair, pair_at({number, 0, 0}), reader.stop);
     const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
     const auto measure = [&](std::string_view key, Quantity quantity) {
         group.measurements.emplace_back(table, key, quantity, first, x_.keeps_method && y_.keeps_method, options_);
-        require_apart(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
+        require_difference(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
         if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, last.a);
     };
     measure("quantity", quantity_);
     if (right_) measure("right", value_named<Quantity>(*right_));
     const auto spec = group.measurements.front().flips_in_lanes();
     if (options_.flip_tolerance && !spec)
-        throw table.fault("flip_tolerance", "is of flips of two ideal links; other flips go by the integrator");
+        throw table.error("flip_tolerance", "is for flips of two ideal links; other flips use the integrator");
 }
 
 void Grid::check_range(const TomlReader& table) const {
     if (range_ && words().logarithmic && !(range_->low > 0))
-        throw table.fault("range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]", name_of(quantity_),
+        throw table.error("range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]", name_of(quantity_),
                           range_->low, range_->high);
 }
 
 void Grid::make_map() {
-    look_ = {.rows = y_.count,
-             .y_low = static_cast<double>(y_.from),
-             .y_high = static_cast<double>(y_.to),
-             .label = words().label,
-             .none_label = words().none,
-             .none_is_bad = words().none_is_bad,
-             .logarithmic = words().logarithmic,
-             .threshold = threshold_,
-             .shares_bar = panel_.is_there()};
-    if (const auto& range = words().range) look_.low = range->low, look_.high = range->high;
-    if (quantity_ == Quantity::flip_time) look_.high = pair_.duration_s.value();
+    map_style_ = {.rows = y_.count,
+                  .y_low = static_cast<double>(y_.from),
+                  .y_high = static_cast<double>(y_.to),
+                  .label = words().label,
+                  .none_label = words().none,
+                  .none_is_bad = words().none_is_bad,
+                  .logarithmic = words().logarithmic,
+                  .threshold = threshold_,
+                  .shares_bar = panel_.exists()};
+    if (const auto& range = words().range) map_style_.low = range->low, map_style_.high = range->high;
+    if (quantity_ == Quantity::flip_time) map_style_.high = pair_.duration_s.value();
     const auto is_even = [](const GridAxis& axis) { return axis.spacing == Spacing::linear && axis.from == -axis.to; };
     is_mirrored_ = measurements().front().flips_in_lanes() && is_of_releases() && is_even(x_) && is_even(y_) &&
                    is_zero(pair_.a.omega_deg_per_s);
     are_columns_ = x_.is_setting();
-    constexpr std::size_t most_in_line = 256;  // trials
+    constexpr std::size_t max_in_line = 256;  // trials
     const auto cells = line_cells(groups_.front());
-    piece_ = std::max(measurements().front().together(false), (cells + most_in_line - 1) / most_in_line);
-    if (range_) look_.low = range_->low, look_.high = range_->high;
+    piece_ = std::max(measurements().front().together(false), (cells + max_in_line - 1) / max_in_line);
+    if (range_) map_style_.low = range_->low, map_style_.high = range_->high;
 }
 
 /// The subtitle: system, integrator, and difference of the two pendulums, as far as all pairs share them.
 void Grid::make_subtitle() {
-    Varied varied{.method = words().method};
+    SweptKeys swept{.method = words().method};
     auto pair = groups_.front().pair;
     if (words().is_of_side_a) pair.b = pair.a;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
         axis->put_both(pair);  // the difference is stated separately
-        if (axis->angle) varied.angles.push_back(*axis->angle);
-        varied.step |= axis->is_of_method;
-        varied.keys.push_back(axis->key);
+        if (axis->angle) swept.angles.push_back(*axis->angle);
+        swept.step |= axis->is_of_method;
+        swept.keys.push_back(axis->key);
         for (const std::string key : {"model", "integrator", "precision", "angle_deg"})
             for (const auto& level : axis->levels) {
                 auto top = level.top();
-                if (axis->key == "system" && level.table(top, "a").has(key)) varied.keys.push_back("." + key);
+                if (axis->key == "system" && level.table(top, "a").has(key)) swept.keys.push_back("." + key);
             }
     }
-    subtitle_ = pair_subtitle(make_scene(pair), varied, words().is_of_side_a ? "" : x_.apart(difference_));
+    subtitle_ = pair_subtitle(make_scene(pair), swept, words().is_of_side_a ? "" : x_.difference_words(difference_));
 }
 
 std::size_t Grid::together() const {
@@ -245,14 +248,14 @@ std::optional<std::string> Grid::nothing_to_draw(std::span<const TrialNumbers> n
 std::vector<Finding> Grid::findings(std::span<const TrialNumbers> numbers) const {
     if (quantity_ == Quantity::stroboscopic) return period_findings(numbers);
     const auto& column = words().columns[words().drawn];
-    double least = NAN, most = NAN, regular = 0, missing = 0, forbidden = 0;
+    double minimum = NAN, maximum = NAN, regular = 0, missing = 0, forbidden = 0;
     const bool is_bounded = overlay_ == Overlay::energy_bound;
     double cells = 0;
     auto released = is_bounded ? chain_of(pair_.a).cast<double>() : Pendulum<double>();
     for_each_cell([&](const Cell& cell) {
         const auto of_cell = at(numbers, cell);
         const double value = value_at(numbers, cell);
-        if (std::isfinite(value)) least = std::fmin(least, value), most = std::fmax(most, value);
+        if (std::isfinite(value)) minimum = std::fmin(minimum, value), maximum = std::fmax(maximum, value);
         missing += is_missing(cell, value);
         ++cells;
         if (const auto place = exponent_place()) regular += is_regular({of_cell[*place], of_cell[*place + 1]});
@@ -261,7 +264,7 @@ std::vector<Finding> Grid::findings(std::span<const TrialNumbers> numbers) const
                           radians(static_cast<double>(y_.value(cell.row)))};
         forbidden += flip_is_forbidden(released);
     });
-    std::vector<Finding> all{{"least_" + column, least}, {"greatest_" + column, most}};
+    std::vector<Finding> all{{"least_" + column, minimum}, {"greatest_" + column, maximum}};
     if (is_map()) all.push_back({"share_without", missing / cells});
     if (!is_map() && missing > 0)
         all.push_back({words().none_is_bad ? "trials_broken_down" : "trials_without", missing});
@@ -306,10 +309,10 @@ std::size_t Grid::cells_of(std::size_t trial) const {
 /// Computes adjacent cells.
 void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const {
     const auto& group = groups_[first.group];
-    const std::size_t most = std::max(together(), group.measurements.front().together(false));
+    const std::size_t maximum = std::max(together(), group.measurements.front().together(false));
     auto pair = group.pair;
     auto& along = are_columns_ ? first.row : first.column;
-    for (; !cells.empty(); cells = cells.subspan(std::min(most, cells.size())), along += most) {
+    for (; !cells.empty(); cells = cells.subspan(std::min(maximum, cells.size())), along += maximum) {
         const auto at = [&](std::size_t i) -> const Preset& {
             pair.a = group.pair.a;
             if (right_ || !words().is_of_side_a) pair.b = group.pair.b;  // otherwise side b is not used
@@ -318,7 +321,7 @@ void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atom
             return pair;
         };
         for (const auto& measurement : group.measurements)
-            measurement.append(at, cells.first(std::min(most, cells.size())), stop);
+            measurement.append(at, cells.first(std::min(maximum, cells.size())), stop);
     }
 }
 
@@ -352,12 +355,12 @@ bool Grid::is_at_rest(const Cell& cell) const {
 bool Grid::is_missing(const Cell& cell, double number) const {
     if (std::isfinite(number) || is_map() || quantity_ != Quantity::divergence) return !std::isfinite(number);
     const auto pair = pair_at(cell);
-    return !released_alike(pair.a, pair.b);
+    return !have_same_release(pair.a, pair.b);
 }
 
 std::string Grid::joined_words(std::size_t group, const char* between) const {
-    const auto panel = panel_.is_there() ? panel_.words(group / color_.count) : "";
-    if (!color_.is_there()) return panel;
+    const auto panel = panel_.exists() ? panel_.words(group / color_.count) : "";
+    if (!color_.exists()) return panel;
     return panel + (panel.empty() ? "" : between) + color_.words(group % color_.count);
 }
 

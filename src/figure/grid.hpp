@@ -31,16 +31,16 @@ public:
                .help = "a second quantity of curves, on an axis at the right",
                .names = names_of<Quantity>},
               right_);
-        visit({"difference", "difference of the key of x between the two of a pair"}, difference_);
+        visit({"difference", "difference between the two pendulums of a pair in the key of x"}, difference_);
         const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
         visit({"exponent_duration_s",
                "duration of the motion from which an exponent is computed",
                "s",
                positive,
                "",
-               {.holds = has(Quantity::exponent), .hides = true}},
+               {.applies = has(Quantity::exponent), .hides = true}},
               options_.exponent_duration_s);
-        const Only of_flips{has(Quantity::flip_time), "is of flip_time"};
+        const Condition of_flips{has(Quantity::flip_time), "is only for flip_time"};
         visit({"flip_tolerance",
                "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
                "rad/s",
@@ -48,25 +48,26 @@ public:
                "1e-8 up to 20 s, for longer times less",
                of_flips},
               options_.flip_tolerance);
-        const Only strobed{.holds = quantity_ == Quantity::stroboscopic, .hides = true};
+        const Condition strobed{.applies = quantity_ == Quantity::stroboscopic, .hides = true};
         auto& strobe = options_.stroboscope;
-        visit({"link", "whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
-        visit({"transient_periods", "transient, in periods of the drive", "", from_to(0, 1'000'000), "", strobed},
+        visit({"link", "link whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
+        visit({"transient_periods", "length of the transient, drive periods", "", from_to(0, 1'000'000), "", strobed},
               strobe.transient_periods);
-        visit({"periods", "periods of the drive that are shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
+        visit({"periods", "number of drive periods shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
         visit({"overlay",
-               "lines of theory on a map: where a vibrating pivot keeps one link upright, where two links released at "
-               "rest have the energy to flip, or the linear stability limit of a method"},
+               "theoretical curves on a map: where a vibrating pivot stabilises one link upright, where two links "
+               "released "
+               "at rest have the energy to flip, or the linear stability limit of a method"},
               overlay_);
         visit({"mark_step_s",
                "a step marked by a line",
                "s",
                positive,
                "",
-               {.holds = quantity_ == Quantity::convergence, .hides = true}},
+               {.applies = quantity_ == Quantity::convergence, .hides = true}},
               mark_step_);
-        const Only of_this{!visit.from_command_line("quantity") || visit.from_command_line("range"),
-                           "is of the preset's quantity", true};
+        const Condition of_this{!visit.from_command_line("quantity") || visit.from_command_line("range"),
+                                "belongs to the preset's quantity", true};
         visit({"range",
                "of the quantity: its axis, or the colours of a map; [lowest, highest]",
                "",
@@ -77,7 +78,7 @@ public:
         visit({"threshold", "of a map: two colours, up to it and above it", "", {}, "colours for all numbers"},
               threshold_);
         visit.table("x", [&](auto& table) { x_.fields(table, grid_key_help); });
-        visit.table("y", [&](auto& table) { y_.fields(table, "the same upwards: a map, of cells"); });
+        visit.table("y", [&](auto& table) { y_.fields(table, "the vertical axis of a map"); });
         visit.table("color", [&](auto& table) { color_.fields(table, "a curve for each value"); });
         visit.table("panel", [&](auto& table) { panel_.fields(table, "a panel for each value"); });
     }
@@ -117,7 +118,7 @@ private:
     void make_map();
     void make_subtitle();
 
-    bool is_map() const { return y_.is_there(); }
+    bool is_map() const { return y_.exists(); }
     bool is_of_releases() const;
     const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
     const QuantityWords& words() const { return measurements().front().words(); }
@@ -125,7 +126,6 @@ private:
     std::optional<std::size_t> exponent_place() const;
     Preset pair_at(const Cell& cell) const;
 
-    // Trials and cells.
     std::size_t lines_computed(const Group& group) const;
     std::size_t line_cells(const Group& group) const { return are_columns_ ? y_.count : group.x.count; }
     std::size_t trials_of_line(const Group& group) const { return (line_cells(group) + piece_ - 1) / piece_; }
@@ -173,7 +173,7 @@ private:
     std::optional<double> threshold_;
     std::vector<Group> groups_;                 // panel by panel, with the colours of each
     std::size_t cell_numbers_ = 0, piece_ = 1;  // numbers of a cell; cells of a trial
-    HeatMap look_;                              // the map without its values
+    HeatMap map_style_;                         // the map without its values
     bool is_mirrored_ = false;                  // the cell at (−x, −y) has the same numbers
     bool are_columns_ = false;                  // the cells of a trial form a column: they share one setting
     std::string subtitle_;

@@ -24,8 +24,8 @@ void require_last_word(FigureReader& reader, const TomlReader& table, const std:
     const auto has = [&](const char* side) { return reader.document.table(reader.top, side).has(key); };
     for (const auto* side : {"a", "b"})
         if (path.starts_with("system.") && has(side) && has("a") != has("b"))
-            throw table.fault("key", "\"{}\" is in [{}] as well, which has the last word; vary {}.{} or take it out",
-                              path, side, side, key);
+            throw table.error("key", "\"{}\" is also in [{}], which overrides it; vary {}.{} or take it out", path,
+                              side, side, key);
 }
 
 }  // namespace
@@ -38,9 +38,9 @@ const std::array<GridAxis::ReleaseParameter, 4> GridAxis::releases{
       true}}};
 
 void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset& pair) {
-    if (!is_there()) return;
+    if (!exists()) return;
     if (!labels.empty() && labels.size() != values->texts.size())
-        throw table.fault("labels", "must name the {} values; there are {}", values->texts.size(), labels.size());
+        throw table.error("labels", "must name the {} values; there are {}", values->texts.size(), labels.size());
     if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
     if (is_setting()) return find_settings(table, pair);
     find_number(reader, table, pair);
@@ -48,14 +48,14 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
 }
 
 void GridAxis::find_settings(const TomlReader& table, const Preset& pair) {
-    if (values || !points) throw table.fault("points", "must say how many settings there are, from `from` to `to`");
-    if (!(from > 0 && to > 0)) throw table.fault("from", "must be > 0 and to as well, in s; it is {}", text_of(from));
+    if (values || !points) throw table.error("points", "must be the number of settings from `from` to `to`");
+    if (!(from > 0 && to > 0)) throw table.error("from", "must be > 0 and to as well, in s; it is {}", text_of(from));
     if (are_cells && !(from < to && tolerance_from < tolerance_to))
-        throw table.fault("to", "must be above from, and tolerance_to above tolerance_from, for the cells of a map");
-    constexpr double most_steps = 1e8;
+        throw table.error("to", "must be above from, and tolerance_to above tolerance_from, for the cells of a map");
+    constexpr double max_steps = 1e8;
     const double finest = static_cast<double>(from < to ? from : to), duration = pair.duration_s.value();
-    if (duration / finest > most_steps || from > duration || to > duration)
-        throw table.fault("from", "and to must leave 1 to {} steps in {} s; they are {} and {}", most_steps, duration,
+    if (duration / finest > max_steps || from > duration || to > duration)
+        throw table.error("from", "and to must leave 1 to {} steps in {} s; they are {} and {}", max_steps, duration,
                           text_of(from), text_of(to));
     spacing = Spacing::logarithmic;
     keeps_method = false;
@@ -76,11 +76,11 @@ void GridAxis::settle(const Preset& pair) {
     label = is_adaptive_ ? "tolerance" : "step, s";
     numbers_.clear();
     steps_.clear();
-    const double least = pair.a.precision == Precision::in_double ? 5e-15 : 0;
+    const double minimum = pair.a.precision == Precision::in_double ? 5e-15 : 0;
     const double samples = pair.duration_s.value() * pair.sample_hz.value();
     for (std::size_t i = 0; i < all.count; ++i) {
         const auto number = all.even_value(i);
-        if (is_adaptive_ && number < least && !numbers_.empty()) continue;
+        if (is_adaptive_ && number < minimum && !numbers_.empty()) continue;
         numbers_.push_back(number);
         if (is_adaptive_) continue;
         // whole steps per sample, whole samples in the duration
@@ -96,9 +96,9 @@ void GridAxis::settle(const Preset& pair) {
 
 void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
     const bool is_all = key == "system";  // each value is a table with some of the keys
-    if (!is_all && key.find('.') == std::string::npos) throw table.fault("values", "must be numbers, as {} is", key);
+    if (!is_all && key.find('.') == std::string::npos) throw table.error("values", "must be numbers, as {} is", key);
     if (!is_all && !key.starts_with("system.") && !key.starts_with("a.") && !key.starts_with("b."))
-        throw table.fault("key", "must begin with \"system.\", \"a.\" or \"b.\"; it is \"{}\"", key);
+        throw table.error("key", "must begin with \"system.\", \"a.\" or \"b.\"; it is \"{}\"", key);
     if (!is_all) require_last_word(reader, table, key);
     label = is_all ? key : caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
     keeps_method = false;
@@ -108,7 +108,7 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
         table.require_drawable("values", text);
         auto keys = fmt::format("{} = {}\n", key, text);
         if (is_all && !text.starts_with('{'))
-            throw table.fault("values", "must be tables of keys of [system], {{ integrator = \"rk4\" }}; one is {}",
+            throw table.error("values", "must be tables of keys of [system], {{ integrator = \"rk4\" }}; one is {}",
                               text);
         if (is_all)
             keys = fmt::format("a = {0}\nb = {0}\n", text);
@@ -138,9 +138,9 @@ void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const 
         return;
     }
     require_in(table, "key", pair);
-    constexpr double most_degrees = 1e6;  // as for [system] angle_deg
+    constexpr double max_degrees = 1e6;  // as for [system] angle_deg
     label = release_->label;
-    bounds_ = release_->is_ratio ? positive : from_to(-most_degrees, most_degrees);
+    bounds_ = release_->is_ratio ? positive : from_to(-max_degrees, max_degrees);
     is_of_one_side = false;
     if (!release_->is_ratio) angle = release_->links - 1;
 }
@@ -150,12 +150,12 @@ void GridAxis::require_in(const TomlReader& table, std::string_view of, const Pr
     if (!release_) return;
     for (const auto* side : {&pair.a, &pair.b})
         if (side->links() < release_->links || !side->particles.empty())
-            throw table.fault(of, "\"{}\" takes a chain of {} links", key, release_->links);
+            throw table.error(of, "\"{}\" takes a chain of {} links", key, release_->links);
 }
 
 void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
     if (are_cells && values)
-        throw table.fault("values", "are of curves and panels; the cells of a map go from `from` to `to`");
+        throw table.error("values", "are for curves and panels; the cells of a map go from `from` to `to`");
     if (values) {
         for (const auto& text : values->texts) require(table, "values", numbers_.emplace_back(parse_quad(text)));
         count = numbers_.size();
@@ -168,14 +168,14 @@ void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
 
 void GridAxis::find_even_values(const TomlReader& table) {
     if (are_cells ? !(from < to) : to < from)
-        throw table.fault("to", "must {} from ({}); it is {}", are_cells ? "be above" : "not be below", text_of(from),
+        throw table.error("to", "must {} from ({}); it is {}", are_cells ? "be above" : "not be below", text_of(from),
                           text_of(to));
     if (are_cells && number_ && number_->is_whole)
-        throw table.fault("key", "\"{}\" takes whole numbers alone, and no cells of a map", key);
+        throw table.error("key", "\"{}\" takes only whole numbers, and cannot be an axis of a map", key);
     const bool is_logarithmic = spacing == Spacing::logarithmic;
-    if (is_logarithmic && !points) throw table.fault("spacing", "\"logarithmic\" takes points, the number of values");
+    if (is_logarithmic && !points) throw table.error("spacing", "\"logarithmic\" takes points, the number of values");
     if (is_logarithmic && !(from > 0))
-        throw table.fault("from", "must be > 0 for equal ratios; it is {}", text_of(from));
+        throw table.error("from", "must be > 0 for equal ratios; it is {}", text_of(from));
     count = points ? static_cast<std::size_t>(*points) : even_steps(table) + (are_cells ? 0 : 1);
     require(table, "from", are_cells ? even_value(0) : from);
     require(table, "to", are_cells ? even_value(count - 1) : to);
@@ -183,17 +183,17 @@ void GridAxis::find_even_values(const TomlReader& table) {
 }
 
 std::size_t GridAxis::even_steps(const TomlReader& table) const {
-    constexpr int most_steps = 10'000'000;
+    constexpr int max_steps = 10'000'000;
     const Quad steps = (to - from) / step;
-    if (!(steps < most_steps))
-        throw table.fault("to", "must be at most {} steps from \"from\"; it is {}", most_steps, text_of(to));
+    if (!(steps < max_steps))
+        throw table.error("to", "must be at most {} steps from \"from\"; it is {}", max_steps, text_of(to));
     const long whole = std::lround(static_cast<double>(steps));
     constexpr double slack = 1e-12;  // a decimal may miss a whole number of steps only by rounding
     if (std::abs(static_cast<double>(steps - Quad(static_cast<double>(whole)))) > slack)
-        throw table.fault("step", "must divide the way from {} to {}; it is {}", text_of(from), text_of(to),
+        throw table.error("step", "must divide the way from {} to {}; it is {}", text_of(from), text_of(to),
                           text_of(step));
     if (number_ && number_->is_whole && step != round(step))
-        throw table.fault("step", "must be a whole number, as {} is; it is {}", key, text_of(step));
+        throw table.error("step", "must be a whole number, as {} is; it is {}", key, text_of(step));
     return static_cast<std::size_t>(whole);
 }
 
@@ -222,7 +222,7 @@ std::string GridAxis::words(std::size_t i) const {
 }
 
 std::vector<std::string> GridAxis::columns() const {
-    if (!is_there()) return {};
+    if (!exists()) return {};
     if (is_setting()) return {"step_s", "tolerance"};
     if (key == "system.integrator") return {"method"};
     return {key == "system.precision" ? "precision" : key};
@@ -232,7 +232,7 @@ void GridAxis::write(std::size_t i, Csv& table) const {
     if (is_setting() && is_adaptive_) table.add_or_empty(NAN);
     if (!levels.empty())
         table.add(std::string_view(words(i)));
-    else if (is_there())
+    else if (exists())
         table.add(static_cast<double>(value(i)));
     if (is_setting() && !is_adaptive_) table.add_or_empty(NAN);
 }
@@ -260,16 +260,16 @@ void GridAxis::put_both(Preset& pair) const {
 
 PlotAxis GridAxis::plot_axis() const {
     PlotAxis axis{.label = label, .logarithmic = spacing == Spacing::logarithmic};
-    const auto [least, most] = std::minmax_element(numbers_.begin(), numbers_.end());
-    axis.low = static_cast<double>(values ? *least : is_adaptive_ ? tolerance_from : from);
-    axis.high = static_cast<double>(values ? *most : is_adaptive_ ? tolerance_to : to);
+    const auto [minimum, maximum] = std::minmax_element(numbers_.begin(), numbers_.end());
+    axis.low = static_cast<double>(values ? *minimum : is_adaptive_ ? tolerance_from : from);
+    axis.high = static_cast<double>(values ? *maximum : is_adaptive_ ? tolerance_to : to);
     constexpr double turn = 360;  // degrees
     if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
     if (number_ && number_->is_whole) axis.every = 1;
     return axis;
 }
 
-std::string GridAxis::apart(const Quad& difference) const {
+std::string GridAxis::difference_words(const Quad& difference) const {
     if (difference == 0) return "";
     const auto far = text_of(difference < 0 ? Quad(-difference) : difference);
     if (angle) return fmt::format("pair {}° apart", far);
@@ -284,7 +284,7 @@ std::string GridAxis::apart(const Quad& difference) const {
 
 void GridAxis::require(const TomlReader& table, std::string_view of, const Quad& number) const {
     if (number_ && number_->is_whole && number != round(number))
-        throw table.fault(of, "must be a whole number, as {} is; it is {}", key, text_of(number));
+        throw table.error(of, "must be a whole number, as {} is; it is {}", key, text_of(number));
     const bool is_above = bounds_.is_open || bounds_.is_positive;
     const bool too_low = bounds_.has_low() && (is_above ? number <= bounds_.low : number < bounds_.low);
     if (!too_low && !(bounds_.has_high() && number > bounds_.high)) return;
@@ -292,8 +292,8 @@ void GridAxis::require(const TomlReader& table, std::string_view of, const Quad&
     const auto range = !bounds_.has_high() ? low
                        : bounds_.is_open   ? fmt::format("{} and at most {}", low, bounds_.high)
                                            : fmt::format("from {} to {}", bounds_.low, bounds_.high);
-    if (of == "difference") throw table.fault(of, "must keep {} {}; one would be {}", key, range, text_of(number));
-    throw table.fault(of, "must be {}, as {} is; it is {}", range, key, text_of(number));
+    if (of == "difference") throw table.error(of, "must keep {} {}; one would be {}", key, range, text_of(number));
+    throw table.error(of, "must be {}, as {} is; it is {}", range, key, text_of(number));
 }
 
 }  // namespace doppel

@@ -33,7 +33,7 @@ struct GridAxis {
     std::optional<std::size_t> angle;  // if the key is a release angle: its link, from 0
     std::vector<TomlDocument> levels;  // for textual values: the tables that each puts on top of the preset
 
-    bool is_there() const { return !key.empty(); }
+    bool exists() const { return !key.empty(); }
     /// The accuracy setting of the method: its step size, or the tolerance of an adaptive method.
     bool is_setting() const { return key == "setting"; }
     template <class Visit>
@@ -47,7 +47,6 @@ struct GridAxis {
     void settle(const Preset& pair);
 
     const Quad& value(std::size_t i) const { return numbers_[i]; }
-    /// Columns of the table.
     std::vector<std::string> columns() const;
     /// "θ₁ = 30°", "rk4"
     std::string words(std::size_t i) const;
@@ -59,7 +58,7 @@ struct GridAxis {
     PlotAxis plot_axis() const;
     CellRange cells() const { return {static_cast<double>(from), static_cast<double>(to), int(count), spacing}; }
     /// The text for a pair with this difference: "pair 0.003° apart"; empty for 0.
-    std::string apart(const Quad& difference) const;
+    std::string difference_words(const Quad& difference) const;
     /// Throws Error (exit 2) at the table's key `of` if a pair has no such key.
     void require_in(const TomlReader& table, std::string_view of, const Preset& pair) const;
     /// The same if the number is out of range.
@@ -92,42 +91,42 @@ private:
 
 template <class Visit>
 void GridAxis::fields(Visit& visit, std::string_view help) {
-    constexpr int most_points = 1'048'576;
-    constexpr std::size_t most_values = 1000;
+    constexpr int max_points = 1'048'576;
+    constexpr std::size_t max_values = 1000;
     visit({.key = "key",
            .help = help,
-           .absent = is_there() ? "" : "no such axis",
+           .absent = exists() ? "" : "no such axis",
            .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|setting|system|(system|a|b)\..+)$)"},
           key);
     visit({.key = "values",
-           .help = "one by one: numbers, or of any other key what it takes",
-           .absent = "as `from`, `to` and `step` say",
-           .only = {is_there(), "is of an axis, which needs a key"},
-           .most = most_values},
+           .help = "the values one by one: numbers, or what the key takes",
+           .absent = "given by `from`, `to` and `step`",
+           .only = {exists(), "is for an axis, and this one has no key"},
+           .maximum = max_values},
           values);
     visit({.key = "labels",
            .help = "names of the values in picture and table",
            .absent = "the values",
-           .only = {values.has_value(), "is of values, a name each"},
+           .only = {values.has_value(), "needs values, one name for each"},
            .is_drawn = true},
           labels);
-    const bool are_even = is_there() && !values;
-    const Only even{are_even,
-                    is_there() ? "is for even values; give it, or values" : "is of an axis, which needs a key"};
-    visit({.key = "from", .help = "the first value; of a map the lower edge", .only = even}, from);
-    visit({.key = "to", .help = "the last; of a map the upper edge", .only = even}, to);
+    const bool are_even = exists() && !values;
+    const Condition even{
+        are_even, exists() ? "is for even values; give it, or values" : "is for an axis, and this one has no key"};
+    visit({.key = "from", .help = "the first value; for a map the lower edge", .only = even}, from);
+    visit({.key = "to", .help = "the last value; for a map the upper edge", .only = even}, to);
     visit({.key = "spacing", .help = spacing_help, .only = even}, spacing);
     visit({.key = "points",
-           .help = "how many values; of a map how many cells, each at its middle",
-           .bounds = from_to(2, most_points),
-           .absent = "as `step` says",
+           .help = "number of values; for a map number of cells, each computed at its centre",
+           .bounds = from_to(2, max_points),
+           .absent = "given by `step`",
            .only = even},
           points);
-    visit({"step", "between two values; from `from` to `to` a whole number of them", "", positive, "",
-           Only{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
-                visit.from_command_line("points") || visit.from_command_line("spacing")}},
+    visit({"step", "difference of two values; must divide the range from `from` to `to`", "", positive, "",
+           Condition{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
+                     visit.from_command_line("points") || visit.from_command_line("spacing")}},
           step);
-    const Only of_setting{is_setting(), "is of key = \"setting\""};
+    const Condition of_setting{is_setting(), "is only for key = \"setting\""};
     visit({"tolerance_from",
            "of adaptive methods, in place of `from`",
            "",
@@ -142,7 +141,7 @@ void GridAxis::fields(Visit& visit, std::string_view help) {
            "",
            of_setting},
           tolerance_to);
-    visit({"tolerance_points", "of adaptive methods", "", from_to(2, most_points), "as `points`", of_setting},
+    visit({"tolerance_points", "of adaptive methods", "", from_to(2, max_points), "as `points`", of_setting},
           tolerance_points);
 }
 

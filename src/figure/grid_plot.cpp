@@ -23,10 +23,10 @@ bool shows(const Plot& plot, const Curve& line) {
 }  // namespace
 
 void Grid::draw(std::span<const TrialNumbers> numbers, Figure& figure) const {
-    figure.shares_axes = panel_.is_there();
+    figure.shares_axes = panel_.exists();
     for (std::size_t p = 0; p < panel_.count; ++p) {
         auto& plot = figure.panels.emplace_back(Plot{.x = groups_[p * color_.count].x.plot_axis()});
-        if (panel_.is_there()) plot.title = panel_.words(p);
+        if (panel_.exists()) plot.title = panel_.words(p);
         if (is_map()) {
             plot.y = y_.plot_axis();
             plot.square = x_.angle && y_.angle;
@@ -57,9 +57,9 @@ void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group,
         for (std::size_t i = 0; i < std::max<std::size_t>(1, of.curves.size()); ++i) {
             auto drawn = curve(numbers, group, column + i);
             drawn.right = is_right;
-            drawn.hue = static_cast<int>(color_.is_there() ? group % color_.count : plot.curves.size());
-            drawn.dashed = color_.is_there() && column + i > words().drawn;
-            if (color_.is_there())
+            drawn.hue = static_cast<int>(color_.exists() ? group % color_.count : plot.curves.size());
+            drawn.dashed = color_.exists() && column + i > words().drawn;
+            if (color_.exists())
                 drawn.label = drawn.dashed ? "" : color_.words(group % color_.count);
             else if (!of.curves.empty() || right_)
                 drawn.label = of.curves.empty() ? of.short_label : of.curves[i];
@@ -106,7 +106,7 @@ std::string Grid::rest_words() const {
 
 void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& figure) const {
     constexpr double steepest = 15;  // a larger slope belongs to a method without a fixed order
-    std::vector<std::string> slopes, least;
+    std::vector<std::string> slopes, minimum;
     for (std::size_t p = 0; p < panel_.count; ++p) {
         double nearest = NAN;
         for (std::size_t c = 0; c < color_.count; ++c) {
@@ -116,14 +116,14 @@ void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& fig
                 if (distance > 0) nearest = std::fmin(nearest, distance);
             }
             if (const double of = slope(numbers, group); p + 1 == panel_.count && of < steepest)
-                slopes.push_back(fmt::format("{} {:.2f}", color_.is_there() ? color_.words(c) : "", of));
+                slopes.push_back(fmt::format("{} {:.2f}", color_.exists() ? color_.words(c) : "", of));
         }
-        least.push_back(scientific(nearest) + (panel_.is_there() ? " in " + panel_.words(p) : ""));
+        minimum.push_back(scientific(nearest) + (panel_.exists() ? " in " + panel_.words(p) : ""));
     }
     figure.captions.push_back(
         fmt::format("The distance falls with the order of each method; slopes{}: {}. The smallest distance is {}.",
-                    panel_.is_there() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
-                    fmt::join(least, " and ")));
+                    panel_.exists() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
+                    fmt::join(minimum, " and ")));
     for (auto& plot : figure.panels) {
         plot.x = {.label = "step, s (the mean step of adaptive methods)", .logarithmic = true};
         if (mark_step_)
@@ -144,7 +144,7 @@ void Grid::add_limit(std::size_t p, Plot& plot) const {
 }
 
 HeatMap Grid::heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const {
-    HeatMap map = look_;
+    HeatMap map = map_style_;
     const auto axis = groups_[group].x.plot_axis();
     map.columns = groups_[group].x.count;
     map.x_low = *axis.low;
@@ -161,7 +161,7 @@ HeatMap Grid::heat_map(std::span<const TrialNumbers> numbers, std::size_t group)
 
 /// Sets the common parts of all panels: one colour scale, and the label of cells without a number; then the captions.
 void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const {
-    HeatMap all = look_;
+    HeatMap all = map_style_;
     for (const auto& plot : figure.panels)
         all.values.insert(all.values.end(), plot.map->values.begin(), plot.map->values.end());
     if (std::none_of(all.values.begin(), all.values.end(), [](float cell) { return std::isnan(cell); }))

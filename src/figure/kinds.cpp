@@ -39,13 +39,13 @@ SideSpec FigureReader::release(bool physical) {
 
 const MethodEntry& method_named(const TomlReader& table, const std::string& name) {
     if (const auto* method = find_method(name)) return *method;
-    throw table.fault("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
+    throw table.error("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
 }
 
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names) {
     for (const auto& name : names)
         if (std::count(names.begin(), names.end(), name) > 1)
-            throw table.fault(key, "must differ; \"{}\" is named more than once", name);
+            throw table.error(key, "must differ; \"{}\" is named more than once", name);
 }
 
 std::string commented(std::string_view text) {
@@ -58,16 +58,16 @@ Preset film_named(const std::string& name, const TomlReader& table) {
     const auto source = [&] {
         try {
             return find_preset(name);
-        } catch (const Error& fault) {
-            throw table.fault("scene", "cannot be taken: {}", fault.what());
+        } catch (const Error& error) {
+            throw table.error("scene", "cannot be taken: {}", error.what());
         }
     }();
     table.require_drawable("scene", source.name);
-    if (is_figure(source)) throw table.fault("scene", "must name a film; \"{}\" is a figure", name);
+    if (is_figure(source)) throw table.error("scene", "must name a film; \"{}\" is a figure", name);
     return read_preset(source);
 }
 
-bool released_alike(const SideSpec& a, const SideSpec& b) {
+bool have_same_release(const SideSpec& a, const SideSpec& b) {
     const auto same = [](const ParticleSpec& one, const ParticleSpec& other) {
         return one.mass_kg == other.mass_kg && one.position_m == other.position_m &&
                one.velocity_m_per_s == other.velocity_m_per_s;

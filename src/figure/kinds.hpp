@@ -25,7 +25,7 @@ public:
         TomlReader::operator()(field, into);
         if constexpr (!std::is_same_v<T, Rational>)
             writer_(field, into);
-        else if (field.only.holds)
+        else if (field.only.applies)
             writer_.add(field.key, toml_text(into.text()));
     }
 
@@ -68,15 +68,13 @@ struct FigureReader {
     Preset pair(const std::vector<TomlReader*>& more = {});
     /// Reads the keys of such a pair, without checking them together.
     Preset read_pair(const std::vector<TomlReader*>& more = {});
-    /// The tables of [[key]].
     std::vector<TomlReader> entries(std::string_view key);
     /// The chain that [system] describes, for figures that integrate it themselves. `physical`: links with mass,
     /// friction and drives are allowed.
     SideSpec release(bool physical = false);
 };
 
-/// Whether the method supports the model.
-inline bool serves(const MethodEntry& method, Model model) {
+inline bool supports(const MethodEntry& method, Model model) {
     return model == Model::angles ? method.angles : model == Model::constraints ? method.constraints : method.mechanism;
 }
 
@@ -93,7 +91,7 @@ std::string commented(std::string_view text);
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
 /// Whether both sides have the same release, so that their initial distance is 0.
-bool released_alike(const SideSpec& a, const SideSpec& b);
+bool have_same_release(const SideSpec& a, const SideSpec& b);
 
 /// Whether both sides are the same system with the same release and integration: they move identically.
 bool are_one(const Scene& scene);
@@ -108,9 +106,9 @@ struct FigureKind {
     std::vector<FieldTable> (*tables)();       // the kind's own, with their defaults
 };
 
-/// A kind is a class constructed from a FigureReader. If it has keys of its own, `table_key` is the name of their
-/// table, and fields(visit) visits each with its member, as in scene/preset_fields.hpp. other_table() lists further
-/// keys, and read_others() reads them.
+/// A kind is a class constructed from a FigureReader. `table_key` is the name of the table with its own keys, if it has
+/// any. fields(visit) visits each with its member, as in scene/preset_fields.hpp. other_table() lists further keys, and
+/// read_others() reads them.
 template <class Kind>
 void read_keys_of(FigureReader& reader, FigureKind::System system) {
     if (system == FigureKind::System::pair) reader.read_pair();

@@ -10,7 +10,7 @@
 namespace doppel {
 namespace {
 
-std::vector<Curve> shaken_edges(Overlay overlay, const PhysicalPendulum<double>& p) {
+std::vector<Curve> stability_curves(Overlay overlay, const PhysicalPendulum<double>& p) {
     const double mass = p.chain.mass[0], center = p.center[0], gravity = p.chain.gravity;
     const double length = (p.inertia[0] + mass * center * center) / (mass * center);
     std::vector<Curve> curves;
@@ -58,7 +58,7 @@ Curve energy_bound(const Pendulum<double>& p) {
 std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side) {
     if (overlay == Overlay::none || overlay == Overlay::linear_limit) return {};
     if (overlay == Overlay::energy_bound) return {energy_bound(chain_of(side).cast<double>())};
-    return shaken_edges(overlay, physical_of(side).cast<double>());
+    return stability_curves(overlay, physical_of(side).cast<double>());
 }
 
 void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<double>& y, Plot& plot) {
@@ -69,12 +69,12 @@ void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<doubl
         const auto modes = small_oscillations(chain_of(pair.a).cast<double>());
         curve.x.push_back(step_limit(method->name, modes, pair.duration_s.value(), failure_error).value_or(NAN));
     }
-    const auto [least, most] = std::minmax_element(curve.x.begin(), curve.x.end());
-    constexpr double alike = 1e-4;
-    if (std::isnan(*least)) return;
-    if (*most < *least * (1 + alike)) {
-        plot.rules.push_back({Rule::Orientation::vertical, *least, ""});
-        plot.note = fmt::format("limit {:.3g} s", *least);
+    const auto [minimum, maximum] = std::minmax_element(curve.x.begin(), curve.x.end());
+    constexpr double tolerance = 1e-4;
+    if (std::isnan(*minimum)) return;
+    if (*maximum < *minimum * (1 + tolerance)) {
+        plot.rules.push_back({Rule::Orientation::vertical, *minimum, ""});
+        plot.note = fmt::format("limit {:.3g} s", *minimum);
         return;
     }
     curve.y.front() = *plot.y.low;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view mark = "doppel trials";  // the kind of file
 constexpr int format = 2;                           // of the lines; format 1 had no checksums
 constexpr std::size_t longest_header = 1 << 16, longest_line = std::size_t{1} << 32;
-constexpr std::size_t most_trials = 100'000'000;
+constexpr std::size_t max_trials = 100'000'000;
 constexpr std::size_t checksum_digits = 16, name_digits = 12;
 
 /// Reads a regular file line by line; follows no link.
@@ -29,16 +29,16 @@ class LineReader {
 public:
     explicit LineReader(const fs::path& path) : path_(path) {
         const auto type = type_of(path);
-        if (type == fs::file_type::symlink) throw fault("is a symbolic link");
-        if (type != fs::file_type::regular && type != fs::file_type::not_found) throw fault("is no regular file");
+        if (type == fs::file_type::symlink) throw error("is a symbolic link");
+        if (type != fs::file_type::regular && type != fs::file_type::not_found) throw error("is no regular file");
         file_ = open_file(path);
     }
 
     /// Reads the next line, without its end. Returns false after the last line, and for an incomplete line (its writer
-    /// was killed) or one longer than `most` bytes; `line` then contains its beginning. Throws Error (exit 4).
-    bool next(std::string& line, std::size_t most) {
+    /// was killed) or one longer than `maximum` bytes; `line` then contains its beginning. Throws Error (exit 4).
+    bool next(std::string& line, std::size_t maximum) {
         line.clear();
-        for (int c = 0; (c = getc_unlocked(file_.get())) != EOF && line.size() <= most;) {
+        for (int c = 0; (c = getc_unlocked(file_.get())) != EOF && line.size() <= maximum;) {
             if (c == '\n') return true;
             line += static_cast<char>(c);
         }
@@ -47,7 +47,7 @@ public:
     }
 
     /// "PATH: WHY; what to do about it" (exit 4).
-    Error fault(std::string_view why) const {
+    Error error(std::string_view why) const {
         return io_failed("{}: {}; remove it, or give another folder with --out", path_.string(), why);
     }
 
@@ -91,21 +91,21 @@ bool read_line(std::string_view line, const std::string& header, PartFile::Trial
     return true;
 }
 
-/// A whole number from 1 to `most`; otherwise throws as the JSON library does.
-std::size_t count(const Json& json, const char* key, std::size_t most) {
+/// A whole number from 1 to `maximum`; otherwise throws as the JSON library does.
+std::size_t count(const Json& json, const char* key, std::size_t maximum) {
     const auto& value = json.at(key);
-    if (!value.is_number_unsigned() || value.get<std::size_t>() < 1 || value.get<std::size_t>() > most)
+    if (!value.is_number_unsigned() || value.get<std::size_t>() < 1 || value.get<std::size_t>() > maximum)
         throw Json::other_error::create(0, "out of range", nullptr);
     return value.get<std::size_t>();
 }
 
 PartHeader header_from(const Json& json) {
-    const auto of = count(json, "of", most_parts);
+    const auto of = count(json, "of", max_parts);
     return {json.at("figure"),
             json.at("version"),
             json.at("revision"),
             json.at("preset_sha256"),
-            count(json, "trials", most_trials),
+            count(json, "trials", max_trials),
             static_cast<int>(count(json, "shard", of)),
             static_cast<int>(of)};
 }
@@ -114,10 +114,10 @@ PartHeader read_header(const std::string& line, const LineReader& file) {
     try {
         const auto json = Json::parse(line);
         if (json.at("file") != mark) throw Json::other_error::create(0, "another file", nullptr);
-        if (json.value("format", Json(1)) != format) throw file.fault("was written by another version of Doppel");
+        if (json.value("format", Json(1)) != format) throw file.error("was written by another version of Doppel");
         return header_from(json);
     } catch (const nlohmann::json::exception&) {
-        throw file.fault("is no file of trials, or its first line is damaged");
+        throw file.error("is no file of trials, or its first line is damaged");
     }
 }
 
@@ -150,18 +150,18 @@ void check_header(const fs::path& path, const PartHeader& found, const PartHeade
 
 /// Throws if parts are missing; names the first one.
 void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
-    constexpr std::size_t most_named = 5;
+    constexpr std::size_t max_named = 5;
     const auto missing = static_cast<std::size_t>(std::count(parts.begin(), parts.end(), fs::path()));
     if (missing == 0) return;
     std::vector<std::string> named;
-    for (std::size_t i = 0; named.size() < std::min(missing, most_named); ++i)
+    for (std::size_t i = 0; named.size() < std::min(missing, max_named); ++i)
         if (parts[i].empty()) named.push_back(fmt::format("{}/{}", i + 1, parts.size()));
     throw try_again("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
-                    missing > most_named ? fmt::format(" … {} in all", missing) : "");
+                    missing > max_named ? fmt::format(" … {} in all", missing) : "");
 }
 
 /// The path "PATH.part". A file there is removed: it belongs to a run that was killed.
-fs::path fresh_part(fs::path path) {
+fs::path new_part_path(fs::path path) {
     path += ".part";
     fs::remove(path);
     return path;
@@ -226,7 +226,7 @@ PartFile read_part_file(const fs::path& path) {
 }
 
 PartWriter::PartWriter(const fs::path& path, const PartHeader& header, const KnownTrials& known)
-    : file_(fresh_part(path)), header_(json_of(header).dump()) {
+    : file_(new_part_path(path)), header_(json_of(header).dump()) {
     file_.write(header_ + "\n");
     for (std::size_t trial = 0; trial < known.size(); ++trial)
         if (!known[trial].empty()) add(trial, known[trial]);
@@ -243,7 +243,7 @@ void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {
 KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, const std::atomic<bool>& stop) {
     const auto files = shards_in(folder, figure.name);
     if (files.empty())
-        throw bad_input("{} holds no part of {}; make them with the same command, --shard I/N in place of --merge",
+        throw bad_input("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
                         folder.string(), figure.name);
     const auto wanted = header_of(figure);
     KnownTrials all(wanted.trials);

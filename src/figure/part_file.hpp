@@ -11,7 +11,7 @@
 namespace doppel {
 
 /// The largest number of parts that a figure can be split into.
-inline constexpr int most_parts = 100'000;
+inline constexpr int max_parts = 100'000;
 
 /// Identifies the run that a file of results belongs to. Files belong together if all members agree.
 struct PartHeader {

@@ -72,7 +72,7 @@ void top_fields(Visit& visit, FigurePreset& figure) {
     visit(title_field, figure.title);
     visit({.key = "subtitle",
            .help = "below the title",
-           .absent = "of pairs: what moves, and how it is stepped",
+           .absent = "of pairs: the system and the integrator",
            .is_drawn = true},
           figure.subtitle);
     visit(
@@ -91,7 +91,7 @@ FieldTable release_table() {
 }
 
 /// The description of the system in docs/presets.md.
-std::string what_moves(FigureKind::System system) {
+std::string system_description(FigureKind::System system) {
     using System = FigureKind::System;
     if (system == System::none) return "";
     if (system == System::pair)
@@ -103,39 +103,39 @@ std::string what_moves(FigureKind::System system) {
     return fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(keys, "`, `"));
 }
 
-/// With `faults`, reads each key by itself and throws all errors found. Otherwise reads the figure and checks keys
+/// With `errors`, reads each key by itself and throws all errors found. Otherwise reads the figure and checks keys
 /// together.
-FigurePreset read_once(const PresetText& source, const TomlDocument& document, Faults* faults,
+FigurePreset read_once(const PresetText& source, const TomlDocument& document, KeyErrors* errors,
                        std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
     FigurePreset figure;
     figure.name = figure.title = source.name;
-    auto top = document.top(faults);
+    auto top = document.top(errors);
     top.require_title(figure.name);
     top_fields(top, figure);
     auto scene = document.table(top, "scene");
     figure.kind = read_kind(scene);
-    if (faults && faults->concern("scene"))
-        faults->throw_if_any();  // without the kind it is unknown which tables are allowed
+    if (errors && errors->concern("scene"))
+        errors->throw_if_any();  // without the kind it is unknown which tables are allowed
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
     FigureReader reader{source.name, document, top, scene, chart, external_methods, stop};
     const auto& kind = *std::ranges::find(figure_kinds(), figure.kind, &FigureKind::name);
     try {
-        if (faults)
+        if (errors)
             kind.read_keys(reader, kind.system);
         else
             figure.experiment = kind.read(reader);
-    } catch (const TomlFault& fault) {
-        if (!faults) throw;
-        top.refuse(fault.with({}), "");
-        faults->throw_if_any();
+    } catch (const KeyError& error) {
+        if (!errors) throw;
+        top.refuse(error.with({}), "");
+        errors->throw_if_any();
     }
-    if (!faults && !top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();
+    if (!errors && !top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();
     scene.finish();
     read_chart(chart, figure.chart);
     top.finish();
-    if (faults) faults->throw_if_any();
+    if (errors) errors->throw_if_any();
     return figure;
 }
 
@@ -156,8 +156,8 @@ std::string FigurePreset::resolved() const {
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
                          std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
     const auto document = parse_document(source, overrides);
-    Faults faults(overrides);
-    read_once(source, document, &faults, external_methods, stop);
+    KeyErrors errors(overrides);
+    read_once(source, document, &errors, external_methods, stop);
     return read_once(source, document, nullptr, external_methods, stop);
 }
 
@@ -170,7 +170,7 @@ std::vector<FieldTable> figure_tables() {
     for (const auto& kind : figure_kinds())
         for (auto& table : kind.tables()) {
             if (table.text.empty())
-                table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, what_moves(kind.system));
+                table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name, system_description(kind.system));
             all.push_back(std::move(table));
         }
     return all;

@@ -99,41 +99,41 @@ TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
     std::vector<std::unique_ptr<Motion>> motions;
     for (const auto model : {Model::angles, Model::constraints})
         motions.push_back(make_motion({.chain = chain_of(side), .model = model}));
-    TrialNumbers least(motions.size(), std::numeric_limits<double>::max());
+    TrialNumbers minimum(motions.size(), std::numeric_limits<double>::max());
     for (int round = 0; round < rounds; ++round)
         for (std::size_t i = 0; i < motions.size(); ++i) {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
             motions[i]->advance(stop);
             const double spent = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-            least[i] = std::min(least[i], 1e9 * spent / static_cast<double>(MotionSpec().steps_per_sample));
+            minimum[i] = std::min(minimum[i], 1e9 * spent / static_cast<double>(MotionSpec().steps_per_sample));
         }
-    return least;
+    return minimum;
 }
 
 /// The mean step size, s, the largest distance of the pair, and the number of steps; no distance if a side failed.
 TrialNumbers distance_and_steps(const Preset& pair, const std::atomic<bool>& stop) {
     const auto scene = make_scene(pair, stop);
     PairRun run(scene);
-    double most = 0;
+    double maximum = 0;
     try {
-        for (long n = 0; n <= scene.samples; ++n) most = std::fmax(most, run.next(stop).distance);
+        for (long n = 0; n <= scene.samples; ++n) maximum = std::fmax(maximum, run.next(stop).distance);
     } catch (const RunFailure&) {
         return {NAN, NAN, 0};
     }
     const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
-    return {2 * pair.duration_s.value() / steps, most, steps};
+    return {2 * pair.duration_s.value() / steps, maximum, steps};
 }
 
 /// How pairs can be integrated in lanes, if they can be: plain chains in double by the methods of Batch.
 std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
-    const auto serves = [](const Side& side) {
+    const auto supports = [](const Side& side) {
         const auto& motion = side.motion;
         return !side.choice && !motion.physical && motion.model != Model::mechanism &&
                motion.precision == Precision::in_double && motion.stabilise == Stabilise::none &&
-               Batch::serves(motion.method, motion.chain->links());
+               Batch::supports(motion.method, motion.chain->links());
     };
     const auto &a = scene.a.motion, &b = scene.b.motion;
-    if (!serves(scene.a) || !serves(scene.b) || a.chain->links() != b.chain->links()) return std::nullopt;
+    if (!supports(scene.a) || !supports(scene.b) || a.chain->links() != b.chain->links()) return std::nullopt;
     return PairBatchSpec{a, b, scene.samples};
 }
 
@@ -143,22 +143,22 @@ public:
     explicit DistanceWatch(Quantity quantity) : quantity_(quantity) {}
     void add(double time, double distance) {
         last_ = distance;
-        if (!(distance <= greatest_)) greatest_ = distance;  // keeps NaN
+        if (!(distance <= largest_)) largest_ = distance;  // keeps NaN
         if (quantity_ == Quantity::divergence) mean_.add(distance);
-        if (quantity_ == Quantity::parting_time) parting_.add(time, distance);
+        if (quantity_ == Quantity::parting_time) divergence_.add(time, distance);
     }
     double value() const {
         if (quantity_ == Quantity::divergence) return mean_.value();
         if (!std::isfinite(last_)) return NAN;
-        if (quantity_ == Quantity::greatest_distance) return greatest_;
-        return quantity_ == Quantity::distance_at_end ? last_ : parting_.since().value_or(NAN);
+        if (quantity_ == Quantity::greatest_distance) return largest_;
+        return quantity_ == Quantity::distance_at_end ? last_ : divergence_.since().value_or(NAN);
     }
 
 private:
     Quantity quantity_;
     AverageLogRatio mean_;
-    Divergence parting_;
-    double last_ = NAN, greatest_ = 0;
+    Divergence divergence_;
+    double last_ = NAN, largest_ = 0;
 };
 
 /// Finds the first flip of any link, or the period of a single link, from samples. Between samples angles are cubic.
@@ -212,19 +212,20 @@ private:
 
 }  // namespace
 
-void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
-                   const std::array<Scene, 2>& ends) {
+void require_difference(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+                        const std::array<Scene, 2>& ends) {
     if (!is_of_distance(quantity)) return;
     const auto name = name_of(quantity);
     const auto same = std::count_if(ends.begin(), ends.end(), are_one);
     const bool are_all = same == std::ssize(ends);
     if (are_all && is_of_one_side)
-        throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
+        throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
                           name);
     if (are_all || (difference != 0 && same > 0))
-        throw table.fault(
+        throw table.error(
             "difference",
-            "must make the two of a pair differ, because \"{}\" compares them; {}: give {}grid.difference", name,
+            "must make the two pendulums of a pair differ, because \"{}\" compares them; {}: give {}grid.difference",
+            name,
             difference == 0 ? "it is 0, and both sides are the same" : text_of(difference) + " is lost in rounding",
             difference == 0 ? "" : "a greater ");
     const auto start = [](const Scene& scene) -> double {
@@ -236,9 +237,9 @@ void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_si
     };
     if (quantity == Quantity::divergence &&
         std::all_of(ends.begin(), ends.end(), [&](const Scene& scene) { return start(scene) == 0; }))
-        throw table.fault(
+        throw table.error(
             "quantity",
-            "\"divergence\" takes sides that are released differently: there is no ratio to a distance of "
+            "\"divergence\" needs sides that are released differently: there is no ratio to a distance of "
             "0; \"distance_at_end\" and \"parting_time\" need none");
 }
 
@@ -289,7 +290,7 @@ std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords&
 }
 
 Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
-                         bool alike, const QuantityOptions& options)
+                         bool same_method, const QuantityOptions& options)
     : quantity_(quantity),
       words_(words_of(quantity, seconds_text(pair), options.stroboscope)),
       exponent_{.duration_s = options.exponent_duration_s},
@@ -299,28 +300,28 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     const auto& a = pair.a;
     const bool is_ideal = quantity == Quantity::step_cost || quantity == Quantity::stability;
     if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !a.physical.is_none())))
-        throw table.fault(key, "is that of a plain chain, without forces and constraints of its own");
+        throw table.error(key, "needs a plain chain, without further forces and constraints");
     if (quantity == Quantity::exponent && a.physical.has_coulomb())
-        throw table.fault(key, "needs a smooth motion; joints with joint_coulomb_N_m stick and slip");
+        throw table.error(key, "needs a smooth motion; joints with joint_coulomb_N_m stick and slip");
     const bool is_of_angles =
         quantity == Quantity::deviation || quantity == Quantity::flip_time || quantity == Quantity::period;
     if (is_of_angles && !a.particles.empty())
-        throw table.fault(key, "\"{}\" is of a chain, whose rods have angles", name_of(quantity));
+        throw table.error(key, "\"{}\" needs a chain, whose rods have angles", name_of(quantity));
     if (quantity == Quantity::period && a.links() != 1)
-        throw table.fault(key, "\"period\" is of one link; there are {}", a.links());
+        throw table.error(key, "\"period\" needs one link; there are {}", a.links());
     if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
-        throw table.fault(key, "\"{}\" takes sides of as many masses", name_of(quantity));
+        throw table.error(key, "\"{}\" needs sides with the same number of masses", name_of(quantity));
     if (quantity == Quantity::stroboscopic) require_drive(table, key, stroboscope_, a);
     const auto scene = make_scene(pair);
     motion_ = scene.a.motion;
     if (quantity == Quantity::stability &&
         !(released_energy(chain_of(a).cast<double>()) > 1e-10 * chain_of(a).cast<double>().potential_range()))
-        throw table.fault(key, "\"stability\" is of a release with energy to keep, above hanging at rest");
+        throw table.error(key, "\"stability\" needs a release with more energy than hanging at rest");
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
-        throw table.fault(key, "\"energy_error\" needs a system that conserves energy; a spring is damped");
+        throw table.error(key, "\"energy_error\" needs a system that conserves energy; a spring is damped");
     flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.physical.is_none() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
-    if (alike && (is_of_distance(quantity) || quantity == Quantity::energy_error)) run_ = lanes_of(scene);
+    if (same_method && (is_of_distance(quantity) || quantity == Quantity::energy_error)) run_ = lanes_of(scene);
     if (run_ && !is_of_distance(quantity)) run_->b = run_->a;
 }
 
@@ -343,7 +344,6 @@ void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const
     }
 }
 
-/// The numbers of one pair.
 TrialNumbers Measurement::found(const Preset& pair, const std::atomic<bool>& stop) const {
     const auto& a = pair.a;
     if (quantity_ == Quantity::step_cost) return step_costs(a, stop);
@@ -432,27 +432,27 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
     }
 }
 
-/// Computes energy errors as greatest_energy_errors(), one group of equal settings at a time.
+/// Computes energy errors as max_energy_errors(), one group of equal settings at a time.
 void Measurement::append_energies(const PairAt& pair, std::span<TrialNumbers> into,
                                   const std::atomic<bool>& stop) const {
     auto motion = motion_;
     motion.follows_turns = false;
     for (std::size_t first = 0; first < into.size();) {
-        const auto alike = pair(first);
-        motion.sample_interval = *quotient({1, 1}, alike.sample_hz);
-        motion.tolerance = alike.a.allowed_error();
-        if (const auto& step = alike.a.step_s)
+        const auto first_pair = pair(first);
+        motion.sample_interval = *quotient({1, 1}, first_pair.sample_hz);
+        motion.tolerance = first_pair.a.allowed_error();
+        if (const auto& step = first_pair.a.step_s)
             motion.steps_per_sample = std::lround(motion.sample_interval.value() / step->value());
-        std::vector<Pendulum<Quad>> chains{chain_of(alike.a)};
+        std::vector<Pendulum<Quad>> chains{chain_of(first_pair.a)};
         for (auto i = first + 1; i < into.size(); ++i) {
             const auto& next = pair(i);
-            if (next.sample_hz != alike.sample_hz || next.a.step_s != alike.a.step_s ||
-                next.a.tolerance != alike.a.tolerance || next.a.links() != alike.a.links())
+            if (next.sample_hz != first_pair.sample_hz || next.a.step_s != first_pair.a.step_s ||
+                next.a.tolerance != first_pair.a.tolerance || next.a.links() != first_pair.a.links())
                 break;
             chains.push_back(chain_of(next.a));
         }
-        const long samples = std::lround(alike.duration_s.value() * alike.sample_hz.value());
-        for (const double error : greatest_energy_errors(motion, chains, samples, stop)) into[first++].push_back(error);
+        const long samples = std::lround(first_pair.duration_s.value() * first_pair.sample_hz.value());
+        for (const double error : max_energy_errors(motion, chains, samples, stop)) into[first++].push_back(error);
     }
 }
 

@@ -82,8 +82,8 @@ std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords&
 /// Throws Error (exit 2) at the table's `difference` or `quantity` if the quantity compares two pendulums that are the
 /// same: in all pairs, or because `difference` is lost in rounding in the first or last pair, or because `divergence`
 /// starts at distance 0.
-void require_apart(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
-                   const std::array<Scene, 2>& ends);
+void require_difference(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+                        const std::array<Scene, 2>& ends);
 
 /// Counts the regular releases of a curve, and removes equilibria: their exponent is not that of a motion.
 std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit);
@@ -105,9 +105,9 @@ using PairAt = std::function<const Preset&(std::size_t i)>;
 /// infinite if there is no flip.
 class Measurement {
 public:
-    /// For pairs like `pair`; `alike` = they have one method and number of links. Throws Error (exit 2) at the table's
-    /// `key` if the quantity is not defined for them.
-    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair, bool alike,
+    /// For pairs like `pair`; `same_method` = they have one method and number of links. Throws Error (exit 2) at the
+    /// table's `key` if the quantity is not defined for them.
+    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair, bool same_method,
                 const QuantityOptions& options);
 
     /// How flips are found in lanes, if they are.

@@ -175,7 +175,6 @@ PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) 
     return options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
 }
 
-/// The report for figure k.
 ComputationReport report_of(const FigureReport& report, std::size_t k) {
     return {[&report, k](const FigureProgress& p) { report.progress(k, p); },
             [&report, k](const std::string& s) { report.note(k, s); }};
@@ -214,7 +213,7 @@ public:
     /// stopped the threads.
     std::optional<std::size_t> next() {
         auto figure = finished_.pop();
-        if (!figure && fault_) std::rethrow_exception(fault_);
+        if (!figure && error_) std::rethrow_exception(error_);
         return figure;
     }
 
@@ -228,7 +227,7 @@ private:
             parallel_for(groups_.size(), jobs, [&](std::size_t i) { run_group(groups_[i]); });
             for (const auto& group : timed_groups_) run_group(group);
         } catch (...) {
-            fault_ = std::current_exception();
+            error_ = std::current_exception();
         }
         finished_.close();
     }
@@ -243,7 +242,7 @@ private:
     std::vector<std::unique_ptr<Computation>> computations_;
     std::vector<Group> groups_, timed_groups_;
     Queue<std::size_t> finished_{100'000};
-    std::exception_ptr fault_;
+    std::exception_ptr error_;
     std::atomic<bool> closing_ = false;
     std::jthread thread_;  // declared last: joined before the other members are destroyed
 };
@@ -286,13 +285,13 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
                 result.files = {computation.publish_shard()};
             else
                 result = writer.write(figures[*k], computation.take_all(), record, *files[*k]);
-        } catch (const Error& fault) {
+        } catch (const Error& error) {
             // running the same command again could not draw more
-            if (fault.code() == ExitCode::method_failed) {
+            if (error.code() == ExitCode::method_failed) {
                 fs::remove(computation.record());
                 throw;
             }
-            throw computation.with_record(fault);
+            throw computation.with_record(error);
         }
         fs::remove(computation.record());
         result.samples = std::lround(computation.computed_units());

@@ -39,9 +39,9 @@ public:
         auto system = reader.document.table(reader.top, "system");
         for (const char* key : {"angle_deg", "omega_deg_per_s"})
             if (system.has(key))
-                throw system.fault(key, "is not for a section, whose orbits start at all states of an energy");
+                throw system.error(key, "is not for a section, whose orbits start at all states of an energy");
         auto table = reader.settings(*this);
-        if (release_.links() != 2) throw table.fault("energy_J", "is for two links; there are {}", release_.links());
+        if (release_.links() != 2) throw table.error("energy_J", "is for two links; there are {}", release_.links());
         settings_ = resolved_chain(release_) + table.finish();
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
@@ -53,7 +53,7 @@ public:
                .help = "of each panel's orbits, above hanging at rest",
                .unit = "J",
                .bounds = positive,
-               .most = 6},
+               .maximum = 6},
               energies_);
         visit({"orbits", "of each energy", "", from_to(1, 10'000)}, orbits_);
         visit({"crossings", "of each orbit", "", from_to(1, 1'000'000)}, spec_.crossings);
@@ -89,13 +89,13 @@ public:
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
         for (std::size_t panel = 0; panel < energies_.size(); ++panel)
             figure.panels.push_back(plot_of(panel, numbers.subspan(panel * orbits(), orbits())));
-        long most = 0;
+        long maximum = 0;
         for (std::size_t panel = 0; panel < energies_.size(); ++panel)
-            most = std::max(most, regular_ones(numbers.subspan(panel * orbits(), orbits())));
+            maximum = std::max(maximum, regular_ones(numbers.subspan(panel * orbits(), orbits())));
         figure.captions.push_back(
             fmt::format("In colour, regular orbits ({}): the largest Lyapunov exponent of {} s of their motion is at "
                         "most 1.5 times its uncertainty. In grey, chaotic ones.",
-                        most > static_cast<long>(themes.front().palette.size()) ? "colours repeat" : "a colour each",
+                        maximum > static_cast<long>(themes.front().palette.size()) ? "colours repeat" : "a colour each",
                         grouped(std::lround(exponent_duration_s_))));
     }
 
@@ -131,7 +131,6 @@ private:
         return numbers;
     }
 
-    /// The panel of one energy.
     Plot plot_of(std::size_t panel, std::span<const TrialNumbers> orbits_of_panel) const {
         Plot plot{.title = fmt::format("E = {:.4g} J", energies_[panel])};
         plot.note = fmt::format("{} of {} regular", regular_ones(orbits_of_panel), orbits());

@@ -13,7 +13,6 @@
 namespace doppel {
 namespace {
 
-/// One pair and its shown column.
 struct PairCurve {
     std::string column, label;
     std::optional<std::string> film_column;
@@ -25,7 +24,7 @@ void curve_fields(Visit& visit, PairCurve& curve) {
     visit({"column", "its name in the CSV", "", {}, must_be_given}, curve.column);
     curve.label = curve.column;
     visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true}, curve.label);
-    visit({.key = "film_column", .help = "what of the pair is shown", .absent = "that of [series]"}, curve.film_column);
+    visit({.key = "film_column", .help = "quantity that is shown", .absent = "that of [series]"}, curve.film_column);
 }
 
 bool is_of_both(std::string_view film_column) {
@@ -87,10 +86,10 @@ public:
         for (auto& entry : entries) {
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
-            if (curve.column.empty()) throw entry.fault("column", "is missing; it names the curve in the table");
+            if (curve.column.empty()) throw entry.error("column", "is missing; it names the curve in the table");
             if (!entry.has("label")) entry.require_drawable("column", curve.column);  // the column is used as label
             if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
-                throw entry.fault("column", "must differ from the other columns; it is \"{}\"", curve.column);
+                throw entry.error("column", "must differ from the other columns; it is \"{}\"", curve.column);
             if (!curve.film_column) curve.film_column = shown;
             curve.pair = reader.pair({&entry});
             entry.finish();
@@ -102,18 +101,18 @@ public:
             samples_ = scene.samples;
             const auto known = columns_of(scene);
             if (std::ranges::count(known, *curve.film_column) == 0)
-                throw table.fault("film_column", "must be one of {}; it is \"{}\"",
+                throw table.error("film_column", "must be one of {}; it is \"{}\"",
                                   fmt::join(known.begin() + 2, known.end(), ", "), *curve.film_column);
             differ |= !is_of_both(*curve.film_column) || !are_one(scene);
-            if (curve.film_column == "log_ratio" && released_alike(curve.pair.a, curve.pair.b))
-                throw table.fault("quantity",
-                                  "\"log_ratio\" takes sides that are released differently: there is no "
+            if (curve.film_column == "log_ratio" && have_same_release(curve.pair.a, curve.pair.b))
+                throw table.error("quantity",
+                                  "\"log_ratio\" needs sides that are released differently: there is no "
                                   "ratio to a distance of 0");
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
-                throw table.fault("check_tolerance", "takes methods that go by a tolerance on both sides");
+                throw table.error("check_tolerance", "needs adaptive methods on both sides");
         }
         if (!differ)
-            throw table.fault("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
+            throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
                               shown);
         settings_ = resolved_settings(resolved);
     }
@@ -158,7 +157,7 @@ public:
         for (std::size_t i = 0; i < curves_.size(); ++i)
             words += fmt::format("{}{} until {:.1f} s", i == 0 ? "" : ", ", curves_[i].label, agree_until(numbers, i));
         figure.captions.push_back(fmt::format("Converged: at tolerance {} the distances are the same within 1 %: {}.",
-                                              scientific(static_cast<double>(*check_tolerance_)), words));
+                                              tolerance_text(*check_tolerance_), words));
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
@@ -171,17 +170,17 @@ public:
     std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
         std::vector<Finding> all;
         for (std::size_t i = 0; i < curves_.size(); ++i) {
-            const auto most = std::max_element(numbers[i].begin(), numbers[i].end(),
-                                               [](double a, double b) { return std::isnan(a) || a < b; });
-            all.push_back({"greatest_" + curves_[i].column, *most});
-            all.push_back({"greatest_at_sample_" + curves_[i].column, static_cast<double>(most - numbers[i].begin())});
+            const auto maximum = std::max_element(numbers[i].begin(), numbers[i].end(),
+                                                  [](double a, double b) { return std::isnan(a) || a < b; });
+            all.push_back({"greatest_" + curves_[i].column, *maximum});
+            all.push_back(
+                {"greatest_at_sample_" + curves_[i].column, static_cast<double>(maximum - numbers[i].begin())});
             if (check_tolerance_) all.push_back({"agrees_until_s_" + curves_[i].column, agree_until(numbers, i)});
         }
         return all;
     }
 
 private:
-    /// `own` = [series]
     std::string resolved_settings(const std::string& own) const {
         const auto& base = curves_.front().pair;
         auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),

@@ -16,7 +16,6 @@ template <>
 inline constexpr auto names_of<SeriesQuantity> = std::to_array<std::string_view>({"distance", "log_ratio", "exponents",
                                                                                   "errors"});
 
-/// [series]
 struct SeriesKeys {
     static constexpr std::string_view table_key = "series";
     SeriesKeys();
@@ -41,13 +40,13 @@ struct SeriesKeys {
 
         visit({.key = "film_column",
                .help = "in place of `quantity`: a column of the table that a film of the pair has",
-               .only = {is_of_pairs(), "is of pairs"},
+               .only = {is_of_pairs(), "is only for pairs"},
                .is_drawn = true},
               film_column);
-        const Only of_pairs{is_of_pairs(), "is of pairs"};
-        const Only of_exponents{quantity == SeriesQuantity::exponents, "is of exponents"};
-        const Only of_errors{quantity == SeriesQuantity::errors, "is of errors"};
-        const Bounds of_motions = of_errors.holds ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;
+        const Condition of_pairs{is_of_pairs(), "is only for pairs"};
+        const Condition of_exponents{quantity == SeriesQuantity::exponents, "is only for exponents"};
+        const Condition of_errors{quantity == SeriesQuantity::errors, "is only for errors"};
+        const Bounds of_motions = of_errors.applies ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;
         constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true},
             costs{.low = 10, .high = 1e6, .is_positive = true};
         visit({"logarithmic", "the axis", "", {}, "", of_pairs}, logarithmic);
@@ -55,7 +54,7 @@ struct SeriesKeys {
                "", of_pairs},
               check_tolerance);
         visit({"duration_s", "of the motion", "s", of_motions, "",
-               Only{!is_of_pairs(), "is of one motion; pairs have that of [scene]"}},
+               Condition{!is_of_pairs(), "is for one motion; pairs use that of [scene]"}},
               duration_s);
         visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000), "",
                of_exponents},

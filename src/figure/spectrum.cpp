@@ -15,11 +15,11 @@ public:
         : release_(reader.release(true)), spec_{keys.duration_s, keys.samples, keys.tolerance} {
         if (release_.physical.has_coulomb())
             throw reader.document.table(reader.top, "system")
-                .fault("joint_coulomb_N_m",
+                .error("joint_coulomb_N_m",
                        "is not for Lyapunov exponents, which need a smooth motion: these joints stick and slip");
-        constexpr std::size_t most_links = 4;
-        if (release_.links() > most_links)
-            throw table.fault("quantity", "= \"exponents\" is for 1 to {} links; there are {}", most_links,
+        constexpr std::size_t max_links = 4;
+        if (release_.links() > max_links)
+            throw table.error("quantity", "= \"exponents\" is for 1 to {} links; there are {}", max_links,
                               release_.links());
         settings_ = resolved_release(release_) + resolved;
     }
@@ -63,7 +63,7 @@ public:
         for (const double exponent : last.exponents)
             words += fmt::format("{}{}{:.4f}", words.empty() ? "" : ", ", exponent < 0 ? "−" : "+", std::abs(exponent));
         const auto of_them =
-            keeps_volume()
+            preserves_volume()
                 ? fmt::format("Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
                               scientific(std::abs(sum(last))), scientific(pair_mismatch(last)))
                 : fmt::format("Their sum is −{:.4f} 1/s, the mean rate at which friction contracts phase-space volume.",
@@ -84,14 +84,14 @@ public:
         for (std::size_t i = 0; i < exponents(); ++i)
             all.push_back({fmt::format("exponent{}_per_s", i + 1), last.exponents[i]});
         all.push_back({"sum_per_s", sum(last)});
-        if (keeps_volume()) all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
+        if (preserves_volume()) all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
         return all;
     }
 
 private:
     std::size_t exponents() const { return 2 * release_.links(); }
 
-    bool keeps_volume() const { return physical_of(release_).friction.is_none(); }
+    bool preserves_volume() const { return physical_of(release_).friction.is_none(); }
 
     TrialNumbers compute_trial(std::size_t, const std::atomic<bool>& stop) const override {
         TrialNumbers numbers;

@@ -11,13 +11,13 @@ namespace {
 
 /// The number of distinct rates: those more than 1e-4 rad/s from the next.
 std::size_t distinct_rates(const TrialNumbers& motion) {
-    constexpr double apart = 1e-4;
+    constexpr double min_difference = 1e-4;
     std::vector<double> rates;
     for (std::size_t n = 1; n < motion.size(); n += 2)
         if (std::isfinite(motion[n])) rates.push_back(motion[n]);
     std::sort(rates.begin(), rates.end());
     std::size_t count = rates.empty() ? 0 : 1;
-    for (std::size_t i = 1; i < rates.size(); ++i) count += rates[i] - rates[i - 1] > apart;
+    for (std::size_t i = 1; i < rates.size(); ++i) count += rates[i] - rates[i - 1] > min_difference;
     return count;
 }
 
@@ -35,9 +35,9 @@ std::optional<Rational> drive_of(const SideSpec& side) {
 
 void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side) {
     if (static_cast<std::size_t>(spec.link) > side.links())
-        throw table.fault("link", "must be 1 to {}, the number of links; it is {}", side.links(), spec.link);
+        throw table.error("link", "must be 1 to {}, the number of links; it is {}", side.links(), spec.link);
     if (!drive_of(side))
-        throw table.fault(
+        throw table.error(
             key,
             "\"stroboscopic\" is of a pendulum that is driven, [system.pivot] or [[system.torque]], at one "
             "frequency of at most 18 digits");
@@ -59,8 +59,8 @@ TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const 
             numbers.push_back(std::remainder(bob.theta, 2 * pi));
             numbers.push_back(bob.omega);
         }
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::method_failed) throw;
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed) throw;
     }
     numbers.resize(spec.numbers(), NAN);
     return numbers;

@@ -17,8 +17,8 @@ struct StroboscopeSpec {
     std::size_t numbers() const { return 2 * static_cast<std::size_t>(periods); }
 };
 
-/// Throws Error (exit 2) at the table's `key` or `link` if the side has not exactly one drive frequency, of at most 18
-/// digits, or has no such link.
+/// Throws Error (exit 2) at the table's `key` or `link` without exactly one drive frequency of at most 18 digits, or
+/// such a link.
 void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side);
 
 /// Angle, rad in −π…π, and rate, rad/s, of the link of side a at the end of each period except the transient ones. NaN

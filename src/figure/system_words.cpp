@@ -10,14 +10,14 @@
 namespace doppel {
 namespace {
 
-constexpr std::size_t most_named = 4;  // shorter chains have each link named
+constexpr std::size_t max_named = 4;  // shorter chains have each link named
 
 /// "1", or "1, 2, 0.5" if they differ; for long lists the minimum and maximum.
 std::string numbers_words(const std::vector<double>& numbers) {
-    const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
-    if (*least == *most) return fmt::format("{}", *least);
-    return numbers.size() > most_named ? fmt::format("{} to {}", *least, *most)
-                                       : fmt::format("{}", fmt::join(numbers, ", "));
+    const auto [minimum, maximum] = std::minmax_element(numbers.begin(), numbers.end());
+    if (*minimum == *maximum) return fmt::format("{}", *minimum);
+    return numbers.size() > max_named ? fmt::format("{} to {}", *minimum, *maximum)
+                                      : fmt::format("{}", fmt::join(numbers, ", "));
 }
 
 std::vector<double> doubles(const std::vector<Quad>& numbers) {
@@ -28,7 +28,7 @@ std::vector<double> doubles(const std::vector<Quad>& numbers) {
 
 /// The numbers to name: the first of many equal ones, none of many different ones.
 std::vector<Quad> named(const std::vector<Quad>& numbers) {
-    if (numbers.size() <= most_named) return numbers;
+    if (numbers.size() <= max_named) return numbers;
     const bool are_one = std::count(numbers.begin(), numbers.end(), numbers.front()) == std::ssize(numbers);
     return are_one ? std::vector{numbers.front()} : std::vector<Quad>{};
 }
@@ -47,18 +47,18 @@ std::string degrees(const Quad& angle) {
     return angle == 0 ? "0" : text_of(angle) + "°";
 }
 
-bool is_varied(const Varied& varied, std::string_view key) {
-    return std::any_of(varied.keys.begin(), varied.keys.end(), [&](const auto& path) { return path.ends_with(key); });
+bool is_swept(const SweptKeys& swept, std::string_view key) {
+    return std::any_of(swept.keys.begin(), swept.keys.end(), [&](const auto& path) { return path.ends_with(key); });
 }
 
-std::string model_words(const Scene& scene, const Varied& varied) {
+std::string model_words(const Scene& scene, const SweptKeys& swept) {
     const auto model = scene.a.motion.model;
     const auto count = scene.preset.a.particles.empty() ? scene.preset.a.links() : scene.preset.a.particles.size();
     const bool particles = !scene.preset.a.particles.empty() || model == Model::constraints;
-    auto words = is_varied(varied, "links") ? "chains"
-                                            : fmt::format("{} {}{}", number_words(count),
-                                                          particles ? "particle" : "link", count == 1 ? "" : "s");
-    if (model == scene.b.motion.model && !is_varied(varied, ".model") && !is_varied(varied, ".integrator"))
+    auto words = is_swept(swept, "links") ? "chains"
+                                          : fmt::format("{} {}{}", number_words(count), particles ? "particle" : "link",
+                                                        count == 1 ? "" : "s");
+    if (model == scene.b.motion.model && !is_swept(swept, ".model") && !is_swept(swept, ".integrator"))
         words += model == Model::angles        ? " in angles"
                  : model == Model::constraints ? " with constraints"
                                                : " as a mechanism";
@@ -66,19 +66,19 @@ std::string model_words(const Scene& scene, const Varied& varied) {
 }
 
 /// The common release angles of both sides: "90°/90°", or the constant ones, "θ₂ = θ₃ = 0".
-std::string release_words(const Scene& scene, const Varied& varied) {
-    constexpr std::size_t most = 3;
+std::string release_words(const Scene& scene, const SweptKeys& swept) {
+    constexpr std::size_t maximum = 3;
     const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
-    if (!scene.preset.a.particles.empty() || angles.size() > most || is_varied(varied, ".angle_deg")) return "";
-    if (is_varied(varied, "links")) return fmt::format("released from {}", degrees(angles.front()));
-    const auto is_swept = [&](std::size_t i) {
-        return std::find(varied.angles.begin(), varied.angles.end(), i) != varied.angles.end();
+    if (!scene.preset.a.particles.empty() || angles.size() > maximum || is_swept(swept, ".angle_deg")) return "";
+    if (is_swept(swept, "links")) return fmt::format("released from {}", degrees(angles.front()));
+    const auto is_swept_link = [&](std::size_t i) {
+        return std::find(swept.angles.begin(), swept.angles.end(), i) != swept.angles.end();
     };
-    if (varied.angles.empty() && angles == others) return slashed(angles, "°");
+    if (swept.angles.empty() && angles == others) return slashed(angles, "°");
     std::string named;
     for (std::size_t i = 0; i < angles.size(); ++i) {
-        if (is_swept(i) || angles[i] != others[i]) continue;
-        const bool same = !named.empty() && i > 0 && angles[i] == angles[i - 1] && !is_swept(i - 1);
+        if (is_swept_link(i) || angles[i] != others[i]) continue;
+        const bool same = !named.empty() && i > 0 && angles[i] == angles[i - 1] && !is_swept_link(i - 1);
         const auto name = fmt::format("θ{}", subscript(i + 1)), value = degrees(angles[i]);
         if (same)
             named.insert(named.rfind(" = "), " = " + name);
@@ -90,16 +90,16 @@ std::string release_words(const Scene& scene, const Varied& varied) {
 
 /// The properties of links besides mass and length, with their values if these are few: "torque of 0.5 Hz, joint
 /// friction 0.459 N m s".
-std::string drive_words(const SideSpec& side, const Varied& varied) {
+std::string drive_words(const SideSpec& side, const SweptKeys& swept) {
     const auto& physical = side.physical;
     if (physical.is_none()) return "";
     std::vector<std::string> words;
     for (const auto& torque : physical.torques)
         words.push_back(fmt::format("torque of {} Hz", short_text(torque.frequency_hz)));
-    if (physical.pivot.amplitude_m != 0 && !is_varied(varied, "frequency_hz"))
+    if (physical.pivot.amplitude_m != 0 && !is_swept(swept, "frequency_hz"))
         words.push_back(fmt::format("pivot shaken at {} Hz", short_text(physical.pivot.frequency_hz)));
     if (const auto& joints = physical.joint_viscous_N_m_s;
-        !joints.empty() && !is_varied(varied, "joint_viscous_N_m_s") && !is_zero(joints) &&
+        !joints.empty() && !is_swept(swept, "joint_viscous_N_m_s") && !is_zero(joints) &&
         std::count(joints.begin(), joints.end(), joints[0]) == std::ssize(joints))
         words.push_back(fmt::format("joint friction {} N m s", short_text(joints[0])));
     return words.empty() ? physical_words(physical) : fmt::format("{}", fmt::join(words, ", "));
@@ -107,15 +107,15 @@ std::string drive_words(const SideSpec& side, const Varied& varied) {
 
 std::string rate_words(const SideSpec& a, const SideSpec& b) {
     const auto& rates = a.omega_deg_per_s;
-    constexpr std::size_t most = 3;
-    if (!a.particles.empty() || is_zero(rates) || rates != b.omega_deg_per_s || rates.size() > most) return "";
+    constexpr std::size_t maximum = 3;
+    if (!a.particles.empty() || is_zero(rates) || rates != b.omega_deg_per_s || rates.size() > maximum) return "";
     return fmt::format("ω = {} °/s", slashed(rates));
 }
 
 /// The common integrator and settings of both sides.
-std::string method_words(const Scene& scene, const Varied& varied) {
+std::string method_words(const Scene& scene, const SweptKeys& swept) {
     std::vector<std::string> words;
-    const bool has_one_method = !is_varied(varied, ".integrator"), has_one_step = !varied.step && has_one_method;
+    const bool has_one_method = !is_swept(swept, ".integrator"), has_one_step = !swept.step && has_one_method;
     const auto &a = scene.a, &b = scene.b;
     const auto &accuracy = scene.preset.a.accuracy, &other = scene.preset.b.accuracy;
     if (accuracy && other && *accuracy == *other) {
@@ -125,7 +125,7 @@ std::string method_words(const Scene& scene, const Varied& varied) {
         if (step_control_text(a) == step_control_text(b) && has_one_step) words.push_back(step_control_text(a));
     }
     if (a.motion.precision == Precision::in_quad && b.motion.precision == Precision::in_quad &&
-        !is_varied(varied, ".precision"))
+        !is_swept(swept, ".precision"))
         words.emplace_back("in quad");
     return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -162,18 +162,18 @@ std::string links_words(const SideSpec& side) {
     return links_words(doubles(side.length_m), doubles(side.mass_kg), static_cast<double>(side.gravity_m_per_s2));
 }
 
-std::string pair_subtitle(const Scene& scene, const Varied& varied, const std::string& apart) {
-    std::vector<std::string> parts{model_words(scene, varied)};
+std::string pair_subtitle(const Scene& scene, const SweptKeys& swept, const std::string& difference) {
+    std::vector<std::string> parts{model_words(scene, swept)};
     const auto add = [&](std::string words) {
         if (!words.empty()) parts.push_back(std::move(words));
     };
-    add(drive_words(scene.preset.a, varied));
-    add(release_words(scene, varied));
+    add(drive_words(scene.preset.a, swept));
+    add(release_words(scene, swept));
     add(rate_words(scene.preset.a, scene.preset.b));
-    add(apart);
+    add(difference);
     if (const auto sides = side_captions(scene); sides[0].heading != "a")
         add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
-    const auto method = varied.method.empty() ? method_words(scene, varied) : varied.method;
+    const auto method = swept.method.empty() ? method_words(scene, swept) : swept.method;
     return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);
 }
 

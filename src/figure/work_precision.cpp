@@ -45,9 +45,9 @@ public:
         chart_settings_ = fmt::format("cost = {}\nnames = {}\n", toml_value(cost_), toml_value(names_));
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             for (const auto& solver : solvers_)
-                if (solver.serves(problems_.all[p])) ladders_.push_back({p, solver});
-        if (ladders_.empty())
-            throw table.fault("models", "must name one that is supported; {} supports \"{}\"", problems_.all[0].name,
+                if (solver.supports(problems_.all[p])) studies_.push_back({p, solver});
+        if (studies_.empty())
+            throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems_.all[0].name,
                               name_of(problems_.all[0].motion.model));
     }
 
@@ -56,14 +56,15 @@ public:
         visit({"scene", "a film, by name or path, whose side a is the problem"}, scene_);
         if constexpr (std::is_same_v<Visit, SettingsReader>)
             if (scene_) film_ = film_named(*scene_, visit);
-        const Only standard{!scene_, "cannot stand beside \"scene\", which is one of its own"};
-        const Only of_scene{scene_.has_value(), "is for the motion of a \"scene\"; the problems have their own"};
+        const Condition standard{!scene_, "cannot be combined with \"scene\", which is a problem of its own"};
+        const Condition of_scene{scene_.has_value(),
+                                 "is only for the motion of a \"scene\"; the standard problems have their own"};
         visit({"problems", "the standard problems", "", {}, "", standard, "", standard_problem_names()},
               problem_names_);
         visit({"duration_s", "of the motion of `scene`", "s", positive, "the film's", of_scene}, film_.duration_s);
         visit({"repeats", "of a measurement of time", "", from_to(1, 99)}, repeats_);
-        visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, most_evaluations_);
-        visit({"least_error", "below which no finer setting is taken", "", positive}, least_error_);
+        visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, max_evaluations_);
+        visit({"least_error", "below which no finer setting is taken", "", positive}, min_error_);
         visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
         visit({.key = "methods", .help = "names of methods", .absent = "all", .known = names_of_methods()}, methods_);
     }
@@ -80,7 +81,7 @@ public:
         reader.chart(names_field, kind.names_);
     }
 
-    std::size_t trials() const override { return problems_.all.size() + ladders_.size() * repeats(); }
+    std::size_t trials() const override { return problems_.all.size() + studies_.size() * repeats(); }
     bool measures_time() const override { return cost_ == Cost::time; }
     std::string unit() const override { return "step-size studies"; }
     double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
@@ -130,17 +131,17 @@ public:
         bool any = false;
         for (const auto& studies : merged_studies(numbers))
             for (const auto& study : studies) {
-                if (!front_of({&study, 1}, cost_, {0, most_error_shown}).empty()) return std::nullopt;
+                if (!pareto_front({&study, 1}, cost_, {0, max_error_shown}).empty()) return std::nullopt;
                 for (const auto& outcome : study.outcomes) {
                     any |= std::isfinite(outcome.error);
-                    if (study.solver.is_study() && outcome.is_study() && !outcome.failed()) return std::nullopt;
+                    if (study.solver.is_kao_study() && outcome.is_kao_study() && !outcome.failed()) return std::nullopt;
                 }
             }
         if (!any) return "every run of every method failed; raise work_precision.most_evaluations for finer settings";
         return fmt::format(
             "no run of any method has an error below {:g}{}; raise work_precision.most_evaluations, or take a "
             "shorter motion",
-            most_error_shown, has_angles() ? " rad" : " of the size");
+            max_error_shown, has_angles() ? " rad" : " of the size");
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
@@ -152,7 +153,7 @@ public:
         figure.captions.push_back(color_words(studies));
         figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
-        if (cost_ == Cost::time) figure.captions.push_back(spread_words(studies));
+        if (cost_ == Cost::time) figure.captions.push_back(timing_caption(studies));
     }
 
     std::string subtitle() const override { return problems_.subtitle; }
@@ -179,7 +180,7 @@ private:
 
     std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
     bool has_libraries() const {
-        return std::any_of(ladders_.begin(), ladders_.end(),
+        return std::any_of(studies_.begin(), studies_.end(),
                            [](const auto& l) { return l.second.external != nullptr; });
     }
     bool has_angles() const { return problems_.all.front().has_angles(); }
@@ -189,10 +190,10 @@ private:
         check_distinct(table, "methods", methods_);
         for (const auto& model : model_names_)
             for (const auto& name : methods_)
-                if (serves(*find_method(name), value_named<Model>(model)))
+                if (supports(*find_method(name), value_named<Model>(model)))
                     solvers_.push_back({value_named<Model>(model), name});
         if (solvers_.empty())
-            throw table.fault(table.has("methods") ? "methods" : "models",
+            throw table.error(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it supports");
     }
 
@@ -202,12 +203,11 @@ private:
             const auto& known = reference(trial, stop);
             return numbers_of(ProblemRow{known.sensitivity, known.disagreement});
         }
-        const auto& [p, solver] = ladders_[(trial - problems) % ladders_.size()];
-        const bool is_first = trial - problems < ladders_.size();
+        const auto& [p, solver] = studies_[(trial - problems) % studies_.size()];
+        const bool is_first = trial - problems < studies_.size();
         TrialNumbers numbers;
-        for (const auto& outcome :
-             run_step_study(problems_.all[p], reference(p, stop), solver,
-                            {most_evaluations_, least_error_, cost_ == Cost::time, is_first}, stop))
+        for (const auto& outcome : run_step_study(problems_.all[p], reference(p, stop), solver,
+                                                  {max_evaluations_, min_error_, cost_ == Cost::time, is_first}, stop))
             append(numbers, outcome);
         return numbers;
     }
@@ -223,11 +223,11 @@ private:
     /// For each problem; those of other libraries come last.
     Studies merged_studies(std::span<const TrialNumbers> numbers) const {
         Studies all(problems_.all.size());
-        for (std::size_t i = 0; i < ladders_.size(); ++i) {
+        for (std::size_t i = 0; i < studies_.size(); ++i) {
             std::vector<std::vector<StepResult>> repeats;
-            for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += ladders_.size())
+            for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += studies_.size())
                 repeats.push_back(rows_of<StepResult>(numbers[trial]));
-            all[ladders_[i].first].push_back(merged(ladders_[i].second, repeats));
+            all[studies_[i].first].push_back(merged(studies_[i].second, repeats));
         }
         return all;
     }
@@ -281,7 +281,7 @@ private:
                            floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 
-    std::string spread_words(const Studies& studies) const {
+    std::string timing_caption(const Studies& studies) const {
         const auto [typical, worst] = time_spread(studies);
         return fmt::format(
             "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
@@ -291,8 +291,7 @@ private:
 
     static constexpr std::size_t best_shown = 5;
     inline static const Field cost_field{.key = "cost", .help = "the cost axis"};
-    inline static const Field names_field{.key = "names",
-                                          .help = "whose names stand at their curves: the five best, or all"};
+    inline static const Field names_field{.key = "names", .help = "which curves are labelled: the five best, or all"};
     Cost cost_ = Cost::time;
     NamedCurves names_ = NamedCurves::best;
     std::optional<std::string> scene_;
@@ -304,10 +303,10 @@ private:
         Reference reference;
     };
     std::unique_ptr<SharedReference[]> references_;  // for each problem
-    int repeats_ = 5, most_evaluations_ = 300'000;
-    double least_error_ = 1e-16;
+    int repeats_ = 5, max_evaluations_ = 300'000;
+    double min_error_ = 1e-16;
     std::vector<Solver> solvers_;
-    std::vector<std::pair<std::size_t, Solver>> ladders_;  // the problem and the solver of each study
+    std::vector<std::pair<std::size_t, Solver>> studies_;  // the problem and the solver of each study
 };
 
 }  // namespace

@@ -24,9 +24,8 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
 std::span<const std::string_view> standard_problem_names();
 WorkProblems problem_of(Preset film);
 
-inline constexpr double most_error_shown = 1;  // rad, or relative to the size
+inline constexpr double max_error_shown = 1;  // rad, or relative to the size
 
-/// The contents of the diagram of one problem.
 struct WorkDiagram {
     const WorkProblem& problem;
     double floor;  // smallest error that the problem's sensitivity allows in double; NaN if unknown

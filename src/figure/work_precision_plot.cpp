@@ -15,11 +15,11 @@ using namespace std::string_view_literals;
 constexpr double rounding = 0x1p-53;
 
 /// Methods of a family share a hue; the second of two is dashed.
-struct Look {
+struct CurveStyle {
     int hue = 0;
     bool dashed = false;
 };
-Look look_of(std::string_view method) {
+CurveStyle style_of(std::string_view method) {
     constexpr std::array<std::array<std::string_view, 2>, 8> families{{{"taylor"sv},
                                                                        {"dop853"sv, "dopri5"sv},
                                                                        {"gauss6"sv, "gauss4"sv},
@@ -34,10 +34,9 @@ Look look_of(std::string_view method) {
     return {};
 }
 
-/// The shown range of errors.
 ErrorRange range_of(const WorkDiagram& diagram) {
     constexpr double at_floor = 10;
-    return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, most_error_shown};
+    return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, max_error_shown};
 }
 
 /// An error may be exactly 0, which a logarithmic axis cannot show.
@@ -61,12 +60,12 @@ Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
         curve.label = external->name;
         curve.hue = static_cast<int>(rank - diagram.named.begin());
     } else {
-        const auto look = look_of(method);
+        const auto style = style_of(method);
         curve.label = diagram.of_libraries ? method + " of Doppel" : method;
-        curve.hue = look.hue;
-        curve.dashed = look.dashed;
+        curve.hue = style.hue;
+        curve.dashed = style.dashed;
     }
-    for (const auto& point : front_of({&study, 1}, diagram.cost, range_of(diagram)))
+    for (const auto& point : pareto_front({&study, 1}, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
 }
@@ -74,9 +73,9 @@ Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
 /// The range of measured times of a curve, as pale bars.
 Curve spread_bars(const StepStudy& study, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
-    constexpr double shows = 0.05, most = 0.9;
-    for (const auto& point : front_of({&study, 1}, Cost::time, range_of(diagram))) {
-        const double spread = std::min(point.spread, most);
+    constexpr double shows = 0.05, maximum = 0.9;
+    for (const auto& point : pareto_front({&study, 1}, Cost::time, range_of(diagram))) {
+        const double spread = std::min(point.spread, maximum);
         if (spread < shows) continue;
         add_point(bars, point.cpu_s * (1 - spread), shown(point.error));
         add_point(bars, point.cpu_s * (1 + spread), shown(point.error));
@@ -89,17 +88,17 @@ Curve front_curve(const WorkDiagram& diagram) {
     Curve curve{.background = Background::band};
     const auto own = std::find_if(diagram.studies.begin(), diagram.studies.end(),
                                   [](const StepStudy& study) { return study.solver.external != nullptr; });
-    for (const auto& point : front_of({diagram.studies.begin(), own}, diagram.cost, range_of(diagram)))
+    for (const auto& point : pareto_front({diagram.studies.begin(), own}, diagram.cost, range_of(diagram)))
         add_point(curve, point.cost(diagram.cost), shown(point.error));
     return curve;
 }
 
 /// The result of the published study.
-void add_study(const WorkDiagram& diagram, Plot& plot) {
+void add_kao_point(const WorkDiagram& diagram, Plot& plot) {
     for (const auto& study : diagram.studies) {
-        if (!study.solver.is_study()) continue;
+        if (!study.solver.is_kao_study()) continue;
         for (const auto& outcome : study.outcomes)
-            if (outcome.is_study())
+            if (outcome.is_kao_study())
                 plot.curves.push_back({.label = "the study: Euler, 30 kHz",
                                        .x = {outcome.cost(diagram.cost)},
                                        .y = {outcome.error},
@@ -111,20 +110,20 @@ void add_study(const WorkDiagram& diagram, Plot& plot) {
 /// The limits of the axes: from the largest useful error down to the error floors, if errors come near them.
 void fit(const WorkDiagram& diagram, Plot& plot) {
     constexpr double of_use = 0.03, near = 100;
-    double least = most_error_shown, cheapest = std::numeric_limits<double>::infinity();
+    double minimum = max_error_shown, cheapest = std::numeric_limits<double>::infinity();
     for (const auto& curve : plot.curves)
         for (std::size_t i = 0; i < curve.x.size(); ++i) {
-            least = std::fmin(least, curve.y[i]);
+            minimum = std::fmin(minimum, curve.y[i]);
             if (curve.y[i] < of_use) cheapest = std::fmin(cheapest, curve.x[i]);
         }
     if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
-    plot.y.low = least / 4;
-    plot.y.high = 20 * most_error_shown;  // leaves space for the study's label
-    if (!(least < near * diagram.floor)) return;
+    plot.y.low = minimum / 4;
+    plot.y.high = 20 * max_error_shown;  // leaves space for the study's label
+    if (!(minimum < near * diagram.floor)) return;
     const double grown = diagram.floor / rounding;
     const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);
     plot.rules.push_back({.at = diagram.floor, .label = "round-off × " + times});
-    plot.y.low = std::fmin(least, diagram.floor) / 20;
+    plot.y.low = std::fmin(minimum, diagram.floor) / 20;
     constexpr double in_sight = 1e-12;
     if (diagram.floor > in_sight) return;
     plot.rules.push_back({.at = rounding, .label = "rounding"});
@@ -143,7 +142,7 @@ Plot work_plot(const WorkDiagram& diagram) {
                                                     : "error of place at the end, of the size",
               .logarithmic = true};
     plot.curves.push_back(front_curve(diagram));
-    if (!diagram.of_libraries) add_study(diagram, plot);
+    if (!diagram.of_libraries) add_kao_point(diagram, plot);
     for (const bool named : {false, true})
         for (const auto* study : best_models(diagram.studies, diagram.cost)) {
             const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), study->solver.name()) > 0;

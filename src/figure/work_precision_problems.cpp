@@ -93,11 +93,11 @@ std::span<const std::string_view> standard_problem_names() {
 }
 
 WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table) {
-    if (names.empty()) throw table.fault("problems", "must name at least one of {}", fmt::join(names_of_all, ", "));
+    if (names.empty()) throw table.error("problems", "must name at least one of {}", fmt::join(names_of_all, ", "));
     WorkProblems problems;
     for (const auto& name : names) {
         if (std::count(names.begin(), names.end(), name) > 1)
-            throw table.fault("problems", "must differ; \"{}\" is there twice", name);
+            throw table.error("problems", "must differ; \"{}\" is there twice", name);
         const auto number = std::find(names_of_all.begin(), names_of_all.end(), name) - names_of_all.begin();
         problems.all.push_back(standard_problem(name, all_standard.at(static_cast<std::size_t>(number))));
     }

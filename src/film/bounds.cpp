@@ -51,18 +51,18 @@ double round_number(double value, bool up) {
 Range fitted_distance(const Spread& seen) {
     constexpr double decades = 1e60;  // the largest ratio of an axis's ends, whatever the masses and lengths
     if (seen.count == 0) return {1e-8, 1};
-    const double most = std::clamp(seen.most, 1e-290, decades);
-    const double high = round_number(1.02 * most, true);
-    const double least = std::clamp(seen.least, high / decades, most);
+    const double maximum = std::clamp(seen.maximum, 1e-290, decades);
+    const double high = round_number(1.02 * maximum, true);
+    const double minimum = std::clamp(seen.minimum, high / decades, maximum);
     const double low =
-        most / least < 100 ? round_number(0.98 * least, false) : std::pow(10, std::floor(std::log10(least)));
+        maximum / minimum < 100 ? round_number(0.98 * minimum, false) : std::pow(10, std::floor(std::log10(minimum)));
     return {std::clamp(low, high / decades, high / 10), high};
 }
 
 /// The default axis of an error, two to six powers of ten: from a tenth of its geometric mean to its largest value.
 Range fitted_error(const Spread& seen) {
     if (seen.count == 0) return {1e-16, 1};
-    const double high = std::pow(10, std::ceil(std::log10(1.02 * seen.most)));
+    const double high = std::pow(10, std::ceil(std::log10(1.02 * seen.maximum)));
     const double low = std::pow(10, std::floor(std::log10(seen.geometric_mean() / 10)));
     return {std::clamp(low, high * 1e-6, high * 1e-2), high};
 }
@@ -73,8 +73,8 @@ void Spread::add(double value) {
     low = std::min(low, value);
     high = std::max(high, value);
     if (!(value > 0) || !std::isfinite(value)) return;
-    least = std::min(least, value);
-    most = std::max(most, value);
+    minimum = std::min(minimum, value);
+    maximum = std::max(maximum, value);
     log_sum += std::log(value);
     ++count;
 }
@@ -124,9 +124,9 @@ View fitted_view(const Scene& scene, const MotionBounds& seen) {
                     bottom = std::min(bottom, (*place)[1] - line.radius);
                     top = std::max(top, (*place)[1] + line.radius);
                 }
-    const double least = 1e-3 * std::max({right - left, top - bottom, 1e-6});
-    const View view{(left + right) / 2, (bottom + top) / 2, std::max(right - left, least),
-                    std::max(top - bottom, least), false};
+    const double minimum = 1e-3 * std::max({right - left, top - bottom, 1e-6});
+    const View view{(left + right) / 2, (bottom + top) / 2, std::max(right - left, minimum),
+                    std::max(top - bottom, minimum), false};
     return std::isfinite(view.width + view.height) ? view : View{.width = 2, .height = 2, .is_circle = false};
 }
 

@@ -12,8 +12,8 @@ namespace doppel {
 /// The range of numbers: of all of them, and of the positive ones on a logarithmic scale.
 struct Spread {
     double low = 0, high = 0;
-    double least = std::numeric_limits<double>::infinity(), most = 0;  // of the positive finite numbers
-    double log_sum = 0;                                                // of their natural logarithms
+    double minimum = std::numeric_limits<double>::infinity(), maximum = 0;  // of the positive finite numbers
+    double log_sum = 0;                                                     // of their natural logarithms
     long count = 0;
 
     void add(double value);

@@ -26,7 +26,6 @@ Label card_line(std::string text, double size, Weight weight, Color color) {
 // px of a 1920×1080 picture: the height of all lines of a card, without its picture
 constexpr float card_words = 400;
 
-/// The list with the opacity `alpha` of the card.
 DisplayList faded(DisplayList list, float alpha) {
     for (auto& item : list) std::visit([&](auto& shape) { shape.color.a *= alpha; }, item);
     return list;
@@ -54,8 +53,8 @@ Label with_text(Label label, std::string text) {
 
 }  // namespace
 
-Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind dress)
-    : state_{scene, make_layout(scene, bounds, dress)} {
+Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind kind)
+    : state_{scene, make_layout(scene, bounds, kind)} {
     const auto& layout = state_.layout;
     for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
     if (layout.phase) layers_.push_back(make_phase_layer(state_, *layout.phase));
@@ -142,10 +141,10 @@ DisplayList Composer::title_card(double opacity) const {
 
 std::string Composer::outcome() const {
     if (state_.scene.is_single()) return fmt::format("after {:g} s", state_.scene.time(state_.scene.samples));
-    const auto& parting = state_.outcome.parting;
-    if (!parting.start_as_one()) return "apart from the start";
-    if (parting.since()) return fmt::format("diverged after {:.1f} s", *parting.since());
-    if (state_.outcome.largest_distance >= Divergence::apart_at) return "apart only for moments";
+    const auto& divergence = state_.outcome.divergence;
+    if (!divergence.starts_together()) return "apart from the start";
+    if (divergence.since()) return fmt::format("diverged after {:.1f} s", *divergence.since());
+    if (state_.outcome.largest_distance >= Divergence::diverged_distance) return "apart only for moments";
     return fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
 }
 

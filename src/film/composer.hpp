@@ -12,7 +12,7 @@ namespace doppel {
 class Composer {
 public:
     /// `bounds` as for make_layout().
-    Composer(const Scene& scene, const MotionBounds& bounds, PictureKind dress = PictureKind::film);
+    Composer(const Scene& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film);
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 

@@ -15,16 +15,16 @@ namespace doppel {
 namespace {
 
 SimulationEstimate estimated_side(const Scene& scene, Side side, char name, const std::atomic<bool>& stop) {
-    constexpr double look_s = 0.025, patience_s = 0.3;
+    constexpr double probe_s = 0.025, patience_s = 0.3;
     // one sample may take many steps: some parts of it are timed, a few steps each, or shortened
     constexpr long few_steps = 250;
-    constexpr double brief_s = 0.01, most_parts = 1e12;
+    constexpr double shortened_s = 0.01, max_parts = 1e12;
     const bool adaptive = side.method.adaptive;
     auto& interval = side.motion.sample_interval;
-    long parts = adaptive ? std::llround(std::clamp(std::ceil(interval.value() / brief_s), 1.0, most_parts))
+    long parts = adaptive ? std::llround(std::clamp(std::ceil(interval.value() / shortened_s), 1.0, max_parts))
                           : std::max(1L, side.motion.steps_per_sample / few_steps);
-    if (const auto brief = quotient(interval, {parts, 1}); adaptive && brief)
-        interval = *brief;
+    if (const auto shortened = quotient(interval, {parts, 1}); adaptive && shortened)
+        interval = *shortened;
     else if (adaptive)
         parts = 1;
     const double all = static_cast<double>(scene.samples) * static_cast<double>(parts);
@@ -35,15 +35,15 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
     try {
         run.next(limit.reached());
         start = seconds_of(CLOCK_MONOTONIC);
-        while (static_cast<double>(done) < all && elapsed < look_s) {
+        while (static_cast<double>(done) < all && elapsed < probe_s) {
             const long next = done + 1;
             const double part = adaptive ? 0 : static_cast<double>(next % parts) / static_cast<double>(parts);
             run.advance_to({adaptive ? next : next / parts, part}, limit.reached());
             elapsed = seconds_of(CLOCK_MONOTONIC) - start;
             done = next;
         }
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::interrupted || stop) throw;
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::interrupted || stop) throw;
         elapsed = seconds_of(CLOCK_MONOTONIC) - start;
     }
     const double share = all / static_cast<double>(std::max(done, 1L));
@@ -56,11 +56,11 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
 /// Time for the motion of an ensemble's members, s per sample.
 double seconds_of_members(const Scene& scene, const std::atomic<bool>& stop) {
     if (scene.members.empty()) return 0;
-    constexpr double look_s = 0.05;
+    constexpr double probe_s = 0.05;
     MotionBatch members(scene.members, 1);
     const double start = seconds_of(CLOCK_MONOTONIC);
     double elapsed = 0, samples = 0;
-    for (; elapsed < look_s; ++samples) {
+    for (; elapsed < probe_s; ++samples) {
         members.advance(stop);
         elapsed = seconds_of(CLOCK_MONOTONIC) - start;
     }
@@ -103,7 +103,7 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
 
 /// Time for one frame: the difference between many frames and few. `run_s` is that of few.
 FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
-    constexpr double enough_s = 0.1, slow_s = 0.5;
+    constexpr double sufficient_s = 0.1, slow_s = 0.5;
     const auto few = cost_of_frames(scene, 2, stop);
     FrameCost cost{1, few.wall_s, few.cpu_s, few.run_s};
     for (long count = 8; count <= 128 && few.wall_s < slow_s; count *= 4) {
@@ -112,7 +112,7 @@ FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
         if (more < 1) break;
         cost.wall_s = std::max(wall_s, 0.0) / more;
         cost.cpu_s = std::max(many.cpu_s - few.cpu_s, 0.0) / more;
-        if (wall_s > enough_s) break;
+        if (wall_s > sufficient_s) break;
     }
     return cost;
 }

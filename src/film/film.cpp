@@ -80,8 +80,8 @@ std::optional<long> poster_frame(const Scene& scene) {
     const auto& frames = scene.frames;
     const auto moment = moment_at(seconds->value() * scene.preset.sample_hz.value());
     const long frame = std::min(frames.first_from(moment), frames.count - 1);
-    const auto off = [&](long k) { return std::abs(scene.time(frames.at(k)) - scene.time(moment)); };
-    return frame > 0 && off(frame - 1) < off(frame) ? frame - 1 : frame;
+    const auto distance = [&](long k) { return std::abs(scene.time(frames.at(k)) - scene.time(moment)); };
+    return frame > 0 && distance(frame - 1) < distance(frame) ? frame - 1 : frame;
 }
 
 VideoOptions video_options(const Scene& scene) {

@@ -32,7 +32,6 @@ struct RunRecord : RunResult {
 /// They also state when the error reaches half a radian, if that can be found in about the time of the run.
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop);
 
-/// The model and method of a side for manifests and `check --json`.
 Json method_json(const Scene& scene, const Side& side);
 
 /// Writes the manifest `name` with the hashes of the complete files. Throws Error (exit 4).
@@ -114,7 +113,6 @@ private:
 /// The number of the poster's frame, nearest to the poster's time, if the film has a poster.
 std::optional<long> poster_frame(const Scene& scene);
 
-/// The options of the scene's video file.
 VideoOptions video_options(const Scene& scene);
 
 }  // namespace doppel

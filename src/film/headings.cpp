@@ -25,10 +25,10 @@ struct Heading {
 
 std::vector<Heading> headings_of(const Scene& scene) {
     const auto layout = scene.preset.video.layout;
-    const bool apart = layout == Arrangement::side_by_side || layout == Arrangement::portrait;
+    const bool side_by_side = layout == Arrangement::side_by_side || layout == Arrangement::portrait;
     const auto said = side_captions(scene, wording_of(scene));
     if (scene.is_single()) return {{0, 0, said[0]}};
-    return {{0, 0, said[0]}, {apart ? 1u : 0u, 1, said[1], apart ? Align::left : Align::right}};
+    return {{0, 0, said[0]}, {side_by_side ? 1u : 0u, 1, said[1], side_by_side ? Align::left : Align::right}};
 }
 
 /// Text sizes at which the headings of all panels fit, px.
@@ -50,8 +50,8 @@ HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, 
         heading = std::min(heading, width / std::max(head, 1.0f));
         note = std::min(note, width / std::max(tail, 1.0f));
     }
-    constexpr float least = 0.85f;  // smallest scale before notes go on a line of their own
-    const bool two = (one < least || one * px(font.note) < layout.least_text) &&
+    constexpr float minimum = 0.85f;  // smallest scale before notes go on a line of their own
+    const bool two = (one < minimum || one * px(font.note) < layout.min_text) &&
                      std::ranges::any_of(headings, [](const Heading& words) { return !words.said.note.empty(); });
     if (!two) return {one * px(font.heading), one * px(font.note), width};
     return {heading * px(font.heading), note * px(font.note), width, true};
@@ -66,7 +66,7 @@ void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, 
         if (!fits.text.empty()) layout.words.push_back(label(fits.text, {x, y}, fits.size, hue, align, weight));
     };
     const auto fitted_to = [&](const std::string& text, float size, Weight weight) {
-        return fitted_text(layout, text, std::max(size, layout.least_text), weight, sizes.width);
+        return fitted_text(layout, text, std::max(size, layout.min_text), weight, sizes.width);
     };
     const auto head = fitted_to(words.said.heading, sizes.heading, Weight::bold);
     const auto tail = fitted_to(words.said.note, sizes.note, Weight::regular);
@@ -87,10 +87,10 @@ void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, 
 void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, const Area& panel) {
     const float t = layout.text, base = panel.top - 14 * t, gap = 14 * t;
     std::array<float, 2> width{};
-    const float most = 0.36f * panel.width();
+    const float maximum = 0.36f * panel.width();
     float size = px(layout.style.font.note);
     for (std::size_t side = 0; side < 2; ++side) {
-        const auto words = fitted_text(layout, said[side].heading, px(layout.style.font.note), Weight::bold, most);
+        const auto words = fitted_text(layout, said[side].heading, px(layout.style.font.note), Weight::bold, maximum);
         size = std::min(size, words.size);
         width[side] = layout.style.type.width(words.text, words.size, Weight::bold);
         layout.words.push_back(label(words.text, {side == 0 ? panel.left : panel.right, base}, words.size,
@@ -213,8 +213,8 @@ float place_header(Layout& layout, const Scene& scene) {
     const auto add = [&](const std::string& text, double size, Weight weight, Color color, float beside) {
         const float width = page.width() - (beside > 0 ? beside + gap : 0);
         const auto& type = layout.style.type;
-        const float least = std::max(0.75f * px(size), std::min(px(size), layout.least_text));
-        const float fits = std::max(least, type.fitting_size(text, px(size), weight, width));
+        const float minimum = std::max(0.75f * px(size), std::min(px(size), layout.min_text));
+        const float fits = std::max(minimum, type.fitting_size(text, px(size), weight, width));
         std::vector<std::string> lines{text};
         if (const float own = type.width(text, fits, weight); own > width + 1)
             lines = wrapped(text, fits, weight, width * text_width(text, fits, weight) / own);
@@ -242,8 +242,8 @@ float place_header(Layout& layout, const Scene& scene) {
 
 FittedText fitted_text(const Layout& layout, const std::string& text, float size, Weight weight, float width) {
     const auto& type = layout.style.type;
-    const float least = std::min(size, std::max(0.75f * size, layout.least_text));
-    FittedText fits{text, std::max(least, type.fitting_size(text, size, weight, width))};
+    const float minimum = std::min(size, std::max(0.75f * size, layout.min_text));
+    FittedText fits{text, std::max(minimum, type.fitting_size(text, size, weight, width))};
     for (auto end = text.size(); end > 0 && type.width(fits.text, fits.size, weight) > width;) {
         end = text.find_last_of(' ', end - 1);
         if (end == std::string::npos) break;

@@ -19,7 +19,6 @@ inline double hermite(double p, double v, double q, double w, double dt, double 
 /// A path that fades and narrows with age.
 class Trail {
 public:
-    /// `width` in px.
     Trail(const Scene& scene, const Style& style, Color color, float width);
     Trail(const Scene& scene, const Style& style, std::size_t side)
         : Trail(scene, style, style.theme.sides[side], px(style.width.trail)) {}
@@ -83,8 +82,8 @@ public:
 
 protected:
     /// The style of a chart's axes.
-    AxisLook axis_look() const {
-        return {.edge = AxisLook::Edge::bottom,
+    AxisStyle axis_style() const {
+        return {.edge = AxisStyle::Edge::bottom,
                 .em = px(style_.font.axis),
                 .line = px(style_.width.grid),
                 .grid = theme_.grid,
@@ -103,7 +102,6 @@ protected:
 
 /// The pendulums of a panel and their trails.
 std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel);
-/// The phase portrait.
 std::unique_ptr<Layer> make_phase_layer(const FilmState& state, const PhasePanel& panel);
 /// A strip, numbered from the top.
 std::unique_ptr<Layer> make_strip_layer(const FilmState& state, std::size_t index);

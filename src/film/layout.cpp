@@ -44,7 +44,6 @@ float caption_height(const Layout& layout, const Scene& scene, float width) {
     return static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
 }
 
-/// Height of the numbers below an axis, px.
 float numbers_height(const Layout& layout) {
     return 1.75f * px(layout.style.font.axis);
 }
@@ -64,12 +63,12 @@ void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& c
         const float below = is_lowest ? numbers_height(layout) : 0.35f * em;
         // captions have priority over curves, unless many strips share little space
         const float high = cell.height() - below - above_curves(layout);
-        const int most = std::max(1, static_cast<int>(0.4f * high / caption_line(layout)));
-        const int lines = std::min(caption_lines(kind, scene, layout, cell.width()), most);
+        const int maximum = std::max(1, static_cast<int>(0.4f * high / caption_line(layout)));
+        const int lines = std::min(caption_lines(kind, scene, layout, cell.width()), maximum);
         const float words = static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
         const Area area{cell.left, std::round(cell.top + words), cell.right, std::round(cell.bottom - below)};
-        const auto& asked = video.ranges[static_cast<std::size_t>(kind)];
-        const auto range = asked ? *asked : fitted_range(kind, seen);
+        const auto& requested = video.ranges[static_cast<std::size_t>(kind)];
+        const auto range = requested ? *requested : fitted_range(kind, seen);
         layout.strips.push_back(
             {.kind = kind,
              .cell = cell,
@@ -123,9 +122,9 @@ void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& a
 
 /// Size of one of many pendulums in a panel, relative to a single one.
 float member_scale(std::size_t members) {
-    return members <= most_full_members
+    return members <= max_full_size_members
                ? 1
-               : std::sqrt(static_cast<float>(most_full_members) / static_cast<float>(members));
+               : std::sqrt(static_cast<float>(max_full_size_members) / static_cast<float>(members));
 }
 
 /// Centres the pendulums in their panels, as large as possible, all at the same scale. A chain's scale is given by the
@@ -134,17 +133,17 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     const auto& style = layout.style;
     const auto view = fitted_view(scene, seen);
     const auto across = static_cast<float>(view.width), up = static_cast<float>(view.height);
-    const auto& asked = scene.preset.video.view;
+    const auto& requested = scene.preset.video.view;
     for (auto& panel : layout.panels) {
         const Area& area = panel.area;
         panel.center = {(area.left + area.right) / 2, (area.top + area.bottom) / 2};
-        const auto& center = asked.center_m;
-        panel.center_x = center ? static_cast<double>((*center)[0]) : asked.follow > 0 ? 0 : view.x;
-        panel.center_y = center ? static_cast<double>((*center)[1]) : asked.follow > 0 ? 0 : view.y;
+        const auto& center = requested.center_m;
+        panel.center_x = center ? static_cast<double>((*center)[0]) : requested.follow > 0 ? 0 : view.x;
+        panel.center_y = center ? static_cast<double>((*center)[1]) : requested.follow > 0 ? 0 : view.y;
         const float edges = 80 * layout.unit;
         panel.px_per_m = view.is_circle ? std::min(area.width(), area.height()) / around_circle / across
                                         : std::min((area.width() - edges) / across, (area.height() - edges) / up);
-        if (asked.height_m) panel.px_per_m = area.height() / px(*asked.height_m);
+        if (requested.height_m) panel.px_per_m = area.height() / px(*requested.height_m);
     }
     const float radius = layout.panels.front().px_per_m * std::max(across, up) / 2;
     layout.reach = view.is_circle ? radius : 0;
@@ -154,7 +153,7 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     // a mechanism has more parts to show; many members share the space of a few
     const float size = view.is_circle ? member_scale(scene.members.size()) : 0.6f;
     // many thin rods remain separate; a few are at least as wide as lines
-    const float thinnest = scene.members.size() > most_full_members ? 0.5f : 0.8f;
+    const float thinnest = scene.members.size() > max_full_size_members ? 0.5f : 0.8f;
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), thinnest);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
@@ -175,7 +174,7 @@ float tile_text(float unit) {
 }
 
 /// least ratio of text px to those of a 1920×1080 picture; smallest text, px per em
-constexpr float least_unit = 1.0f / 3, least_text = 9;
+constexpr float min_unit = 1.0f / 3, min_text = 9;
 
 constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
 
@@ -239,16 +238,16 @@ Point PendulumPanel::at(double x_m, double y_m) const {
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
 }
 
-Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind dress) {
-    if (dress == PictureKind::tile) return make_tile(scene, seen);
+Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind kind) {
+    if (kind == PictureKind::tile) return make_tile(scene, seen);
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;
     Layout layout;
     layout.unit = tall ? std::min(width / 1080, height / 1920) : std::min(width / 1920, height / 1080);
     // upright pictures are for telephones: larger text, and none where an app has its buttons
-    layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, least_unit);
-    layout.least_text = tall ? 1080.0f / 390 * least_text * layout.unit : least_text;
+    layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, min_unit);
+    layout.min_text = tall ? 1080.0f / 390 * min_text * layout.unit : min_text;
     layout.style = make_style(video, layout.unit, layout.text);
     const float u = layout.unit;
     const float top = is_portrait ? 0.06f * height : 28 * u, bottom = is_portrait ? 0.14f * height : 26 * u;

@@ -36,7 +36,7 @@ struct Style {
 Style make_style(const VideoSpec& video, float unit, float text);
 
 /// An ensemble of at most this many members is drawn as large as a pair.
-inline constexpr std::size_t most_full_members = 8;
+inline constexpr std::size_t max_full_size_members = 8;
 
 /// The colour of a member of an ensemble, from the first (0) to the last (1).
 Color member_color(const Style& style, double share);
@@ -76,9 +76,9 @@ inline bool is_tall(const VideoSpec& video) {
 
 /// The layout of a film's picture: a function of the scene and the bounds of its motion.
 struct Layout {
-    float unit = 1;        // px per px of a 1920×1080 picture
-    float text = 1;        // the same for text, which stays legible in small pictures and on telephones
-    float least_text = 9;  // smallest size of text, px per em
+    float unit = 1;      // px per px of a 1920×1080 picture
+    float text = 1;      // the same for text, which stays legible in small pictures and on telephones
+    float min_text = 9;  // smallest size of text, px per em
     Style style;
     Area page;                          // inside the margins
     DisplayList words;                  // constant texts: title, subtitle, headings of panels
@@ -96,9 +96,8 @@ struct Layout {
 enum class PictureKind { film, tile };
 
 /// `bounds`: of the whole motion, if depends_on_motion(). A tile has no strips.
-Layout make_layout(const Scene& scene, const MotionBounds& bounds, PictureKind dress = PictureKind::film);
+Layout make_layout(const Scene& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film);
 
-/// The size of a tile of this width, px.
 Size tile_size(const Scene& scene, int width);
 
 /// The quantities that decide how a picture is divided; lengths in px.

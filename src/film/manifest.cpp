@@ -83,18 +83,18 @@ Json fonts_json(const Preset& preset) {
 }  // namespace
 
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
-    constexpr double most = 0.01, least_patience_s = 1, most_patience_s = 2;
+    constexpr double maximum = 0.01, min_patience_s = 1, max_patience_s = 2;
     for (const char name : scene.letters()) {
         const auto& side = scene.side(name);
         const double error = (name == 'a' ? record.motion.a : record.motion.b).energy_change / scene.energy_range();
-        if (side.has_energy_error && error > most)
+        if (side.has_energy_error && error > maximum)
             record.warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse for {:g} s; use accuracy "
                 "= 1e-3",
                 name, 100 * error, side.method.title, step_control_text(side), scene.time(record.last_sample)));
     }
     try {
-        const TimeLimit limit(std::clamp(record.wall_s, least_patience_s, most_patience_s), stop);
+        const TimeLimit limit(std::clamp(record.wall_s, min_patience_s, max_patience_s), stop);
         for (const char name : scene.letters())
             if (const auto words = early_error(scene, scene.side(name), record.last_sample, limit.reached()))
                 record.warnings.push_back(fmt::format("side {}: {}", name, *words));
@@ -118,7 +118,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"b", scene.b.replay ? track_json(*scene.b.replay, scene.preset.b.track)
                              : side_json(scene, scene.b, record.motion.b)},
         {"largest_distance", scene.is_single() ? Json(nullptr) : Json(outcome.largest_distance)},
-        {"parted_s", outcome.parting.since() ? Json(*outcome.parting.since()) : Json(nullptr)},
+        {"parted_s", outcome.divergence.since() ? Json(*outcome.divergence.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
         {"warnings", record.warnings},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},

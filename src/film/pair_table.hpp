@@ -10,7 +10,6 @@
 
 namespace doppel {
 
-/// All columns of the scene's table.
 std::vector<std::string> columns_of(const Scene& scene);
 /// The columns that are `chosen`: names of columns, or "a" or "b" for all of a side; all columns if it is empty. Throws
 /// Error (exit 2) for an unknown column.
@@ -20,7 +19,6 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
 /// 4), as Csv does.
 class PairTable {
 public:
-    /// `chosen` as for columns_of().
     PairTable(const std::filesystem::path& place, const Scene& scene, const std::vector<std::string>& chosen)
         : scene_(scene), csv_(place, columns_of(scene), columns_of(scene, chosen)) {}
 

@@ -60,16 +60,16 @@ private:
 
     void extend(Path& path, const Bob<double>& bob) const;
     void draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const;
-    bool swing_as_one() const;
+    bool coincide() const;
     void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
     void draw_members(DisplayList& list) const;
     void draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses, Color of_last,
-                   Color of_others, float least, DisplayList& list) const;
+                   Color of_others, float minimum, DisplayList& list) const;
     Color member_hue(std::size_t k, float opacity) const;
     float member_trail_width() const;
     void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
     Point place_at(std::size_t side, const Place<double>& place) const;
-    void draw_tracks(std::size_t side, DisplayList& list) const;
+    void draw_slots(std::size_t side, DisplayList& list) const;
     void draw_pivots(std::size_t side, DisplayList& list) const;
     void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const;
     float bob_radius(std::size_t side, std::size_t bob) const { return radius_of(side, state_.side(side).mass[bob]); }
@@ -114,18 +114,19 @@ void PendulumLayer::backdrop(DisplayList& list) const {
 void PendulumLayer::draw_surroundings(DisplayList& list) const {
     const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
     const Point pivot = at(0, 0);
-    const bool is_within = panel_.area.holds(Area{pivot.x - reach, pivot.y - reach, pivot.x + reach, pivot.y + reach});
+    const bool is_within =
+        panel_.area.contains(Area{pivot.x - reach, pivot.y - reach, pivot.x + reach, pivot.y + reach});
     if (reach > 0 && is_within && shows("circle") && style_.width.grid > 0)
         list.push_back(Ring{pivot, reach, px(style_.width.grid), theme_.grid});
-    for (const auto side : panel_.sides) draw_tracks(side, list);
+    for (const auto side : panel_.sides) draw_slots(side, list);
 }
 
 /// Adds the path from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
 void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
-    const float piece = std::max(8 * layout_.unit, 2.0f), least = std::max(1.5f * layout_.unit, 0.5f);  // px
+    const float piece = std::max(8 * layout_.unit, 2.0f), minimum = std::max(1.5f * layout_.unit, 0.5f);  // px
     const double now = state_.time();
     const auto go_on = [&](Point to, double time) {
-        if (const auto end = path.trail.end(); !end || distance(to, *end) >= least) path.trail.add(to, time, now);
+        if (const auto end = path.trail.end(); !end || distance(to, *end) >= minimum) path.trail.add(to, time, now);
     };
     if (path.last) {
         const auto& [from, from_time] = *path.last;
@@ -144,7 +145,6 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     path.last = {bob, now};
 }
 
-/// Draws the trail up to the bob.
 void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const {
     const auto draw = [&](const Trail& trail) {
         trail.draw(panel_.area, state_.time(), still_at(bob), list, std::numeric_limits<float>::infinity(), shift());
@@ -160,7 +160,7 @@ void PendulumLayer::frame(DisplayList& list) const {
     if (!state_.snapshot.members.empty()) return draw_members(list);
     const bool alone = panel_.sides.size() == 1;
     // the other pendulum, faint and behind; this side hides it as long as both move together
-    if (alone && shows("twin") && !state_.scene.is_single() && !swing_as_one()) {
+    if (alone && shows("twin") && !state_.scene.is_single() && !coincide()) {
         const std::size_t other = 1 - panel_.sides.front();
         const Color hue = theme_.sides[other];
         const Color ghost =
@@ -175,8 +175,7 @@ void PendulumLayer::frame(DisplayList& list) const {
     for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side) draw_pendulum(*side, alone, list);
 }
 
-/// Whether the two pendulums coincide in this panel.
-bool PendulumLayer::swing_as_one() const {
+bool PendulumLayer::coincide() const {
     const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
         return a.mass == b.mass && distance(at(a), at(b)) < 0.1f;  // px
     };
@@ -197,13 +196,13 @@ void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& lis
               list);
 }
 
-/// Bobs with a contrasting rim, the last one with a radius of at least `least` px.
+/// Bobs with a contrasting rim, the last one with a radius of at least `minimum` px.
 void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses,
-                              Color of_last, Color of_others, float least, DisplayList& list) const {
+                              Color of_last, Color of_others, float minimum, DisplayList& list) const {
     if (!shows("bobs") || !(layout_.bob_radius > 0)) return;
     for (std::size_t i = 0; i < bobs.size(); ++i) {
         const bool last = i + 1 == bobs.size();
-        const float radius = std::max(radius_of(side, masses[i]), last ? least : 0);
+        const float radius = std::max(radius_of(side, masses[i]), last ? minimum : 0);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
         if (!state_.scene.preset.video.transparent) draw_disc(at(bobs[i]), radius + rim, theme_.panel, list);
         draw_disc(at(bobs[i]), radius, last ? of_last : of_others, list, last ? style_.glow : 0);
@@ -214,20 +213,20 @@ void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, const 
 Color PendulumLayer::member_hue(std::size_t k, float opacity) const {
     const auto count = state_.scene.members.size();
     const auto color = member_color(style_, state_.scene, k);
-    if (count <= most_full_members) return color;
+    if (count <= max_full_size_members) return color;
     return color.with_alpha(std::clamp(opacity * 14 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f));
 }
 
 float PendulumLayer::member_trail_width() const {
     const auto count = static_cast<float>(state_.scene.members.size());
-    return px(style_.width.trail) * std::clamp(std::sqrt(most_full_members / count), 0.4f, 1.0f);
+    return px(style_.width.trail) * std::clamp(std::sqrt(max_full_size_members / count), 0.4f, 1.0f);
 }
 
 /// The members of an ensemble, the last one behind: trails, rods (transparent if they are many), and the last bobs; for
 /// few members, all bobs.
 void PendulumLayer::draw_members(DisplayList& list) const {
     const auto& members = state_.snapshot.members;
-    const bool few = members.size() <= most_full_members;
+    const bool few = members.size() <= max_full_size_members;
     for (std::size_t k = member_paths_.size(); k-- > 0;) draw_trail(member_paths_[k], members[k].back(), list);
     for (std::size_t k = members.size(); k-- > 0;) {
         draw_lines(0, members[k], layout_.rod_radius, member_hue(k, 0.43f), list);
@@ -267,7 +266,7 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
 }
 
 /// Slots in which bobs slide.
-void PendulumLayer::draw_tracks(std::size_t side, DisplayList& list) const {
+void PendulumLayer::draw_slots(std::size_t side, DisplayList& list) const {
     const float width = px(style_.width.grid);
     const auto& color = theme_.grid;
     if (!(width > 0)) return;
@@ -310,7 +309,7 @@ void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
 void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& list, float glow) const {
     // with a view set by the preset, nothing is drawn outside the panel
     const float edge = video_.view.height_m || video_.view.center_m || video_.view.follow > 0 ? radius : 0;
-    if (panel_.area.grown(-edge, -edge).holds(at))
+    if (panel_.area.grown(-edge, -edge).contains(at))
         list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});
 }
 

@@ -64,13 +64,13 @@ void PhaseLayer::backdrop(DisplayList& list) const {
     const Area &area = panel_.area, around = panel_.panel;
     if (!video_.transparent)
         list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
-    auto look = axis_look();
+    auto style = axis_style();
     const auto add = [&](const Axis& axis, const std::vector<Tick>& ticks) {
-        const auto items = axis_items(axis, ticks, area, around, look);
+        const auto items = axis_items(axis, ticks, area, around, style);
         list.insert(list.end(), items.begin(), items.end());
     };
     add(panel_.angle, spaced_ticks(panel_.angle, true, em, 90));
-    look.edge = AxisLook::Edge::left;
+    style.edge = AxisStyle::Edge::left;
     add(panel_.rate, spaced_ticks(panel_.rate, false, em));
     const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
                                      video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");

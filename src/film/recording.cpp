@@ -19,10 +19,10 @@ void add(SideRecord& record, const Observation& seen, std::optional<double> ener
 }  // namespace
 
 Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-                     Report report, double most_bytes)
+                     Report report, double max_bytes)
     : scene_(scene), end_(end), with_pictures_(with_pictures), stop_(stop), report_(std::move(report)) {
     const bool is_bounded = with_pictures && depends_on_motion(scene);
-    is_kept_ = with_pictures && (is_bounded || scene.preset.video.contact_sheet) && bytes() <= most_bytes;
+    is_kept_ = with_pictures && (is_bounded || scene.preset.video.contact_sheet) && bytes() <= max_bytes;
     if (!is_bounded && !is_kept_) return;
     try {
         simulate(is_bounded ? scene.samples : no_bounds, [&](const Snapshot& snapshot) {
@@ -30,7 +30,7 @@ Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, 
         });
     } catch (const Error& error) {
         if (error.code() == ExitCode::interrupted) throw;
-        fault_ = std::current_exception();
+        error_ = std::current_exception();
     }
 }
 
@@ -48,7 +48,7 @@ double Recording::bytes() const {
 void Recording::play(const Visit& visit) {
     if (!is_kept_) return simulate(no_bounds, visit);
     for (const auto& snapshot : kept_) visit(snapshot);
-    if (fault_) std::rethrow_exception(fault_);
+    if (error_) std::rethrow_exception(error_);
 }
 
 /// Simulates the required snapshots; then on to sample `last`, only for the bounds.

@@ -23,12 +23,12 @@ struct Snapshot {
 /// Distances of a pair, updated sample by sample.
 struct Outcome {
     double start_distance = 0, largest_distance = 0;  // in state space
-    Divergence parting{};
+    Divergence divergence{};
 
     void add(double time, const PairState& state) {
         if (state.sample == 0) start_distance = state.distance;
         largest_distance = std::max(largest_distance, state.distance);
-        parting.add(time, state.distance);
+        divergence.add(time, state.distance);
     }
 };
 
@@ -55,7 +55,7 @@ using Report = std::function<void(const Progress&)>;
 /// The motion of a scene up to a given time: its samples, and for pictures also the frames between them and the members
 /// of an ensemble (which the table may require, too). The whole motion is simulated first and kept if a picture depends
 /// on it (depends_on_motion()) or is drawn after the others (the contact sheet). This takes some 0.7 kB per sample for
-/// a double pendulum, 29 kB for 256 links. If it would exceed `most_bytes`, and for all other runs, the motion is
+/// a double pendulum, 29 kB for 256 links. If it would exceed `max_bytes`, and for all other runs, the motion is
 /// simulated while it is played.
 class Recording {
 public:
@@ -65,7 +65,7 @@ public:
     /// outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
     /// play() throws the others.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-              Report report = {}, double most_bytes = usual_bytes);
+              Report report = {}, double max_bytes = usual_bytes);
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 
@@ -75,13 +75,12 @@ public:
     void play(const Visit& visit);
 
     /// Whether it is already known that play() will throw.
-    bool fails() const { return fault_ != nullptr; }
+    bool fails() const { return error_ != nullptr; }
     /// Bounds of the whole motion, or up to its failure. So a frame has the same pixels alone as in the film. Empty if
     /// no picture depends on them.
     const MotionBounds& bounds() const { return bounds_; }
     /// Complete after play().
     const MotionRecord& record() const { return record_; }
-    /// CPU time of the simulation, s.
     double cpu_s() const { return cpu_s_; }
 
 private:
@@ -95,7 +94,7 @@ private:
     const std::atomic<bool>& stop_;
     const Report report_;
     std::deque<Snapshot> kept_;
-    std::exception_ptr fault_;
+    std::exception_ptr error_;
     MotionBounds bounds_;
     MotionRecord record_;
     double cpu_s_ = 0;

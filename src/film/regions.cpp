@@ -7,11 +7,11 @@ namespace doppel {
 namespace {
 
 // in units of the picture's height: curves of a strip; circles of a pair for which strips still go below
-constexpr float least_curves = 0.2f, most_curves = 0.34f, least_circle = 0.45f;
+constexpr float min_curves = 0.2f, max_curves = 0.34f, min_circle = 0.45f;
 // in units of the area: all strips below panels; a column of strips
-constexpr float most_below = 0.62f, least_column = 0.285f;
+constexpr float max_below = 0.62f, min_column = 0.285f;
 
-constexpr std::size_t most_in_row = 3;  // strips in a row below panels
+constexpr std::size_t max_in_row = 3;  // strips in a row below panels
 
 /// Panels side by side, or one above the other, each below its heading.
 std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool stacked) {
@@ -59,8 +59,9 @@ Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_
     const float gap = needs.gap / 3, gaps = (n - 1) * needs.gap;
     const float squares =
         stacked ? n * (room.width() + needs.heading) + gaps : (room.width() - gaps) / n + needs.heading;
-    const float least = words + rows * least_curves * needs.height, most = words + rows * most_curves * needs.height;
-    const float strips = std::min(std::clamp(room.height() - gap - squares, least, most), most_below * room.height());
+    const float minimum = words + rows * min_curves * needs.height, maximum = words + rows * max_curves * needs.height;
+    const float strips =
+        std::min(std::clamp(room.height() - gap - squares, minimum, maximum), max_below * room.height());
     const float part = std::round(room.bottom - strips);
     return {panel_areas({room.left, room.top, room.right, part - gap}, needs, stacked),
             strip_cells({room.left, part, room.right, room.bottom}, needs, columns)};
@@ -68,8 +69,8 @@ Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_
 
 /// A single panel is a square; strips get the rest.
 Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
-    const float square = room.height() - needs.heading, least = least_column * room.width();
-    const float column = needs.panels == 1 ? std::max(room.width() - square - needs.gap, least) : least;
+    const float square = room.height() - needs.heading, minimum = min_column * room.width();
+    const float column = needs.panels == 1 ? std::max(room.width() - square - needs.gap, minimum) : minimum;
     const float part = std::round(room.right - column);
     return {panel_areas({room.left, room.top, part - needs.gap, room.bottom}, needs, false),
             strip_cells({part, room.top, room.right, room.bottom}, needs, 1)};
@@ -78,16 +79,16 @@ Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
 }  // namespace
 
 Regions split(const Area& room, const RegionNeeds& needs) {
-    if (needs.panels == 0) return {{}, strip_cells(room, needs, needs.strips > most_in_row ? 2 : 1)};
+    if (needs.panels == 0) return {{}, strip_cells(room, needs, needs.strips > max_in_row ? 2 : 1)};
     const bool can_stack = needs.tall && needs.panels > 1;
     if (needs.strips == 0) return {panel_areas(room, needs, can_stack), {}};
     if (needs.tall) {
         auto beside = with_strips_below(room, needs, 1, false), stacked = with_strips_below(room, needs, 1, true);
         return can_stack && circle_in(stacked) > circle_in(beside) ? stacked : beside;
     }
-    if (needs.panels > 1 && needs.strips <= most_in_row) {
+    if (needs.panels > 1 && needs.strips <= max_in_row) {
         auto below = with_strips_below(room, needs, needs.strips, false);
-        if (circle_in(below) >= least_circle * needs.height) return below;
+        if (circle_in(below) >= min_circle * needs.height) return below;
     }
     return with_strips_beside(room, needs);
 }

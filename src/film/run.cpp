@@ -16,13 +16,13 @@
 namespace doppel {
 namespace {
 
-/// Whether the side reaches the sample at which `fault` occurred, and the effort.
-std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunFailure& fault,
+/// Whether the side reaches the sample at which `failure` occurred, and the effort.
+std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunFailure& failure,
                                 const std::atomic<bool>& stop) {
-    SideRun run(scene, side, fault.side);
+    SideRun run(scene, side, failure.side);
     Effort effort;
     try {
-        for (long sample = 0; sample <= fault.sample; ++sample) {
+        for (long sample = 0; sample <= failure.sample; ++sample) {
             run.next(stop);
             effort = run.effort();
         }
@@ -33,24 +33,24 @@ std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunF
     return {true, effort};
 }
 
-/// The step size that would have reached the sample of `fault`, in words. For a fixed step, it is the first half,
+/// The step size that would have reached the sample of `failure`, in words. For a fixed step, it is the first half,
 /// quarter … that works; for an adaptive method, the smallest step that it took. Gives up early if `stop` is set.
-std::string step_that_holds(const Scene& scene, const RunFailure& fault, const std::atomic<bool>& stop) {
-    auto side = fault.side == 'a' ? scene.a : scene.b;
+std::string sufficient_step(const Scene& scene, const RunFailure& failure, const std::atomic<bool>& stop) {
+    auto side = failure.side == 'a' ? scene.a : scene.b;
     if (side.method.adaptive) {
-        const double smallest = retried(scene, side, fault, stop).second.smallest_step;
+        const double smallest = retried(scene, side, failure, stop).second.smallest_step;
         if (smallest == 0) return "the first step failed";
         return fmt::format("the smallest successful step was {:.3g} s; a smaller tolerance may work", smallest);
     }
-    auto finest = side.step;                 // tried
-    constexpr long most_steps = 20'000'000;  // a few seconds for a double pendulum
-    const long samples = static_cast<long>(side.mass.size()) * std::max(1L, fault.sample);
+    auto finest = side.step;                // tried
+    constexpr long max_steps = 20'000'000;  // a few seconds for a double pendulum
+    const long samples = static_cast<long>(side.mass.size()) * std::max(1L, failure.sample);
     for (int halvings = 1; halvings < 40 && !stop; ++halvings) {
         const auto half = quotient(side.step, {2, 1});
         side.motion.steps_per_sample *= 2;
-        if (!half || side.motion.steps_per_sample > most_steps / samples) break;
+        if (!half || side.motion.steps_per_sample > max_steps / samples) break;
         side.step = *half;
-        if (retried(scene, side, fault, stop).first)
+        if (retried(scene, side, failure, stop).first)
             return fmt::format("step_s = \"{}\" gets further", side.step.text());
         finest = side.step;
     }
@@ -64,13 +64,13 @@ std::string failed_name(const std::string& name, const std::string& ending) {
 
 /// Keeps the samples before the failure in files of their own, with a manifest. Throws an error with their path and the
 /// step size that would have worked.
-[[noreturn]] void keep_failed(const Scene& scene, const RunFailure& fault, RunRecord& record, Transaction& parts,
+[[noreturn]] void keep_failed(const Scene& scene, const RunFailure& failure, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
-    const auto advice = step_that_holds(scene, fault, stop);
+    const auto advice = sufficient_step(scene, failure, stop);
     throw_if_set(stop);
-    record.failure = fmt::format("{}; {}", fault.what(), advice);
-    record.last_sample = fault.sample - 1;
+    record.failure = fmt::format("{}; {}", failure.what(), advice);
+    record.last_sample = failure.sample - 1;
     add_warnings(scene, record, stop);
     const auto csv = failed_name(name, ".csv");
     parts.keep_only(name + ".csv", csv);
@@ -178,11 +178,11 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             film->write_frame(frame++);
             report({++done, total});
         });
-    } catch (const RunFailure& fault) {
+    } catch (const RunFailure& failure) {
         record.motion = recording.record();
         table.finish();
         film.reset();  // its threads use what is destroyed next
-        keep_failed(scene, fault, record, parts, stop);
+        keep_failed(scene, failure, record, parts, stop);
     }
     const auto finish = [&] {
         if (film) film->finish();

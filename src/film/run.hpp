@@ -26,7 +26,6 @@ struct RunOptions {
     Replacing replacing = {};
 };
 
-/// The results of a run.
 struct RunResult {
     std::vector<std::filesystem::path> files;
     long frames = 0;   // pictures written

@@ -50,16 +50,16 @@ void StripLayer::backdrop(DisplayList& list) const {
     // times after the predictability limit are dimmed
     if (const auto limit = state_.scene.horizon())
         list.push_back(Box{strip_.time.at(*limit), area.top, area.right, area.bottom, 0, theme_.panel});
-    auto look = axis_look();
-    look.has_numbers = strip_.cell.bottom > area.bottom + em;
-    look.unit = " s";
+    auto style = axis_style();
+    style.has_numbers = strip_.cell.bottom > area.bottom + em;
+    style.unit = " s";
     const auto add = [&](const Axis& axis, bool across) {
-        const auto items = axis_items(axis, spaced_ticks(axis, across, em), area, strip_.cell, look);
+        const auto items = axis_items(axis, spaced_ticks(axis, across, em), area, strip_.cell, style);
         list.insert(list.end(), items.begin(), items.end());
     };
     add(strip_.time, true);
-    look.edge = AxisLook::Edge::left;
-    look.has_numbers = true;
+    style.edge = AxisStyle::Edge::left;
+    style.has_numbers = true;
     add(strip_.value, false);
     if (line > 0) {
         list.push_back(vertical_line(area.left, area.top, area.bottom, line, theme_.frame));
@@ -113,7 +113,7 @@ void StripLayer::frame(DisplayList& list) const {
         words.anchor = {strip_.cell.left + words.anchor.x, strip_.baseline + words.anchor.y};
         list.push_back(std::move(words));
     }
-    if (const auto since = state_.outcome.parting.since(); since && is_of_pair()) {
+    if (const auto since = state_.outcome.divergence.since(); since && is_of_pair()) {
         DisplayList below;
         float foot = draw_limits(below);
         draw_mark(*since, fmt::format("diverged at {:.1f} s", *since), foot, list);

@@ -44,10 +44,10 @@ std::string strip_title(StripKind kind, const Scene& scene) {
 template <class Value>
 void add_links(std::vector<StripCurve>& curves, char side, std::size_t count, const Value& value, Color color,
                Color pale, double width) {
-    constexpr std::size_t most = 3;
+    constexpr std::size_t maximum = 3;
     const float paleness = count < 2 ? 0 : 0.6f;
     for (std::size_t k = 0; k < count; ++k)
-        if (count <= most || k == 0 || k + 1 == count)
+        if (count <= maximum || k == 0 || k + 1 == count)
             curves.push_back(
                 {value(k), mixed(color, pale, k + 1 == count ? 0 : paleness), width, fmt::format("{}{}", side, k + 1)});
 }
@@ -60,13 +60,13 @@ struct Piece {
 };
 
 std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& layout,
-                             const std::vector<StripCurve>& curves, bool is_alike) {
+                             const std::vector<StripCurve>& curves, bool starts_equal) {
     const auto& theme = layout.style.theme;
     const auto width = [&](const char* text) { return layout.style.type.width(text, px(layout.style.font.strip)); };
     std::vector<Piece> pieces{{strip_title(kind, scene), theme.text}};
     if (kind == StripKind::distance)
         pieces.push_back({scientific(*curves[0].value), curves[0].color, width("8.8 × 10⁻⁸⁸")});
-    else if (kind == StripKind::exponent && is_alike)
+    else if (kind == StripKind::exponent && starts_equal)
         pieces.push_back({"none, d₀ = 0", theme.quiet_text});
     else if (kind == StripKind::exponent)
         pieces.push_back(
@@ -155,23 +155,23 @@ float above_curves(const Layout& layout) {
 }
 
 std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
-                                 const std::vector<StripCurve>& curves, bool is_alike, float width) {
+                                 const std::vector<StripCurve>& curves, bool starts_equal, float width) {
     const float size = px(layout.style.font.strip), line = caption_line(layout), gap = 0.66f * size;
     const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
     std::vector<Label> labels;
     Point pen;
-    for (const auto& piece : pieces_of(kind, scene, layout, curves, is_alike)) {
+    for (const auto& piece : pieces_of(kind, scene, layout, curves, starts_equal)) {
         if (pen.x > 0) pen.x += gap;
         const auto parts = piece.room > 0 ? std::vector{piece.text} : words_of(piece.text);
-        bool goes_on = false;  // continues the previous label
+        bool continues = false;  // continues the previous label
         for (const auto& part : parts) {
             const float room = std::max(piece.room, width_of(part.substr(0, part.find_last_not_of(' ') + 1)));
-            if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, goes_on = false;
-            if (goes_on)
+            if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, continues = false;
+            if (continues)
                 labels.back().text += part;
             else
                 labels.push_back(label(part, pen, size, piece.color));
-            goes_on = true;
+            continues = true;
             pen.x += std::max(piece.room, width_of(part));
         }
     }

@@ -35,7 +35,7 @@ float above_curves(const Layout& layout);
 /// The caption of a strip, in lines no wider than `width` px: the quantity, and its value (one curve) or the curves'
 /// names. The first line begins at (0, 0).
 std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
-                                 const std::vector<StripCurve>& curves, bool is_alike, float width);
+                                 const std::vector<StripCurve>& curves, bool starts_equal, float width);
 
 /// The number of lines that a caption takes for any values.
 int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width);

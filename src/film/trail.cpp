@@ -95,7 +95,7 @@ void Trail::draw_piece(Points points, const Area& area, double now, Point shift,
     double until = 0;
     for (const auto& point : points) {
         const Point at{point.at.x + shift.x, point.at.y + shift.y};
-        if (!area.holds(at)) {
+        if (!area.contains(at)) {
             if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
             stroke = pen_;
             continue;

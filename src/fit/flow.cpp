@@ -29,14 +29,16 @@ std::array<double, 6> rate_weights(double t, double h) {
 }  // namespace
 
 template <int N>
-Flow<N>::Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step)
-    : arms_(arms_of<Dual<double, N>>(model, parameters)), values_(arms_of<double>(model, parameters)), step_(step) {
+Flow<N>::Flow(const ModelSpec& model, const Parameters& parameters, const LinkState& start, double step)
+    : links_(link_pair_of<Dual<double, N>>(model, parameters)),
+      values_(link_pair_of<double>(model, parameters)),
+      step_(step) {
     before_.y.setZero();
     before_.y.row(0) = start;
     before_.y.template block<4, 4>(1, 0).setIdentity();
-    arms_.modes = values_.modes = turning(start);
+    links_.modes = values_.modes = turning(start);
     before_.slope = slope_of(before_.y);
-    go_on();
+    take_step();
 }
 
 template <int N>
@@ -48,19 +50,19 @@ bool Flow<N>::reach(double t) {
             before_ = after_;
             ++done_;
         }
-        if (!go_on()) return false;
+        if (!take_step()) return false;
     }
     return true;
 }
 
 template <int N>
-typename Flow<N>::Column Flow<N>::angle(std::size_t arm, double t) const {
-    return weighted(angle_weights(t - begin(), step_), arm);
+typename Flow<N>::Column Flow<N>::angle(std::size_t link, double t) const {
+    return weighted(angle_weights(t - begin(), step_), link);
 }
 
 template <int N>
-double Flow<N>::rate(std::size_t arm, double t) const {
-    return weighted(rate_weights(t - begin(), step_), arm)[0];
+double Flow<N>::rate(std::size_t link, double t) const {
+    return weighted(rate_weights(t - begin(), step_), link)[0];
 }
 
 template <int N>
@@ -68,14 +70,14 @@ typename Flow<N>::State Flow<N>::slope_of(const State& y) const {
     const auto number = [&](Eigen::Index q) { return Dual<double, N>(y(0, q), y.col(q).template tail<N>()); };
     State slope;
     slope.template leftCols<2>() = y.template rightCols<2>();
-    const auto alpha = arms_.accelerations(arms_.sides(number(0), number(1), number(2), number(3)));
-    for (std::size_t arm = 0; arm < 2; ++arm) slope.col(arm + 2) << alpha[arm].value, alpha[arm].tangent;
+    const auto alpha = links_.accelerations(links_.sides(number(0), number(1), number(2), number(3)));
+    for (std::size_t link = 0; link < 2; ++link) slope.col(link + 2) << alpha[link].value, alpha[link].tangent;
     return slope;
 }
 
 /// The slope is the first stage of the next step.
 template <int N>
-typename Flow<N>::Moment Flow<N>::later(const Moment& from, double h) const {
+typename Flow<N>::Moment Flow<N>::advanced(const Moment& from, double h) const {
     constexpr std::size_t stages = Dopri5::pair.stages;
     std::array<State, stages> k;
     Moment to = from;
@@ -89,13 +91,13 @@ typename Flow<N>::Moment Flow<N>::later(const Moment& from, double h) const {
 }
 
 template <int N>
-bool Flow<N>::go_on() {
-    after_ = later(before_, step_);
+bool Flow<N>::take_step() {
+    after_ = advanced(before_, step_);
     length_ = step_;
     joint_.reset();
     constexpr double fastest = 1e4;  // rad/s
     const bool is_finite = std::abs(after_.y(0, 2)) < fastest && std::abs(after_.y(0, 3)) < fastest;
-    if (is_finite && arms_.has_coulomb)
+    if (is_finite && links_.has_coulomb)
         for (std::size_t joint = 0; joint < 2; ++joint) find_event(joint);
     return is_finite;
 }
@@ -105,7 +107,7 @@ void Flow<N>::find_event(std::size_t joint) {
     const auto margin_at = [&](double t) {
         const double at = begin() + t;
         return margin(values_, joint,
-                      values_.is_held(joint) ? values_at(at) : ArmState(0, 0, rate(0, at), rate(1, at)));
+                      values_.is_held(joint) ? values_at(at) : LinkState(0, 0, rate(0, at), rate(1, at)));
     };
     double last = length_;
     if (!(margin_at(last) < 0)) {
@@ -124,17 +126,17 @@ bool Flow<N>::pass_event() {
     constexpr double at_once = 100, a_step = 4;  // limits of events: at one time; per step
     origin_ = begin() + length_;
     done_ = 0;
-    auto& [y, slope] = before_ = later(before_, length_);
+    auto& [y, slope] = before_ = advanced(before_, length_);
     const bool was_held = values_.is_held(*joint_);
     y(0, 2 + *joint_) =
         *joint_ == 0 ? 0 : y(0, 2);  // rounded to the limit; a value below 0 would be an event again, without end
     if (values_.is_held(1)) y(0, 3) = y(0, 2);
-    arms_.modes = values_.modes = settled(values_, *joint_, y.row(0));
+    links_.modes = values_.modes = modes_after_event(values_, *joint_, y.row(0));
     const Column rate = relative(y, *joint_), acceleration = relative(slope, *joint_);
     if (!was_held && acceleration[0] != 0)
         y.template bottomRows<N>() -= rate.template tail<N>() * ((slope - slope_of(y)).row(0) / acceleration[0]);
-    if (arms_.is_held(0)) y.col(2).setZero();
-    if (arms_.is_held(1)) y.col(3) = y.col(2);
+    if (links_.is_held(0)) y.col(2).setZero();
+    if (links_.is_held(1)) y.col(3) = y.col(2);
     slope = slope_of(y);
     ++events_;
     return events_ < at_once + a_step * origin_ / step_;

@@ -20,7 +20,7 @@ constexpr int start_directions = 4, all_directions = 4 + static_cast<int>(dynami
 template <int N = start_directions>
 class Flow {
 public:
-    Flow(const ModelSpec& model, const Parameters& parameters, const ArmState& start, double step);
+    Flow(const ModelSpec& model, const Parameters& parameters, const LinkState& start, double step);
 
     /// Steps until `t` (s from the start) is in the last step. Returns false if the motion did not stay finite.
     bool reach(double t);
@@ -28,9 +28,9 @@ public:
     // For a time in the last step, or slightly outside:
 
     using Column = Eigen::Matrix<double, 1 + N, 1>;  // a number and its derivatives
-    Column angle(std::size_t arm, double t) const;
-    double rate(std::size_t arm, double t) const;
-    ArmState values_at(double t) const { return {angle(0, t)[0], angle(1, t)[0], rate(0, t), rate(1, t)}; }
+    Column angle(std::size_t link, double t) const;
+    double rate(std::size_t link, double t) const;
+    LinkState values_at(double t) const { return {angle(0, t)[0], angle(1, t)[0], rate(0, t), rate(1, t)}; }
 
 private:
     using State = Eigen::Matrix<double, 1 + N, 4>;  // the state in the first row, its derivatives below
@@ -44,21 +44,21 @@ private:
     }
     double begin() const { return origin_ + static_cast<double>(done_) * step_; }
     /// The weighted sum of a link's angle, rate and acceleration at both ends of the step.
-    auto weighted(const std::array<double, 6>& w, std::size_t arm) const {
-        return w[0] * before_.y.col(arm) + w[1] * before_.y.col(arm + 2) + w[2] * before_.slope.col(arm + 2) +
-               w[3] * after_.y.col(arm) + w[4] * after_.y.col(arm + 2) + w[5] * after_.slope.col(arm + 2);
+    auto weighted(const std::array<double, 6>& w, std::size_t link) const {
+        return w[0] * before_.y.col(link) + w[1] * before_.y.col(link + 2) + w[2] * before_.slope.col(link + 2) +
+               w[3] * after_.y.col(link) + w[4] * after_.y.col(link + 2) + w[5] * after_.slope.col(link + 2);
     }
     State slope_of(const State& y) const;
-    Moment later(const Moment& from, double h) const;
-    bool go_on();
+    Moment advanced(const Moment& from, double h) const;
+    bool take_step();
     /// Finds an event of this joint before those found: at the end, or before where its rate is closest to zero.
     void find_event(std::size_t joint);
     /// Moves to the event, and continues with the law that applies after it. Returns false if there are too many
     /// events.
     bool pass_event();
 
-    Arms<Dual<double, N>> arms_;
-    Arms<double> values_;               // values without derivatives
+    LinkPair<Dual<double, N>> links_;
+    LinkPair<double> values_;           // values without derivatives
     double step_, origin_ = 0;          // s, time of the last event, or of the start
     long done_ = 0;                     // steps since then
     double events_ = 0;                 // number of events

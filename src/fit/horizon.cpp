@@ -27,13 +27,15 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
         const double from_start = time_of(track, shot, i) - prediction.start_s, t = from_start - prediction.data_s;
         if (t <= 0) continue;
         double error = 0;
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            if (piece.is_outlier[arm][i]) continue;
-            const double at = from_start + (arm == 1 ? p[lag] : 0);
+        for (std::size_t link = 0; link < 2; ++link) {
+            if (piece.is_outlier[link][i]) continue;
+            const double at = from_start + (link == 1 ? p[lag] : 0);
             if (!flow.reach(at)) return false;
-            double off = piece.angle[arm][i] - (p[offset_1 + arm] + p[scale_1 + arm] * flow.angle(arm, at)[0]);
-            if (!is_first_piece) off -= turn * std::round(off / turn);  // a new piece may count turns differently
-            error = std::max(error, std::abs(off));
+            double difference =
+                piece.angle[link][i] - (p[offset_1 + link] + p[scale_1 + link] * flow.angle(link, at)[0]);
+            if (!is_first_piece)
+                difference -= turn * std::round(difference / turn);  // a new piece may count turns differently
+            error = std::max(error, std::abs(difference));
         }
         if (error > limit && !prediction.left_s) prediction.left_s = t;
         if (!prediction.left_s) prediction.within_s = t;
@@ -46,17 +48,17 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
 /// Finds when the effect of one standard error of the start, and of the parameters, reaches the limit.
 void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty, double limit,
                Prediction& prediction) {
-    constexpr double looked_at_s = 40, beyond = 1.7, steps = 2;  // as precise as a standard error is known
+    constexpr double max_search_s = 40, beyond = 1.7, steps = 2;  // as precise as a standard error is known
     const double step = steps * fit.step_s;
-    const double end = prediction.data_s + std::min(looked_at_s, beyond * std::max(prediction.within_s, 1.0));
+    const double end = prediction.data_s + std::min(max_search_s, beyond * std::max(prediction.within_s, 1.0));
     const auto of_parameters = uncertainty.covariance.topLeftCorner<dynamic_count, dynamic_count>();
     const Eigen::Matrix4d of_start = start.sums.inverse_of_start() * std::pow(uncertainty.inflation, 2);
     auto &start_s = prediction.start_alone_s, &parameters_s = prediction.parameters_alone_s;
     Flow<all_directions> flow(fit.model, fit.parameters, start.start, step);
     for (double t = prediction.data_s; t < end && flow.reach(t) && !(start_s && parameters_s); t += step)
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            const auto angle = flow.angle(arm, t);
-            const ArmState by_start = angle.segment<4>(1);
+        for (std::size_t link = 0; link < 2; ++link) {
+            const auto angle = flow.angle(link, t);
+            const LinkState by_start = angle.segment<4>(1);
             const Eigen::Matrix<double, dynamic_count, 1> by_parameters = angle.tail<dynamic_count>();
             const auto note = [&](std::optional<double>& when, double variance) {
                 if (!when && variance > limit * limit) when = t - prediction.data_s;
@@ -68,12 +70,12 @@ void attribute(const Fit& fit, const Shot& start, const Uncertainty& uncertainty
 
 Prediction predict(const FitJob& job, std::size_t unit, const Fit& fit, const Uncertainty& uncertainty, double limit) {
     const auto& track = job.track;
-    constexpr double data_s = 2, most_of_unit = 0.75;  // so that there is something left to predict
+    constexpr double data_s = 2, max_share_of_unit = 0.75;  // so that there is something left to predict
     const auto own = fit.unit(unit);
     auto shot = own.front();
     const auto& times = track.pieces[shot.piece].time_s;
     const double begin = times[shot.first], length = times[own.back().last - 1] - begin;
-    const auto end = std::upper_bound(times.begin(), times.end(), begin + std::min(data_s, most_of_unit * length));
+    const auto end = std::upper_bound(times.begin(), times.end(), begin + std::min(data_s, max_share_of_unit * length));
     shot.last = static_cast<std::size_t>(end - times.begin());
     Prediction prediction{.start_s = time_of(track, shot, shot.first), .data_s = times[shot.last - 1] - begin};
     // each later unit is judged by parameters fitted without it and without the first

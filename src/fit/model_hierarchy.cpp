@@ -1,7 +1,7 @@
 #include "fit/model_hierarchy.hpp"
 
 #include "base/threads.hpp"
-#include "fit/beginning.hpp"
+#include "fit/initial_fit.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <algorithm>
@@ -82,10 +82,10 @@ Fit as_model(const ModelSpec& model, Fit fit) {
 
 }  // namespace
 
-ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
+ModelHierarchy fit_hierarchy(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report) {
     constexpr double roughly = 5e-4;  // precise enough for a comparison
     const auto models = models_of(bodies);
-    const auto first = begin_fit(job);
+    const auto first = initial_fit(job);
     ModelHierarchy hierarchy;
     auto& candidates = hierarchy.candidates;
     for (auto candidate : models) {

@@ -27,6 +27,6 @@ struct ModelHierarchy {
 /// fitted. Throws Error: exit 3 if no model describes the track, 130.
 ///
 /// Source  Hastie, Tibshirani & Friedman, The Elements of Statistical Learning, §7.10 (the rule of one standard error)
-ModelHierarchy climb(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report);
+ModelHierarchy fit_hierarchy(const FitJob& job, Bodies bodies, const std::function<void(const Progress&)>& report);
 
 }  // namespace doppel

@@ -7,16 +7,16 @@ namespace doppel {
 namespace {
 
 /// The torque over B that holds a joint at rest, > 0 against forward motion.
-double holding(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
-    const auto sides = arms.sides(y[0], y[1], y[2], y[3]);
-    const auto alpha = arms.accelerations(sides);
+double holding_torque(const LinkPair<double>& links, std::size_t joint, const LinkState& y) {
+    const auto sides = links.sides(y[0], y[1], y[2], y[3]);
+    const auto alpha = links.accelerations(sides);
     const double middle = sides.r2 - sides.cosine * alpha[0] - alpha[1];
-    return joint == 1 ? middle : sides.r1 - arms.p[inertia] * alpha[0] - sides.cosine * alpha[1] + middle;
+    return joint == 1 ? middle : sides.r1 - links.p[inertia] * alpha[0] - sides.cosine * alpha[1] + middle;
 }
 
-double most_held(const Arms<double>& arms, std::size_t joint) {
+double max_holding_torque(const LinkPair<double>& links, std::size_t joint) {
     constexpr double rounding = 1e-12;
-    return arms.p[coulomb_1 + joint] * (1 + rounding);
+    return links.p[coulomb_1 + joint] * (1 + rounding);
 }
 
 }  // namespace
@@ -31,16 +31,16 @@ ModelSpec model_of(bool point, int friction, Drag drag, int reading) {
     return model;
 }
 
-double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y) {
-    if (arms.modes[joint] == 0) return most_held(arms, joint) - std::abs(holding(arms, joint, y));
-    return arms.modes[joint] * (joint == 0 ? y[2] : y[3] - y[2]);
+double margin(const LinkPair<double>& links, std::size_t joint, const LinkState& y) {
+    if (links.modes[joint] == 0) return max_holding_torque(links, joint) - std::abs(holding_torque(links, joint, y));
+    return links.modes[joint] * (joint == 0 ? y[2] : y[3] - y[2]);
 }
 
-std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y) {
-    const bool was_held = std::exchange(arms.modes[joint], 0) == 0;
-    const double torque = holding(arms, joint, y);
-    if (was_held || std::abs(torque) > most_held(arms, joint)) arms.modes[joint] = torque < 0 ? -1 : 1;
-    return arms.modes;
+std::array<int, 2> modes_after_event(LinkPair<double> links, std::size_t joint, const LinkState& y) {
+    const bool was_held = std::exchange(links.modes[joint], 0) == 0;
+    const double torque = holding_torque(links, joint, y);
+    if (was_held || std::abs(torque) > max_holding_torque(links, joint)) links.modes[joint] = torque < 0 ? -1 : 1;
+    return links.modes;
 }
 
 FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, const Convention& convention) {
@@ -55,14 +55,14 @@ FittedPendulum fitted_pendulum(const Parameters& p, const ModelSpec& model, cons
     const double second = a * b - m2 * l1 * l1, moment = d1 * b / g - m2 * l1;
     const double a1 = model.point_masses ? l1 : second / ((1 + of_rod) * moment), m1 = moment / a1;
     const auto friction = [&](std::size_t first) { return std::array{b * p[first], b * p[first + 1]}; };
-    return {.arms = {{"mass_kg", {m1, m2}},
-                     {"length_m", {l1, (model.point_masses ? 1 : 2) * a2}},
-                     {"center_m", {a1, a2}},
-                     {"inertia_kg_m2", {model.point_masses ? 0 : of_rod * m1 * a1 * a1, i2}},
-                     {"joint_viscous_N_m_s", friction(viscous_1)},
-                     {"joint_coulomb_N_m", friction(coulomb_1)},
-                     {model.drag == Drag::own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
-                      friction(quadratic_1)}},
+    return {.links = {{"mass_kg", {m1, m2}},
+                      {"length_m", {l1, (model.point_masses ? 1 : 2) * a2}},
+                      {"center_m", {a1, a2}},
+                      {"inertia_kg_m2", {model.point_masses ? 0 : of_rod * m1 * a1 * a1, i2}},
+                      {"joint_viscous_N_m_s", friction(viscous_1)},
+                      {"joint_coulomb_N_m", friction(coulomb_1)},
+                      {model.drag == Drag::own ? "arm_drag_quadratic_N_m_s2" : "air_drag_quadratic_N_m_s2",
+                       friction(quadratic_1)}},
             .gravity = g,
             .second_inertia = b,
             .rule = model.point_masses ? "points at the ends of massless rods"

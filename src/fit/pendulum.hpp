@@ -90,7 +90,7 @@ struct ModelSpec {
 /// also a lag, 2 also scales.
 ModelSpec model_of(bool point, int friction, Drag drag = Drag::own, int reading = 0);
 
-using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; ω1, ω2, rad/s
+using LinkState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; ω1, ω2, rad/s
 
 /// Two rigid bodies on joints with friction, in a vertical plane; all divided by B.
 ///
@@ -104,7 +104,7 @@ using ArmState = Eigen::Vector4d;  // θ1, θ2 from the downward vertical, rad; 
 /// Source  Landau & Lifshitz, Mechanics, §5 problem 1 and §25; Drag::carried: the centre of oscillation of the second
 ///         link, B/(m2 a2) from its joint, moves through the air with that distance times u.
 template <class Scalar>
-struct Arms {
+struct LinkPair {
     std::array<Scalar, dynamic_count> p;
     Drag drag = Drag::own;
     bool has_coulomb = false;
@@ -131,8 +131,8 @@ struct Arms {
     }
 
     /// The solution of A α1 + cosine α2 = r1 + torque holding a joint, cosine α1 + α2 = r2 + such a torque.
-    std::array<Scalar, 2> accelerations(const Sides& of_arms) const {
-        const auto& [r1, r2, cosine] = of_arms;
+    std::array<Scalar, 2> accelerations(const Sides& of_links) const {
+        const auto& [r1, r2, cosine] = of_links;
         if (is_held(0)) return {Scalar(0), is_held(1) ? Scalar(0) : r2};
         if (is_held(1)) {
             const Scalar together = (r1 + r2) / (p[inertia] + cosine + cosine + Scalar(1));
@@ -147,31 +147,31 @@ struct Arms {
 
 /// The links of a model. The derivative by a fitted parameter is in direction 4 + its number, if that is carried.
 template <class Scalar>
-Arms<Scalar> arms_of(const ModelSpec& model, const Parameters& parameters) {
-    Arms<Scalar> arms{.p = {}, .drag = model.drag};
+LinkPair<Scalar> link_pair_of(const ModelSpec& model, const Parameters& parameters) {
+    LinkPair<Scalar> links{.p = {}, .drag = model.drag};
     for (std::size_t k = 0; k < dynamic_count; ++k) {
-        arms.p[k] = Scalar(parameters[k]);
-        arms.has_coulomb |= (k == coulomb_1 || k == coulomb_2) && (parameters[k] != 0 || model.fitted[k]);
+        links.p[k] = Scalar(parameters[k]);
+        links.has_coulomb |= (k == coulomb_1 || k == coulomb_2) && (parameters[k] != 0 || model.fitted[k]);
         if constexpr (requires {
                           requires Scalar::Tangent::SizeAtCompileTime >
                           4;
                       })
-            if (model.fitted[k]) arms.p[k].tangent[4 + k] = 1;
+            if (model.fitted[k]) links.p[k].tangent[4 + k] = 1;
     }
-    if (model.point_masses) arms.p[gravity_1] = arms.p[inertia] * arms.p[gravity_2] / arms.p[coupling];
-    return arms;
+    if (model.point_masses) links.p[gravity_1] = links.p[inertia] * links.p[gravity_2] / links.p[coupling];
+    return links;
 }
 
 // Joints with Coulomb friction: their mode at a state, and the end of that mode.
 
 /// The modes of sliding joints at this state.
-inline std::array<int, 2> turning(const ArmState& y) {
+inline std::array<int, 2> turning(const LinkState& y) {
     return {y[2] < 0 ? -1 : 1, y[3] < y[2] ? -1 : 1};
 }
 /// 0 or more while the mode of the joint is valid.
-double margin(const Arms<double>& arms, std::size_t joint, const ArmState& y);
+double margin(const LinkPair<double>& links, std::size_t joint, const LinkState& y);
 /// The modes after an event of this joint, which is now at rest. It matters whether it was held before.
-std::array<int, 2> settled(Arms<double> arms, std::size_t joint, const ArmState& y);
+std::array<int, 2> modes_after_event(LinkPair<double> links, std::size_t joint, const LinkState& y);
 
 /// Quantities that angles cannot determine and that must be given.
 struct Convention {
@@ -184,7 +184,7 @@ struct Convention {
 /// a²/3, a to the centre of mass) or, if point masses were fitted, as points at their ends (I = 0). A second link that
 /// is too light for this gets less inertia.
 struct FittedPendulum {
-    std::vector<std::pair<std::string, std::array<double, 2>>> arms;  // values of both links for each key of a preset
+    std::vector<std::pair<std::string, std::array<double, 2>>> links;  // values of both links for each key of a preset
     double gravity = 0, second_inertia = 0;  // m/s²; B, kg m², the factor that turns ratios into these values
     std::string rule;                        // a sentence with the rule that was applied
 };

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// The files of a track, without duplicates.
 std::vector<std::string> files_of(const Track& track) {
     std::vector<std::string> files;
     for (const auto& piece : track.pieces)
@@ -106,8 +105,8 @@ std::string horizon_sentence(const FitResult& result) {
     const auto& h = *result.horizon;
     const int left = h.left();
     const auto span = [&](auto member) {
-        const auto [least, most] = std::ranges::minmax(h.predictions, {}, member);
-        const auto from = fmt::format("{:.1f}", least.*member), to = fmt::format("{:.1f}", most.*member);
+        const auto [minimum, maximum] = std::ranges::minmax(h.predictions, {}, member);
+        const auto from = fmt::format("{:.1f}", minimum.*member), to = fmt::format("{:.1f}", maximum.*member);
         return from == to ? from : from + " to " + to;
     };
     auto sentence =
@@ -149,7 +148,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto& shot = candidate.fit.shots.front();
     // the uncertainty of the start by itself; its correlation with the parameters would add little
     const Eigen::Matrix4d covariance = shot.sums.inverse_of_start();
-    const ArmState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
+    const LinkState errors = covariance.diagonal().cwiseMax(0).cwiseSqrt() * result.uncertainty.inflation;
     auto text = fmt::format(
         "# Fitted by doppel fit to {}{}: {}.\n"
         "# Its error is {:.2g} rad on pieces left out. Errors, models and prediction horizon are in {}.fit.json.\n"
@@ -161,11 +160,11 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
     const auto add = [&](const std::string& key, double first, double second) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, first, second);
     };
-    for (const auto& [key, values] : p.arms)
+    for (const auto& [key, values] : p.links)
         if ((values[0] != 0 || values[1] != 0) && !(candidate.fit.model.point_masses && key == "center_m"))
             add(key, values[0], values[1]);
     text += fmt::format("gravity_m_per_s2 = {}\n", p.gravity);
-    const ArmState start = degrees * shot.start, further = degrees * (shot.start + errors);
+    const LinkState start = degrees * shot.start, further = degrees * (shot.start + errors);
     add("angle_deg", start[0], start[1]);
     add("omega_deg_per_s", start[2], start[3]);
     text += "accuracy = 1e-6\n\n[b]  # released one standard error further\n";
@@ -179,9 +178,9 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
 Json fit_json(const FitResult& result) {
     const auto& track = result.track;
     const auto& uncertainty = result.uncertainty;
-    const auto& [arms, gravity, second_inertia, rule] = result.pendulum;
+    const auto& [links, gravity, second_inertia, rule] = result.pendulum;
     Json pendulum = {{"convention", rule}, {"gravity_m_per_s2", gravity}, {"B_kg_m2", second_inertia}};
-    for (const auto& [key, values] : arms) pendulum[key] = values;
+    for (const auto& [key, values] : links) pendulum[key] = values;
     const auto file_name = [](const std::string& file) {
         std::error_code ignored;  // if the current folder was removed, the path is empty
         return on_one_line(std::filesystem::proximate(file, ignored).string());
@@ -254,14 +253,14 @@ Plot track_plot(const FitResult& result) {
     plot.y = {.label = "angle, rad"};
     constexpr std::size_t points = 60;
     for (const bool measured : {false, true})
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            Curve curve{.label = measured ? "" : names[arm], .hue = static_cast<int>(arm)};
+        for (std::size_t link = 0; link < 2; ++link) {
+            Curve curve{.label = measured ? "" : names[link], .hue = static_cast<int>(link)};
             if (measured) curve.mark = Mark::points;
             for (std::size_t i = 0; i < shot.size();
                  i += measured ? std::max<std::size_t>(shot.size() / points, 1) : 1) {
                 const auto sample = shot.first + i;
                 curve.x.push_back(piece.time_s[sample] - begin);
-                curve.y.push_back(piece.angle[arm][sample] - (measured ? 0 : shot.sums.residuals[i][arm]));
+                curve.y.push_back(piece.angle[link][sample] - (measured ? 0 : shot.sums.residuals[i][link]));
             }
             plot.curves.push_back(std::move(curve));
         }
@@ -278,15 +277,15 @@ Plot residual_plot(const FitResult& result) {
     for (const auto& shot : fit.shots) {
         const auto* times = result.track.pieces[shot.piece].time_s.data() + shot.first;
         const auto& residuals = shot.sums.residuals;
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            auto &x = curves[arm].x, &y = curves[arm].y;
+        for (std::size_t link = 0; link < 2; ++link) {
+            auto &x = curves[link].x, &y = curves[link].y;
             for (std::size_t from = 0; from < shot.size(); from += bin) {
                 auto largest = from;
                 for (auto i = from; i < std::min(from + bin, shot.size()); ++i)
-                    if (std::isnan(residuals[largest][arm]) ||
-                        std::abs(residuals[i][arm]) > std::abs(residuals[largest][arm]))
+                    if (std::isnan(residuals[largest][link]) ||
+                        std::abs(residuals[i][link]) > std::abs(residuals[largest][link]))
                         largest = i;
-                x.push_back(end + times[largest] - times[0]), y.push_back(mrad * residuals[largest][arm]);
+                x.push_back(end + times[largest] - times[0]), y.push_back(mrad * residuals[largest][link]);
             }
             x.push_back(end), y.push_back(none);
         }
@@ -300,16 +299,15 @@ Plot residual_plot(const FitResult& result) {
     return plot;
 }
 
-/// The error on left-out pieces against the number of parameters.
-Plot ladder_plot(const FitResult& result) {
+Plot hierarchy_plot(const FitResult& result) {
     Plot plot{.title = "Error against number of parameters", .needs_no_legend = true};
     plot.y = {.label = "rms on pieces left out, mrad", .logarithmic = true};
-    double least = parameter_count, most = 0;
+    double minimum = parameter_count, maximum = 0;
     for (std::size_t k = 0; k < result.hierarchy.candidates.size(); ++k) {
         const auto& candidate = result.hierarchy.candidates[k];
         const bool chosen = k == result.hierarchy.chosen;
         const auto count = static_cast<double>(candidate.fit.free_count());
-        least = std::min(least, count), most = std::max(most, count);
+        minimum = std::min(minimum, count), maximum = std::max(maximum, count);
         plot.curves.push_back({.label = fmt::format("{}{}", k + 1, chosen ? ", chosen" : ""),
                                .x = {count},
                                .y = {mrad * candidate.left_out_rms},
@@ -317,7 +315,7 @@ Plot ladder_plot(const FitResult& result) {
                                .hue = chosen,
                                .quiet = !chosen});
     }
-    plot.x = {.label = "parameters fitted", .low = least - 1, .high = most + 1, .every = 1};
+    plot.x = {.label = "parameters fitted", .low = minimum - 1, .high = maximum + 1, .every = 1};
     return plot;
 }
 
@@ -356,7 +354,7 @@ Figure fit_page(const FitResult& result, const std::string& name) {
         .subtitle =
             fmt::format("{} samples in {:.1f} s of {} piece{}; {} parameters", track.samples(), track.duration(),
                         track.pieces.size(), track.pieces.size() == 1 ? "" : "s", candidate.fit.free_count()),
-        .panels = {track_plot(result), residual_plot(result), ladder_plot(result), horizon_plot(result.horizon)},
+        .panels = {track_plot(result), residual_plot(result), hierarchy_plot(result), horizon_plot(result.horizon)},
         .columns = 2,
         .captions = {fmt::format("Models: {}.", fmt::join(models, "; ")), fmt::format("{}.", fmt::join(numbers, ",  ")),
                      residual_sentence(result) + " " + horizon_sentence(result)}};

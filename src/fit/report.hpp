@@ -12,7 +12,6 @@ namespace doppel {
 /// used.
 std::string fitted_preset(const FitResult& result, const std::string& name);
 
-/// All results for the manifest.
 Json fit_json(const FitResult& result);
 
 /// Writes the residuals. Columns: piece (from 0), time_s, both angles as interpreted, and measured − model of both,

@@ -24,9 +24,9 @@ double spread_of(const Track& track) {
 }
 
 /// The largest acceptable residual of a model, rms, rad.
-double most_left(const Track& track) {
-    constexpr double most_share = 0.05, noises = 3;
-    return std::max(most_share * spread_of(track), noises * std::max(track.noise[0], track.noise[1]));
+double max_residual(const Track& track) {
+    constexpr double max_share = 0.05, noises = 3;
+    return std::max(max_share * spread_of(track), noises * std::max(track.noise[0], track.noise[1]));
 }
 
 /// Throws if the swing gains energy. This is only checked if some friction is at its lower bound 0.
@@ -40,7 +40,7 @@ void require_loss(const FitJob& job, const ModelHierarchy& hierarchy) {
     if (!viscous->fit.is_at_bound(viscous_1) && !viscous->fit.is_at_bound(viscous_2)) return;
     const auto loss = energy_loss(job, viscous->fit);
     const bool is_sure = loss && loss->share < -sure * loss->standard_error;  // false if the error is not a number
-    if (!is_sure || loss->rms > most_left(job.track)) return;
+    if (!is_sure || loss->rms > max_residual(job.track)) return;
     throw method_failed(
         "{}: the motion gains energy, {:.2g} ± {:.1g} % of its kinetic energy a second; a free pendulum loses energy: "
         "check that time_s runs forwards and that nothing drives the pendulum",
@@ -50,7 +50,7 @@ void require_loss(const FitJob& job, const ModelHierarchy& hierarchy) {
 /// Throws if even the best model leaves too much for its parameters to mean anything.
 void require_description(const Track& track, const ModelHierarchy& hierarchy) {
     const auto& best = hierarchy.candidates[hierarchy.best];
-    if (best.left_out_rms <= most_left(track)) return;
+    if (best.left_out_rms <= max_residual(track)) return;
     throw method_failed(
         "{}: no model describes this track: the best ({}) has an error of {:.2g} rad on parts left out, where angles "
         "spread by {:.2g} rad; check that it is a free double pendulum and that the columns are right",
@@ -60,10 +60,10 @@ void require_description(const Track& track, const ModelHierarchy& hierarchy) {
 /// Throws if the links seem exchanged. Exchanged links obey the same equations, except for friction. But D1 − C D2/B is
 /// the first link's own moment, at least m1 a1 g as B/(m2 a2) ≥ a2, so it must be positive.
 void require_order(const Track& track, const ModelHierarchy& hierarchy) {
-    constexpr double least = 1.01;
+    constexpr double minimum = 1.01;
     const auto& fit = hierarchy.candidates[hierarchy.best].fit;
     const double moment = fit.parameters[gravity_1] / (fit.parameters[coupling] * fit.parameters[gravity_2]);
-    if (moment >= least) return;
+    if (moment >= minimum) return;
     throw bad_input(
         "{}: theta1_rad and theta2_rad seem to be swapped: D1 B/(C D2) is {:.3f}, and must be more than 1; theta1 is "
         "the link at the pivot",
@@ -73,19 +73,19 @@ void require_order(const Track& track, const ModelHierarchy& hierarchy) {
 /// The interval at which the fitted motion leads from each piece to the next. Nothing if no interval up to four times a
 /// piece stands out.
 std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
-    constexpr double longest = 4, apart_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
+    constexpr double longest = 4, min_separation_s = 0.15, close = 0.05, times = 3, diverged = 0.25;
     const auto& pieces = job.track.pieces;
     if (pieces.size() < 3) return std::nullopt;
     const double shortest = std::ranges::min_element(pieces, {}, &TrackPiece::duration)->duration(), step = fit.step_s;
     // the state at the start of each piece, and the distance of each piece's motion from it, far beyond the end of the
     // piece; rates are in natural units
-    const double rate = std::sqrt(fit.parameters[gravity_2]), leads = static_cast<double>(pieces.size() - 1);
-    const ArmState unit(1, 1, rate, rate);
-    std::vector<ArmState> starts(pieces.size());
+    const double rate = std::sqrt(fit.parameters[gravity_2]), transitions = static_cast<double>(pieces.size() - 1);
+    const LinkState unit(1, 1, rate, rate);
+    std::vector<LinkState> starts(pieces.size());
     for (std::size_t k = fit.shots.size(); k-- > 0;) starts[fit.shots[k].piece] = fit.shots[k].start;
     const auto count = static_cast<std::size_t>(longest * shortest / step);
     const auto from = static_cast<std::size_t>(0.95 * shortest / step);
-    std::vector<std::vector<ArmState>> motions(pieces.size() - 1);
+    std::vector<std::vector<LinkState>> motions(pieces.size() - 1);
     std::vector<double> distance(count, 0);  // mean square distance of ends and starts, for each interval
     for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
         throw_if_set(job.stop);
@@ -93,24 +93,25 @@ std::optional<Period> find_period(const FitJob& job, const Fit& fit) {
         for (std::size_t i = 0; i < count; ++i) {
             const double t = static_cast<double>(i) * step;
             flow.reach(t);
-            const auto& off = motions[k].emplace_back((starts[k + 1] - flow.values_at(t)).cwiseQuotient(unit));
-            distance[i] += std::min(off.squaredNorm(), 1.0) / leads;
+            const auto& difference = motions[k].emplace_back((starts[k + 1] - flow.values_at(t)).cwiseQuotient(unit));
+            distance[i] += std::min(difference.squaredNorm(), 1.0) / transitions;
         }
     }
-    const auto least = std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1);
-    const auto best = static_cast<std::size_t>(least - distance.begin());
+    const auto minimum = std::min_element(distance.begin() + static_cast<std::ptrdiff_t>(from), distance.end() - 1);
+    const auto best = static_cast<std::size_t>(minimum - distance.begin());
     const double found_s = static_cast<double>(best) * step;
     for (std::size_t i = from; i < count; ++i)  // competing minima
-        if (std::abs(static_cast<double>(i) * step - found_s) > apart_s && distance[i] < times * *least)
+        if (std::abs(static_cast<double>(i) * step - found_s) > min_separation_s && distance[i] < times * *minimum)
             return std::nullopt;
-    if (*least > close) return std::nullopt;
+    if (*minimum > close) return std::nullopt;
     // refines between the steps: the shift along the motions that brings ends and starts together, without motions that
     // have diverged
     double along = 0, speed = 0, rest = 0, used = 0;
-    for (const auto& off : motions) {
-        if (off[best].squaredNorm() > diverged) continue;
-        const ArmState slope = (off[best - 1] - off[best + 1]) / (2 * step);
-        along += off[best].dot(slope), speed += slope.squaredNorm(), rest += off[best].squaredNorm(), used += 4;
+    for (const auto& difference : motions) {
+        if (difference[best].squaredNorm() > diverged) continue;
+        const LinkState slope = (difference[best - 1] - difference[best + 1]) / (2 * step);
+        along += difference[best].dot(slope), speed += slope.squaredNorm(), rest += difference[best].squaredNorm(),
+            used += 4;
     }
     const double shift = along / speed;
     return Period{found_s + shift, std::sqrt((rest - shift * along) / std::max(used - 1, 1.0) / speed)};
@@ -135,12 +136,12 @@ void put_on_one_clock(FitResult& result, std::optional<double> every_s, const st
 
 }  // namespace
 
-FitResult answer(Track track, const FitOptions& options, const std::atomic<bool>& stop,
-                 const std::function<void(const Progress&)>& report) {
+FitResult analyse(Track track, const FitOptions& options, const std::atomic<bool>& stop,
+                  const std::function<void(const Progress&)>& report) {
     const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     FitResult result{.track = std::move(track)};
     const FitJob job{result.track, stop, options.jobs > 0 ? options.jobs : cores()};
-    auto& hierarchy = result.hierarchy = climb(job, options.bodies, report);
+    auto& hierarchy = result.hierarchy = fit_hierarchy(job, options.bodies, report);
     result.models_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     require_order(result.track, hierarchy);
     require_loss(job, hierarchy);

@@ -37,8 +37,8 @@ struct FitResult {
 
 /// Fits all models, chooses one, and evaluates it. `report` gets the number of finished models. Throws Error: exit 3 if
 /// no model describes the track or the swing gains energy, 130.
-FitResult answer(Track track, const FitOptions& options, const std::atomic<bool>& stop,
-                 const std::function<void(const Progress&)>& report);
+FitResult analyse(Track track, const FitOptions& options, const std::atomic<bool>& stop,
+                  const std::function<void(const Progress&)>& report);
 
 // Defined in run.cpp.
 

@@ -41,7 +41,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     parts.require(name + ".fit.json");
     const auto place = [&](const char* ending) { return parts.file(name + ending); };
     const auto preset = place(".toml"), table = place(".residuals.csv"), page = place(".png");
-    const auto result = answer(std::move(track), options, stop, report);
+    const auto result = analyse(std::move(track), options, stop, report);
     const auto finish = [&] {
         write_file(preset, fitted_preset(result, name));
         parts.finished(name + ".toml");

@@ -27,27 +27,27 @@ ShotSums evaluate(const Track& track, const Fit& fit, const Shot& shot, double b
     sums.residuals.assign(shot.size(), {none, none});
     Eigen::Matrix<double, size, Eigen::Dynamic> rows(size, 2 * shot.size());
     ShotSums::Row row = ShotSums::Row::Zero();
-    const auto read = [&](std::size_t sample, std::size_t arm, double t) {
-        const auto angle = flow.angle(arm, t);
-        const double scale = p[scale_1 + arm];
-        const double residual = piece.angle[arm][sample] - (p[offset_1 + arm] + scale * angle[0]);
+    const auto read = [&](std::size_t sample, std::size_t link, double t) {
+        const auto angle = flow.angle(link, t);
+        const double scale = p[scale_1 + link];
+        const double residual = piece.angle[link][sample] - (p[offset_1 + link] + scale * angle[0]);
         row.template head<4>() = scale * angle.template segment<4>(1);
         row[4] = residual;
         if constexpr (size > 5) {
             row.template segment<dynamic_count>(5) = scale * angle.template tail<dynamic_count>();
             row.template tail<parameter_count - dynamic_count>().setZero();
-            row[5 + offset_1 + arm] = fitted[offset_1 + arm];
-            if (fitted[scale_1 + arm]) row[5 + scale_1 + arm] = angle[0];
-            if (fitted[lag] && arm == 1) row[5 + lag] = scale * flow.rate(1, t);
+            row[5 + offset_1 + link] = fitted[offset_1 + link];
+            if (fitted[scale_1 + link]) row[5 + scale_1 + link] = angle[0];
+            if (fitted[lag] && link == 1) row[5 + lag] = scale * flow.rate(1, t);
         }
-        const double unit = fit.scale[arm], off = std::abs(residual / unit), bend = Fit::bend;
-        const bool beyond = off > bend;
-        sums.cost += beyond ? bend * off - 0.5 * bend * bend : 0.5 * off * off;
-        sums.bounded += beyond ? bend * bend : off * off;
+        const double unit = fit.scale[link], magnitude = std::abs(residual / unit), bend = Fit::bend;
+        const bool beyond = magnitude > bend;
+        sums.cost += beyond ? bend * magnitude - 0.5 * bend * bend : 0.5 * magnitude * magnitude;
+        sums.bounded += beyond ? bend * bend : magnitude * magnitude;
         sums.squares += residual * residual;
         sums.beyond += beyond;
-        sums.residuals[sample - shot.first][arm] = residual;
-        row *= std::sqrt(beyond ? bend / off : 1) / unit;
+        sums.residuals[sample - shot.first][link] = residual;
+        row *= std::sqrt(beyond ? bend / magnitude : 1) / unit;
         rows.col(sums.count++) = row.template head<size>();
         if (block_s > 0) sums.blocks.back() += row[4] * row;
     };
@@ -55,11 +55,11 @@ ShotSums evaluate(const Track& track, const Fit& fit, const Shot& shot, double b
         const double t = piece.time_s[sample] - piece.time_s[shot.first];
         while (block_s > 0 && static_cast<double>(sums.blocks.size()) * block_s <= t)
             sums.blocks.emplace_back(ShotSums::Row::Zero());
-        for (std::size_t arm = 0; arm < 2 && std::isfinite(sums.cost); ++arm) {
-            const double at = arm == 1 ? t + p[lag] : t;
-            if (piece.is_outlier[arm][sample]) continue;
+        for (std::size_t link = 0; link < 2 && std::isfinite(sums.cost); ++link) {
+            const double at = link == 1 ? t + p[lag] : t;
+            if (piece.is_outlier[link][sample]) continue;
             if (flow.reach(at))
-                read(sample, arm, at);
+                read(sample, link, at);
             else
                 sums.cost = std::numeric_limits<double>::infinity();
         }
@@ -98,35 +98,35 @@ bool is_possible(const Parameters& p) {
            std::abs(p[lag]) < 0.05 && p[scale_1] > 0.5 && p[scale_2] > 0.5;
 }
 
-/// For each link 1.48 times the median size of its residuals, which is insensitive to outliers; at least `least`.
+/// For each link 1.48 times the median size of its residuals, which is insensitive to outliers; at least `minimum`.
 std::array<double, 2> scale_of(const Fit& fit) {
-    constexpr double least = 1e-10;
+    constexpr double minimum = 1e-10;
     std::array<double, 2> scale{};
-    for (std::size_t arm = 0; arm < 2; ++arm) {
+    for (std::size_t link = 0; link < 2; ++link) {
         std::vector<double> sizes;
         for (const auto& shot : fit.shots)
             for (const auto& residual : shot.sums.residuals)
-                if (!std::isnan(residual[arm])) sizes.push_back(std::abs(residual[arm]));
-        scale[arm] = sizes.empty() ? fit.scale[arm] : std::max(1.4826 * median_size(std::move(sizes)), least);
+                if (!std::isnan(residual[link])) sizes.push_back(std::abs(residual[link]));
+        scale[link] = sizes.empty() ? fit.scale[link] : std::max(1.4826 * median_size(std::move(sizes)), minimum);
     }
     return scale;
 }
 
 /// Damped steps until the expected gain is negligible: less than a hundredth of that of one standard error, or than
-/// `relative` of the cost. Takes at most `most` passes.
-void descend(const FitJob& job, Fit& fit, double relative, int most) {
-    constexpr double enough = 0.005, least_damping = 1e-9;
+/// `relative` of the cost. Takes at most `maximum` passes.
+void descend(const FitJob& job, Fit& fit, double relative, int maximum) {
+    constexpr double negligible = 0.005, min_damping = 1e-9;
     double damping = 1e-8;
-    for (int start = fit.passes; fit.passes - start < most;) {
+    for (int start = fit.passes; fit.passes - start < maximum;) {
         throw_if_set(job.stop);
         auto next = stepped(fit, damping, no_unit, no_unit);
-        if (fit.cost - next.cost < enough + relative * fit.cost) return;
+        if (fit.cost - next.cost < negligible + relative * fit.cost) return;
         next.cost = std::numeric_limits<double>::infinity();
         if (is_possible(next.parameters)) evaluate_fit(job, next);
         fit.passes = next.passes;
         if (next.cost < fit.cost) {
             fit = std::move(next);
-            damping = std::max(damping / 10, least_damping);
+            damping = std::max(damping / 10, min_damping);
         } else if (damping > 1e6) {
             return;
         } else {
@@ -144,9 +144,9 @@ double step_error(const FitJob& job, const Fit& fit) {
     double largest = 0;
     for (std::size_t k = 0; k < fit.shots.size(); ++k)
         for (std::size_t i = 0; i < fit.shots[k].size(); ++i)
-            for (std::size_t arm = 0; arm < 2; ++arm)  // a comparison with NaN is false
+            for (std::size_t link = 0; link < 2; ++link)  // a comparison with NaN is false
                 largest = std::max(
-                    largest, std::abs(fine.shots[k].sums.residuals[i][arm] - fit.shots[k].sums.residuals[i][arm]));
+                    largest, std::abs(fine.shots[k].sums.residuals[i][link] - fit.shots[k].sums.residuals[i][link]));
     return largest;
 }
 
@@ -220,26 +220,26 @@ Fit stepped(const Fit& fit, double damping, std::size_t without, std::size_t oth
     next.cost -= change.dot(slope) - 0.5 * change.dot(matrix.lazyProduct(change));
     for (auto& shot : next.shots) {
         const auto of_start = shot.sums.inverse_of_start(damping);
-        const ArmState own = shot.sums.normal.col(4).head<4>();
+        const LinkState own = shot.sums.normal.col(4).head<4>();
         shot.start += of_start * (own - shot.sums.normal.topRightCorner<4, parameter_count>() * change);
         next.cost -= 0.5 * own.dot(of_start * own);
     }
     return next;
 }
 
-ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample) {
+LinkState estimated_start(const Track& track, std::size_t piece, std::size_t sample) {
     const auto [one, two] = estimate_at(track, track.pieces[piece], track.pieces[piece].time_s[sample]);
     return {one.angle, two.angle, one.rate, two.rate};
 }
 
-std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int most_passes,
+std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int max_passes,
                               double relative) {
     auto alone = fit;
     alone.is_evaluated = false;
     alone.model.fitted.reset();
     alone.shots.assign(shots.begin(), shots.end());
     return fit_model(job, std::move(alone),
-                     {.most_passes = most_passes, .finds_scale = false, .step_share = 0, .relative = relative});
+                     {.max_passes = max_passes, .finds_scale = false, .step_share = 0, .relative = relative});
 }
 
 Error no_motion(const Track& track) {
@@ -252,12 +252,12 @@ Error no_motion(const Track& track) {
 std::optional<Fit> fit_model(const FitJob& job, Fit fit, const FitEffort& effort) {
     fit.passes = 0;
     constexpr int rounds = 20, some = 3;
-    constexpr double least_step = 0.0005, settled = 0.1, roughly = 1e-4;
+    constexpr double min_step = 0.0005, settled = 0.1, roughly = 1e-4;
     // starts from which the motion diverged are estimated again from the samples, and steps become finer
     const auto evaluate = [&] {
-        for (evaluate_fit(job, fit); !std::isfinite(fit.cost) && fit.step_s > least_step; evaluate_fit(job, fit)) {
+        for (evaluate_fit(job, fit); !std::isfinite(fit.cost) && fit.step_s > min_step; evaluate_fit(job, fit)) {
             for (auto& shot : fit.shots)
-                if (!std::isfinite(shot.sums.cost)) shot.start = guessed_start(job.track, shot.piece, shot.first);
+                if (!std::isfinite(shot.sums.cost)) shot.start = estimated_start(job.track, shot.piece, shot.first);
             fit.step_s /= 2;
         }
         return std::isfinite(fit.cost);
@@ -273,12 +273,12 @@ std::optional<Fit> fit_model(const FitJob& job, Fit fit, const FitEffort& effort
     }
     for (int round = 0; round < rounds; ++round) {
         descend(job, fit, is_settled ? effort.relative : std::max(effort.relative, roughly),
-                std::max(effort.most_passes - fit.passes, 2));
+                std::max(effort.max_passes - fit.passes, 2));
         const double noise = std::min(fit.scale[0], fit.scale[1]);
         // if the scale does not settle, it may be that of the integration errors
-        const bool is_coarse = (is_settled || round > some) && effort.step_share > 0 && fit.step_s > least_step &&
+        const bool is_coarse = (is_settled || round > some) && effort.step_share > 0 && fit.step_s > min_step &&
                                step_error(job, fit) > effort.step_share * noise;
-        if (fit.passes >= effort.most_passes || (is_settled && !is_coarse)) break;
+        if (fit.passes >= effort.max_passes || (is_settled && !is_coarse)) break;
         if (is_coarse) fit.step_s /= 2;
         if (effort.finds_scale) {
             const auto before = std::exchange(fit.scale, scale_of(fit));

@@ -20,9 +20,9 @@ struct FitJob {
 /// For all parameters; 0 for those that are not fitted.
 using ParameterMatrix = Eigen::Matrix<double, parameter_count, parameter_count>;
 
-/// The contribution of a shot to the normal equations: Σ row rowᵀ. Each row belongs to a residual and contains the
+/// The contribution of a shot to the normal equations: Σ row rowᵀ. Each row belongs to a residual. It contains the
 /// derivatives of the measured value by the start (four numbers), the residual, and the derivatives by the parameters
-/// (0 if not fitted), times the root of its weight.
+/// (0 if not fitted). It is multiplied by the root of its weight.
 struct ShotSums {
     using Row = Eigen::Matrix<double, 5 + parameter_count, 1>;
     Eigen::Matrix<double, Row::SizeAtCompileTime, Row::SizeAtCompileTime> normal = decltype(normal)::Zero();
@@ -44,7 +44,7 @@ struct Shot {
     std::size_t piece = 0, first = 0, last = 0;
     std::size_t unit = 0;   // what is left out together: a piece, or a stretch if there are few pieces
     std::size_t whole = 0;  // number of the stretch that contains it
-    ArmState start{};       // at the first sample
+    LinkState start{};      // at the first sample
     ShotSums sums;          // there
 
     std::size_t size() const { return last - first; }
@@ -75,9 +75,8 @@ struct Fit {
     std::span<const Shot> unit(std::size_t number) const;
 };
 
-/// The effort of a fit.
 struct FitEffort {
-    int most_passes = 30;
+    int max_passes = 30;
     bool finds_scale =
         true;  // finds the scale of the residuals, from what the model leaves; otherwise the initial one is kept
     double step_share =
@@ -87,14 +86,14 @@ struct FitEffort {
 
 /// Minimises Huber's loss of all residuals over starts and parameters: Gauss–Newton steps with Levenberg–Marquardt
 /// damping, the starts eliminated shot by shot, friction kept ≥ 0. Nothing if no motion stays finite. Takes at most
-/// most_passes + 60 passes (two in each of 20 rounds, and some to find scale and step size). The result has the same
+/// max_passes + 60 passes (two in each of 20 rounds, and some to find scale and step size). The result has the same
 /// bits for any number of threads. Throws Error (exit 130).
 ///
 /// Source  Bock 1983 (multiple shooting); Nocedal & Wright, Numerical Optimization, §10.3.
 std::optional<Fit> fit_model(const FitJob& job, Fit start, const FitEffort& effort);
 
 /// The same for some shots of a fit with its parameters; only their starts are fitted.
-std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int most_passes,
+std::optional<Fit> fit_starts(const FitJob& job, const Fit& fit, std::span<const Shot> shots, int max_passes,
                               double relative);
 
 /// The error if no motion stays finite (exit 3).
@@ -114,6 +113,6 @@ constexpr auto no_unit = static_cast<std::size_t>(-1);
 Fit stepped(const Fit& fit, double damping, std::size_t without, std::size_t other);
 
 /// Angles and rates at a sample of a piece, estimated from the samples around it.
-ArmState guessed_start(const Track& track, std::size_t piece, std::size_t sample);
+LinkState estimated_start(const Track& track, std::size_t piece, std::size_t sample);
 
 }  // namespace doppel

@@ -51,7 +51,7 @@ double improve(const Rest& rest_of, const Eigen::VectorXd& measured, Unknowns& x
 
 FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std::atomic<bool>& stop) {
     constexpr double longest_s = 2, followed = 0.1, settled = 0.999;
-    constexpr int most_passes = 12;
+    constexpr int max_passes = 12;
     constexpr Eigen::Index first_count = 20;
     const Rational interval{1, 200};  // s, between the compared angles
     auto spec = motion;
@@ -67,29 +67,29 @@ FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std:
         for (Eigen::Index k = 0; k < rest.size(); k += 2) {
             if (k > 0) moving->advance(stop);
             const auto bobs = moving->observe().bobs;
-            for (std::size_t arm = 0; arm < 2; ++arm) rest[k + arm] -= bobs[arm].theta + x[4 + arm];
+            for (std::size_t link = 0; link < 2; ++link) rest[k + link] -= bobs[link].theta + x[4 + link];
         }
         return rest;
     };
-    const auto most = 1 + static_cast<Eigen::Index>(std::min(longest_s, replay.length()) / interval.value());
-    Eigen::VectorXd measured(2 * most);
+    const auto maximum = 1 + static_cast<Eigen::Index>(std::min(longest_s, replay.length()) / interval.value());
+    Eigen::VectorXd measured(2 * maximum);
     Unknowns x = Unknowns::Zero();
-    for (Eigen::Index k = most; k-- > 0;) {
+    for (Eigen::Index k = maximum; k-- > 0;) {
         const double time = replay.start_s + static_cast<double>(k) * interval.value();
         const auto [one, two] = estimate_at(*replay.track, replay.samples(), time);
         x.head<4>() << one.angle, two.angle, one.rate, two.rate;
         measured.segment<2>(2 * k) = x.head<2>();
     }
     FittedStart start{.angle = {x[0], x[1]}, .rate = {x[2], x[3]}};
-    for (auto count = std::min(first_count, most);; count = std::min(2 * count, most)) {
+    for (auto count = std::min(first_count, maximum);; count = std::min(2 * count, maximum)) {
         double rms = std::numeric_limits<double>::infinity(), before = rms;
-        for (int pass = 0; pass < most_passes && (pass == 0 || rms <= settled * before); ++pass) {
+        for (int pass = 0; pass < max_passes && (pass == 0 || rms <= settled * before); ++pass) {
             before = rms;
             rms = improve(rest_of, measured.head(2 * count), x);
         }
         if (!(rms < followed)) return start;
         start = {{x[0], x[1]}, {x[2], x[3]}, {x[4], x[5]}, static_cast<double>(count - 1) * interval.value(), rms};
-        if (count == most) return start;
+        if (count == maximum) return start;
     }
 }
 

@@ -16,9 +16,9 @@ struct FittedStart {
     double rms = 0;      // rad, of the residuals
 };
 
-/// Fits start and offsets of a double pendulum to the first two seconds of a replay, or to the part that it can follow
-/// within 0.1 rad. Gauss–Newton steps are taken over a stretch that is doubled up to that length. `motion` = how it is
-/// integrated; its start does not matter. Throws Error (exit 130) soon after `stop` is set.
+/// Fits start and offsets of a double pendulum to the first two seconds of a replay. If it cannot follow them within
+/// 0.1 rad, a shorter part is fitted. Gauss–Newton steps are taken over a stretch that is doubled up to that length.
+/// `motion` = how it is integrated; its start does not matter. Throws Error (exit 130) soon after `stop` is set.
 FittedStart fit_start(const MotionSpec& motion, const Replay& replay, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -12,13 +12,13 @@ namespace doppel {
 namespace {
 
 /// Σ over shots of r_i r_(i+lag) of one link, for each lag.
-std::vector<double> correlations_of(const Fit& fit, std::size_t arm, std::size_t lags, const std::atomic<bool>& stop) {
+std::vector<double> correlations_of(const Fit& fit, std::size_t link, std::size_t lags, const std::atomic<bool>& stop) {
     std::vector<double> result(lags + 1, 0);
-    const double most = Fit::bend * fit.scale[arm];
+    const double maximum = Fit::bend * fit.scale[link];
     for (const auto& shot : fit.shots) {
         std::vector<double> series;
         for (const auto& residual : shot.sums.residuals)
-            if (!std::isnan(residual[arm])) series.push_back(std::clamp(residual[arm], -most, most));
+            if (!std::isnan(residual[link])) series.push_back(std::clamp(residual[link], -maximum, maximum));
         for (std::size_t shift = 0; shift <= lags && shift < series.size(); ++shift) {
             throw_if_set(stop);
             for (std::size_t i = 0; i + shift < series.size(); ++i) result[shift] += series[i] * series[i + shift];
@@ -28,20 +28,20 @@ std::vector<double> correlations_of(const Fit& fit, std::size_t arm, std::size_t
 }
 
 /// Tests whether successive residuals are correlated, and for how long.
-void look_at_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
+void test_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     constexpr std::size_t lags = 10, furthest = 400;
     constexpr double limit = 29.6;  // χ² with ten degrees of freedom at 99.9 %
     double intervals = 0;
     for (const auto& piece : job.track.pieces) intervals += static_cast<double>(piece.size() - 1);
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        const auto sums = correlations_of(fit, arm, furthest, job.stop);
+    for (std::size_t link = 0; link < 2; ++link) {
+        const auto sums = correlations_of(fit, link, furthest, job.stop);
         double portmanteau = 0;
         for (std::size_t shift = 1; shift <= lags; ++shift) portmanteau += std::pow(sums[shift] / sums[0], 2);
         result.is_white &= portmanteau * static_cast<double>(fit.residual_count()) / 2 < limit;
-        result.neighbour[arm] = sums[1] / sums[0];
+        result.neighbour[link] = sums[1] / sums[0];
         std::size_t shift = 1;
         while (shift < furthest && sums[shift] > sums[0] / std::numbers::e) ++shift;
-        result.memory_s[arm] = static_cast<double>(shift) * (job.track.duration() / intervals);
+        result.memory_s[link] = static_cast<double>(shift) * (job.track.duration() / intervals);
     }
 }
 
@@ -65,7 +65,7 @@ ParameterMatrix scatter_of(const Fit& fit) {
 
 Uncertainty uncertainty_of(const FitJob& job, Fit fit) {
     Uncertainty result;
-    look_at_residuals(job, fit, result);
+    test_residuals(job, fit, result);
     // for white residuals; includes parameters at a bound, whose possible increase makes the others less certain
     ParameterMatrix matrix = ParameterMatrix::Zero();
     double bounded = 0, beyond = 0;

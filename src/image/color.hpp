@@ -17,7 +17,6 @@ struct Color {
     friend constexpr bool operator==(const Color&, const Color&) = default;
 };
 
-/// A channel rounded to a byte.
 inline std::uint8_t byte_of(double channel) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.0, 1.0)));
 }

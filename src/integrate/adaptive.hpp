@@ -28,11 +28,11 @@ public:
     /// Throws Error (exit 2) for a tolerance that the scalar cannot reach.
     Adaptive(Model& model, const State& start, const Scalar& tolerance)
         : model_(model), tolerance_(tolerance), y0_(start), y1_(start), out_(start), scratch_(start), k_(start) {
-        const Scalar least = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
-        if (!(tolerance >= least))
+        const Scalar minimum = Scalar(4) * std::numeric_limits<Scalar>::epsilon();
+        if (!(tolerance >= minimum))
             throw bad_input("{}: tolerance = {:.3g} is too small for {} digits; it must be at least {:.1g}",
                             method.name, static_cast<double>(tolerance), std::numeric_limits<Scalar>::digits10 + 1,
-                            static_cast<double>(least));
+                            static_cast<double>(minimum));
         take_modes(model_, y1_);
         model_.rate(y1_, k_[end]);
         h_ = first_step();
@@ -131,7 +131,7 @@ private:
         };
         const auto event = first_event(model_, span_, state_at);
         if (!event) return;
-        stall_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * span_);
+        repeated_events_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * span_);
         take(*event);
         arrive();
         ends_at_event_ = true;
@@ -225,7 +225,7 @@ private:
     long steps_ = 0, evaluations_ = 0;
     bool interpolates_ = false;   // the slopes for interpolation are those of the last step
     bool ends_at_event_ = false;  // the last step
-    Stall stall_;
+    RepeatedEvents repeated_events_;
     State y0_, y1_, out_;  // at the start and the end of the last step; at the output time
     State scratch_;
     Slopes<Model, pair> k_;

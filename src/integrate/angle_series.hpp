@@ -51,7 +51,7 @@ public:
         term(0).rate = y.tail(links_);
         term(1).y = -term(0).rate;
         for (int k = 0; k < order_; ++k) next(k);
-        amount_ = greatest(0) + std::sqrt(greatest(1));
+        amount_ = largest(0) + std::sqrt(largest(1));
     }
 
     void move(const Scalar& h, State& change) override {
@@ -71,7 +71,7 @@ public:
         }
     }
 
-    double size(int k) const override { return amount_ == 0 ? 0 : greatest(k) / amount_; }
+    double size(int k) const override { return amount_ == 0 ? 0 : largest(k) / amount_; }
 
     double rate(int k, Eigen::Index link) const override { return static_cast<double>(term(k).rate[link]); }
 
@@ -153,11 +153,11 @@ private:
         store(-across, term(k).across);
     }
 
-    /// The largest |ω_k|.
-    double greatest(int k) const {
-        double most = 0;
-        for (Eigen::Index i = 0; i < links_; ++i) most = greater(most, std::abs(static_cast<double>(term(k).rate[i])));
-        return most;
+    double largest(int k) const {
+        double maximum = 0;
+        for (Eigen::Index i = 0; i < links_; ++i)
+            maximum = greater(maximum, std::abs(static_cast<double>(term(k).rate[i])));
+        return maximum;
     }
 
     Term& term(int k) { return terms_[static_cast<std::size_t>(k)]; }

@@ -8,7 +8,7 @@ namespace doppel {
 
 BatchBlock::~BatchBlock() = default;
 
-bool Batch::serves(std::string_view method, std::size_t links) {
+bool Batch::supports(std::string_view method, std::size_t links) {
     return (method == Euler::method.name || method == Rk4::method.name) && (links == 2 || links == 3);
 }
 
@@ -20,7 +20,7 @@ Batch::Batch(std::span<const Pendulum<double>> members, Model model, std::string
         if (member.links() != links)
             throw bad_input("all pendulums of a batch must have the same number of links; they have {} and {}", links,
                             member.links());
-    if (!serves(method, links))
+    if (!supports(method, links))
         throw bad_input("a batch needs two or three links and euler or rk4; it has {} and {}", links, method);
     const auto make = at_width(width_, []<int chosen>() { return make_batch_block<chosen>; });
     const BatchRequest request{.members = members.data(),

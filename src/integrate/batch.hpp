@@ -39,7 +39,7 @@ public:
     void read(std::size_t member, State<double, Eigen::Dynamic>& y) const;
 
     /// Whether the method is available for chains with this number of links: two or three, by "euler" or "rk4".
-    static bool serves(std::string_view method, std::size_t links);
+    static bool supports(std::string_view method, std::size_t links);
 
 private:
     int width_;

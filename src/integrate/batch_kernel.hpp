@@ -47,7 +47,6 @@ BatchBlock* make_batch_block<4>(const BatchRequest& request, std::size_t first);
 template <>
 BatchBlock* make_batch_block<8>(const BatchRequest& request, std::size_t first);
 
-/// A block for one model and one method.
 template <class Model, class Which>
 class SteppedBlock final : public BatchBlock {
 public:
@@ -89,7 +88,6 @@ Pendulum<Pack> pendulum_of(const BatchRequest& request, std::size_t first) {
     return all;
 }
 
-/// A block with the requested method.
 template <class Model>
 BatchBlock* with_method(const BatchRequest& request, const Pendulum<typename Model::Scalar>& pendulum) {
     if (request.by_rk4) return new SteppedBlock<Model, Rk4>(pendulum, request.step);

@@ -55,11 +55,11 @@ Scalar bisect_event(Scalar low, Scalar high, const Scalar& h, Margin&& margin) {
 /// these values, the minimum is found by golden section.
 template <HasEvents Model, class Scalar, class StateAt>
 std::optional<Scalar> first_event(Model& model, const Scalar& h, StateAt&& state_at) {
-    constexpr int looks = 11;
-    constexpr double places[looks]{0, 0.001, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.999, 1};
+    constexpr int points = 11;
+    constexpr double places[points]{0, 0.001, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.999, 1};
     const auto margin = [&](const Scalar& t) { return model.margin(state_at(t)); };
-    Scalar at[looks], seen[looks];
-    for (int i = 0; i < looks; ++i) {
+    Scalar at[points], seen[points];
+    for (int i = 0; i < points; ++i) {
         at[i] = h * Scalar(places[i]);
         seen[i] = margin(at[i]);
         if (i >= 2 && seen[i - 1] < seen[i - 2] && seen[i - 1] < seen[i] && !(seen[i - 1] < Scalar(0))) {
@@ -78,13 +78,13 @@ std::optional<Scalar> first_event(Model& model, const Scalar& h, StateAt&& state
 }
 
 /// Counts consecutive events at the same time. Throws Error (exit 3) if they do not end.
-class Stall {
+class RepeatedEvents {
 public:
     void note(bool advances) {
-        constexpr int most = 100;
+        constexpr int maximum = 100;
         count_ = advances ? 0 : count_ + 1;
-        if (count_ > most)
-            throw method_failed("joints stick and slip {} times at one time; the motion cannot continue", most);
+        if (count_ > maximum)
+            throw method_failed("joints stick and slip {} times at one time; the motion cannot continue", maximum);
     }
 
 private:
@@ -100,7 +100,7 @@ void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
         take(at, t);
         return at;
     };
-    Stall stall;
+    RepeatedEvents repeated;
     for (Scalar left = h;;) {
         from = y;
         y = state_at(left);
@@ -109,7 +109,7 @@ void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
             bisect_event(Scalar(0), left, left, [&](const Scalar& t) { return model.margin(state_at(t)); });
         y = state_at(event);
         model.settle(y);
-        stall.note(event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * h);
+        repeated.note(event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * h);
         left -= event;
         if (!(left > Scalar(0))) return;
     }

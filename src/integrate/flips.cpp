@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "integrate/flips_kernel.hpp"
-#include "integrate/taylor.hpp"
 #include "integrate/widths.hpp"
 #include "numeric/roots.hpp"
 #include "numeric/state.hpp"
@@ -23,30 +22,6 @@ double weight(const Pendulum<double>& p, std::size_t rod) {
     return p.gravity * p.length[rod] * below;
 }
 
-/// A rod's angle beyond the upright position, measured in the direction of the flip, and its rate.
-struct Outward {
-    double value, rate;  // rad beyond the upright, rad/s
-};
-
-/// The time in a step, s, at which |θ| first exceeds π, from the polynomial of θ; at(t) returns Outward for this
-/// direction.
-template <class At>
-double first_flip(const Bernstein& theta, const At& at) {
-    const double widest = 1.5 / 32 * theta.length;  // 1/32 of the step, with a margin for rounding
-    double first = never;
-    const auto [least, greatest] = std::minmax_element(theta.b.begin(), theta.b.end());
-    for (const double sense : {1.0, -1.0}) {
-        if (!(sense > 0 ? *greatest > pi : *least < -pi)) continue;
-        auto turned = theta;
-        for (double& value : turned.b) value *= sense;
-        const auto rises = turned.rises(pi);
-        if (rises.empty()) continue;
-        first = std::min(first, root(
-                                    rises.front(), [&](double t) { return at(t, sense); }, widest));
-    }
-    return first;
-}
-
 void check(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times) {
     for (const auto& p : pendulums)
         if (p.links() != 2) throw bad_input("flips are computed for two links; there are {}", p.links());
@@ -61,34 +36,31 @@ void check(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, st
 }  // namespace
 
 double first_flip(const RodOnStep& rod) {
+    struct Outward {
+        double value, rate;  // rad beyond the upright position in the direction of the flip, rad/s
+    };
     auto theta = Bernstein::of_powers(rod.theta, rod.h);
     theta.b.back() = rod.theta_end;
-    return first_flip(theta, [&](double t, double sense) {
-        double angle = rod.theta[flip_order], rate = rod.omega[flip_order];
-        for (int k = flip_order - 1; k >= 0; --k) {
-            angle = angle * t + rod.theta[k];
-            rate = rate * t + rod.omega[k];
-        }
-        return Outward{sense * angle - pi, sense * rate};
-    });
-}
-
-double reference_flip(const Pendulum<double>& pendulum, double duration, double tolerance) {
-    DoublePendulum<double> model(pendulum);
-    const auto start = DoublePendulum<double>::start(pendulum);
-    if (start.head(2).cwiseAbs().maxCoeff() > pi) return 0;
-    TaylorStepper<DoublePendulum<double>> stepper(model, start, tolerance);
-    for (double time = 0; time < duration; time += stepper.step()) {
-        stepper.take_step();
-        double flip = never;
-        for (const int rod : {0, 1})
-            flip = std::min(flip, first_flip(stepper.on_step(rod), [&](double t, double sense) {
-                                const auto& y = stepper.at(t);
-                                return Outward{sense * y[rod] - pi, sense * y[2 + rod]};
-                            }));
-        if (flip < never) return time + flip <= duration ? time + flip : never;
+    const double widest = 1.5 / 32 * theta.length;  // 1/32 of the step, with a margin for rounding
+    double first = never;
+    const auto [minimum, largest] = std::minmax_element(theta.b.begin(), theta.b.end());
+    for (const double sense : {1.0, -1.0}) {
+        if (!(sense > 0 ? *largest > pi : *minimum < -pi)) continue;
+        auto outward = theta;
+        for (double& value : outward.b) value *= sense;
+        const auto rises = outward.rises(pi);
+        if (rises.empty()) continue;
+        const auto at = [&](double t) {
+            double angle = rod.theta[flip_order], rate = rod.omega[flip_order];
+            for (int k = flip_order - 1; k >= 0; --k) {
+                angle = angle * t + rod.theta[k];
+                rate = rate * t + rod.omega[k];
+            }
+            return Outward{sense * angle - pi, sense * rate};
+        };
+        first = std::min(first, root(rises.front(), at, widest));
     }
-    return never;
+    return first;
 }
 
 double flip_tolerance(double duration) {
@@ -98,16 +70,16 @@ double flip_tolerance(double duration) {
 bool flip_is_forbidden(const Pendulum<double>& p) {
     if (p.gravity < 0) return false;  // a rod then needs no energy to stand upright
     // J above the hanging equilibrium; in this form, a heavy hanging rod costs a light one no digits
-    double energy = 0, least = never, vx = 0, vy = 0;
+    double energy = 0, minimum = never, vx = 0, vy = 0;
     for (std::size_t i = 0; i < p.links(); ++i) {
         const SinCos<double> turn(p.angle[i]);
         const double half = SinCos<double>(0.5 * p.angle[i]).sin, upright = 2 * weight(p, i);
         vx += p.length[i] * p.rate[i] * turn.cos;
         vy += p.length[i] * p.rate[i] * turn.sin;
         energy += upright * half * half + 0.5 * p.mass[i] * (vx * vx + vy * vy);
-        least = std::min(least, upright);
+        minimum = std::min(minimum, upright);
     }
-    return energy < least;
+    return energy < minimum;
 }
 
 void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times,

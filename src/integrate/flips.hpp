@@ -39,11 +39,6 @@ double flip_tolerance(double duration);
 void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times,
                  const std::atomic<bool>& stop, int width = 0);
 
-/// The same for one pendulum by different equations and code, to measure the error of first_flips(): TaylorStepper with
-/// its tolerance, some eight times slower. At 1e-13, all of 110 flips within 20 s are within 2e-6 s of those in quad at
-/// 1e-24.
-double reference_flip(const Pendulum<double>& pendulum, double duration, double tolerance);
-
 /// Whether the energy is too small for any flip: less than the potential energy with the lightest rod upright and all
 /// others hanging. With W_i = g l_i Σ_{k≥i} m_k this is −Σ W_j + 2 min W_i. For any number of links.
 bool flip_is_forbidden(const Pendulum<double>& pendulum);

@@ -14,12 +14,12 @@ namespace doppel {
 /// The parameters of double pendulums.
 template <class Pack>
 struct FlipChain {
-    Pack gravity;  // g / l1, 1/s²
-    Pack ratio;    // m1 / m2
-    Pack masses;   // 1 + m1 / m2
-    Pack longer;   // L = l2 / l1
-    Pack pull;     // −1 / L
-    Pack longest;  // longest step, s
+    Pack gravity;          // g / l1, 1/s²
+    Pack ratio;            // m1 / m2
+    Pack masses;           // 1 + m1 / m2
+    Pack longer;           // L = l2 / l1
+    Pack minus_by_longer;  // −1 / L
+    Pack longest;          // longest step, s
 };
 
 inline constexpr int flip_order = 16;  // at 1e-8 rad/s, order 12 costs 1.2 times as much, and 20 costs 1.1 times
@@ -95,7 +95,7 @@ struct FlipSeries {
         next.theta[0] = now.omega[0] * inverse;
         next.theta[1] = now.omega[1] * inverse;
         next.omega[0] = ((b_sin + now.b * sin_d) - now.sin1) * inverse;
-        next.omega[1] = (a_sin + now.a * sin_d) * (inverse * by.pull);
+        next.omega[1] = (a_sin + now.a * sin_d) * (inverse * by.minus_by_longer);
         next.sin_d = (turn_cos + now.turn * cos_d) * inverse;
         next.cos_d = (turn_sin + now.turn * sin_d) * -inverse;
         next.sin1 = (omega_cos + now.omega[0] * term[0].cos1) * inverse;

@@ -23,7 +23,7 @@ public:
             }
         while (busy_ > 0) {
             if (request_.stop->load(std::memory_order_relaxed)) return false;
-            for (int i = 0; i < steps_between_looks; ++i) step();
+            for (int i = 0; i < steps_between_checks; ++i) step();
         }
         return true;
     }
@@ -32,8 +32,8 @@ private:
     using Series = FlipSeries<Pack>;
 
     static constexpr int registers = 2;  // one is computed while the other waits for results
-    static constexpr int steps_between_looks = 64;
-    static constexpr double least_step = 1e-9;  // s; if only less is allowed, the run has failed
+    static constexpr int steps_between_checks = 64;
+    static constexpr double min_step = 1e-9;  // s; if only less is allowed, the run has failed
     static constexpr double never = std::numeric_limits<double>::infinity();
     static constexpr double broken = std::numeric_limits<double>::quiet_NaN();
     static constexpr std::size_t none = ~std::size_t(0);
@@ -60,7 +60,7 @@ private:
         const Pack reach1 = reach(h, now.theta[0], end.theta[0], now.omega[0], end.omega[0]);
         const Pack reach2 = reach(h, now.theta[1], end.theta[1], now.omega[1], end.omega[1]);
         const auto dull =
-            (reach1 < Pack(pi)) & (reach2 < Pack(pi)) & (after < Pack(request_.duration)) & (Pack(least_step) < h);
+            (reach1 < Pack(pi)) & (reach2 < Pack(pi)) & (after < Pack(request_.duration)) & (Pack(min_step) < h);
         bool done[Pack::width] = {};
         const bool all_dull = all_of(dull);
         if (!all_dull)
@@ -91,7 +91,7 @@ private:
     bool is_done(const Group& group, int lane, double h, double flip) {
         if (group.trial[lane] == none) return false;
         const double time = group.time[lane] + flip;
-        const bool breaks = !(h > least_step);
+        const bool breaks = !(h > min_step);
         if (!(time <= group.time[lane] + h) && group.time[lane] + h < request_.duration && !breaks) return false;
         request_.times[group.trial[lane]] = time <= request_.duration ? time : breaks ? broken : never;
         return true;
@@ -121,7 +121,7 @@ private:
         group.chain.ratio.set(lane, ratio);
         group.chain.masses.set(lane, 1 + ratio);
         group.chain.longer.set(lane, longer);
-        group.chain.pull.set(lane, -1 / longer);
+        group.chain.minus_by_longer.set(lane, -1 / longer);
         group.chain.longest.set(lane, request_.duration < swing ? request_.duration : swing);
         auto& now = group.series.term[0];
         for (std::size_t i = 0; i < 2; ++i) {

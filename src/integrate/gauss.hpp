@@ -64,11 +64,11 @@ public:
     using State = typename Model::State;
 
     GaussCollocation(Model& model, const State& start, const Scalar& step)
-        : form_(model), gauss_(step), step_(step), y_(start), z_(start), left_over_(start), at_(start) {
+        : form_(model), gauss_(step), step_(step), y_(start), z_(start), rounding_error_(start), at_(start) {
         form_.momenta(y_, z_);
-        left_over_.setZero();
-        moves_.fill(left_over_);
-        slopes_.fill(left_over_);
+        rounding_error_.setZero();
+        moves_.fill(rounding_error_);
+        slopes_.fill(rounding_error_);
         past_.fill(moves_);
     }
 
@@ -122,7 +122,7 @@ private:
         bool angles_done = false, momenta_done = false;
         const auto n = z_.size() / 2;
         Change before = iterate();
-        known_ = guessed_well(before) ? std::min(known_ + 1, remembered) : 0;
+        known_ = is_good_guess(before) ? std::min(known_ + 1, remembered) : 0;
         for (int i = 1; i < limit; ++i) {
             const Change now = iterate();
             angles_done = angles_done || is_done(now.angle, before.angle, z_.head(n), moves_[0].head(n));
@@ -140,7 +140,7 @@ private:
         const auto n = z_.size();
         for (std::size_t i = 0; i < S; ++i) {
             for (Eigen::Index c = 0; c < n; ++c) {
-                Scalar sum = left_over_[c];
+                Scalar sum = rounding_error_[c];
                 for (std::size_t j = 0; j < S; ++j) sum += gauss_.mu[i][j] * moves_[j][c];
                 at_[c] = z_[c] + sum;
             }
@@ -162,7 +162,7 @@ private:
     }
 
     /// Whether the first change was small compared with the moves; otherwise the next guess ignores earlier steps.
-    bool guessed_well(const Change& first) const {
+    bool is_good_guess(const Change& first) const {
         const auto n = z_.size() / 2;
         return Scalar(4) * first.angle <= moves_[0].head(n).cwiseAbs().maxCoeff() &&
                Scalar(4) * first.momentum <= moves_[0].tail(n).cwiseAbs().maxCoeff();
@@ -181,11 +181,11 @@ private:
     /// z ← z + Σ L_i; the rounding error is carried over to the next step.
     void move() {
         for (Eigen::Index c = 0; c < z_.size(); ++c) {
-            Scalar sum = left_over_[c];
+            Scalar sum = rounding_error_[c];
             for (std::size_t i = 0; i < S; ++i) sum += moves_[i][c];
             const Scalar from = z_[c];
             z_[c] += sum;
-            left_over_[c] = (from - z_[c]) + sum;
+            rounding_error_[c] = (from - z_[c]) + sum;
         }
         past_[static_cast<std::size_t>(done_ % remembered)] = moves_;
     }
@@ -195,7 +195,7 @@ private:
     Scalar step_;
     long done_ = 0, evaluations_ = 0;
     long known_ = 0;  // number of earlier steps for the guess
-    State y_, z_, left_over_;
+    State y_, z_, rounding_error_;
     Moves moves_;
     std::array<Moves, remembered> past_;  // step n is at index n modulo `remembered`
     std::array<typename Canonical<Model>::Angles, S> angles_;

@@ -59,14 +59,14 @@ public:
 private:
     [[gnu::always_inline]] void run(long steps) {
         Now now = now_;  // a local copy, which the compiler keeps in registers
-        const Pulls by = by_;
+        const Multipliers by = by_;
         for (long i = 0; i < steps; ++i) step(now, by);
         now_ = now;
         taken_ += steps;
     }
 
     using Pair = Planar<Scalar>;
-    using Pulls = RodMultipliers<Scalar>;
+    using Multipliers = RodMultipliers<Scalar>;
     struct Now {
         Pair r[N], u[N];
     };
@@ -76,7 +76,7 @@ private:
         return {y[at] - y[at - 2], y[at + 1] - y[at - 1]};
     }
 
-    [[gnu::always_inline]] static void step(Now& now, const Pulls& by) {
+    [[gnu::always_inline]] static void step(Now& now, const Multipliers& by) {
         Pair p[N];
         by.find(now.r, now.u, p);
         for (int k = 0; k < N; ++k) now.r[k] = now.r[k] + now.u[k];
@@ -91,7 +91,7 @@ private:
 
     State start_;
     Scalar h_;          // s
-    Pulls by_;          // gravity: h² g
+    Multipliers by_;    // gravity: h² g
     Scalar scale3_{1};  // ρ_2 (physics/rod_multipliers.hpp)
     Now now_;
     /// A system in equilibrium for the model remains there exactly; the reordered sums would make it move by rounding.

@@ -19,14 +19,14 @@ LaneSeries::LaneSeries(const Pendulum<double>& p, int order, int width)
 
 void LaneSeries::expand(const State& y) {
     lanes_->expand(y.data());
-    amount_ = greatest(0) + std::sqrt(greatest(1));
+    amount_ = largest(0) + std::sqrt(largest(1));
 }
 
-double LaneSeries::greatest(int k) const {
+double LaneSeries::largest(int k) const {
     const double* rates = lanes_->rates(k);
-    double most = 0;
-    for (std::size_t i = 0; i < links_; ++i) most = greater(most, std::abs(rates[i]));
-    return most;
+    double maximum = 0;
+    for (std::size_t i = 0; i < links_; ++i) maximum = greater(maximum, std::abs(rates[i]));
+    return maximum;
 }
 
 /// Not for a mass much lighter than the next one, for which the mass matrix of the lanes would lose digits.

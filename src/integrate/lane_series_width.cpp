@@ -101,13 +101,13 @@ template <int N, class Number>
 /// The data of a chain that the recurrence needs. μ_i = Σ_{k≥i} m_k.
 template <int N>
 struct Chain {
-    static constexpr int most_orders = 64;
+    static constexpr int max_orders = 64;
 
     Pack coupling[N]{};  // μ_max(i,j) / μ_i in row i
     Pack exchange[4]{};  // the same by lane distance s: lane i, column i xor s
     double length[N];
     double gravity;
-    double inverse[most_orders + 2]{};  // 1/k
+    double inverse[max_orders + 2]{};  // 1/k
 
     explicit Chain(const Pendulum<double>& p) : gravity(p.gravity) {
         double mass[N + 1] = {};  // μ
@@ -120,7 +120,7 @@ struct Chain {
                 if ((lane ^ s) < used) exchange[s].set(lane, of(lane % N, (lane ^ s) % N));
         }
         for (int i = 0; i < N; ++i) length[i] = p.length[static_cast<std::size_t>(i)];
-        for (int k = 1; k < most_orders + 2; ++k) inverse[k] = 1 / static_cast<double>(k);
+        for (int k = 1; k < max_orders + 2; ++k) inverse[k] = 1 / static_cast<double>(k);
     }
 };
 
@@ -289,7 +289,7 @@ public:
 private:
     int order_;
     Chain<N> chain_;
-    Term<N> terms_[Chain<N>::most_orders + 2];
+    Term<N> terms_[Chain<N>::max_orders + 2];
 };
 
 }  // namespace

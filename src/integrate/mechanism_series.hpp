@@ -30,7 +30,7 @@ public:
     void expand(const State& y) override {
         start_ = y;
         for (std::size_t i = 0; i < model_.parts.forces.size(); ++i)
-            if (ends_have_met(model_.parts.forces[i]))
+            if (ends_coincide(model_.parts.forces[i]))
                 throw method_failed(
                     "{}: its ends are at the same place, where its direction is undefined; choose a start that does "
                     "not lead there",
@@ -72,7 +72,7 @@ private:
         return scale;
     }
 
-    bool ends_have_met(const Force<Scalar>& force) const {
+    bool ends_coincide(const Force<Scalar>& force) const {
         const auto meet = [&](std::size_t a, const End<Scalar>& b) {
             return part_of(start_, a) == place_of(b, start_);
         };
@@ -88,7 +88,7 @@ private:
     void start_checking() {
         checked_ = Scalar(0);
         model_.update(start_.head(start_.size() / 2), gradients_);
-        if (const auto row = first_fault(gradients_, gradients_); row < model_.constraints())
+        if (const auto row = first_singular_row(gradients_, gradients_); row < model_.constraints())
             model_.fail(start_.head(start_.size() / 2), row);
     }
 
@@ -100,7 +100,7 @@ private:
         if (h < checked_) start_checking();
         while (checked_ < h) {
             Scalar reached = h;
-            for (int halvings = 0; !is_clear(reached, halvings == most_halvings); ++halvings)
+            for (int halvings = 0; !is_clear(reached, halvings == max_halvings); ++halvings)
                 reached = checked_ + (reached - checked_) * Scalar(0.5);
             checked_ = reached;
             gradients_.swap(ahead_);
@@ -114,21 +114,21 @@ private:
         Base::move(h, here_);
         here_ += start_.head(here_.size());
         model_.update(here_, ahead_);
-        if (!Model::alike(ahead_, gradients_)) return last;
-        const auto row = first_fault(ahead_, gradients_);
+        if (!Model::nearly_parallel(ahead_, gradients_)) return last;
+        const auto row = first_singular_row(ahead_, gradients_);
         if (last && row < model_.constraints()) model_.fail(here_, row);
         return row == model_.constraints();
     }
 
     /// The first row of J1 M⁻¹ J0ᵀ that depends on others, or whose pivot is negative.
-    Eigen::Index first_fault(const Gradients& one, const Gradients& zero) {
+    Eigen::Index first_singular_row(const Gradients& one, const Gradients& zero) {
         auto& matrix = model_.matrix_;
         model_.couple(one, zero, matrix);
         matrix.factor();
         return std::min(matrix.dependent_row(), matrix.negative_row());
     }
 
-    static constexpr int most_halvings = 40;
+    static constexpr int max_halvings = 40;
 
     Model model_;
     State start_;

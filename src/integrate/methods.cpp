@@ -18,9 +18,9 @@ std::span<const MethodEntry> methods() {
         std::array<MethodEntry, std::tuple_size_v<Methods>> entries{};
         std::size_t n = 0;
         for_each_method([&]<class Which>() {
-            entries[n++] = {Which::method, serves<Which, AngleChain<double, links>>,
-                            serves<Which, RodChain<double, links>>, serves<Which, Mechanism<double>>,
-                            serves<Which, Projected<RodChain<double, links>>>};
+            entries[n++] = {Which::method, supports<Which, AngleChain<double, links>>,
+                            supports<Which, RodChain<double, links>>, supports<Which, Mechanism<double>>,
+                            supports<Which, Projected<RodChain<double, links>>>};
         });
         return entries;
     }();

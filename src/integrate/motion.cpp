@@ -27,7 +27,7 @@ namespace {
 
 /// The angle in rad after which a fast rotation or drive is checked for interruption; some 0.1 s of work.
 template <class Scalar>
-constexpr double most_unwatched = std::is_same_v<Scalar, double> ? 2e3 : 100;
+constexpr double max_unwatched = std::is_same_v<Scalar, double> ? 2e3 : 100;
 
 /// A model with its stepper, advanced from sample to sample.
 template <class Scalar>
@@ -44,9 +44,9 @@ public:
             layout_.emplace(*physical_, static_cast<Eigen::Index>(spec.chain->links()));
         }
         if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
-        if (wants_tension_ && model_ == Model::mechanism) weighed_.emplace(spec.parts->cast<double>());
+        if (wants_tension_ && model_ == Model::mechanism) tension_model_.emplace(spec.parts->cast<double>());
         stepper_->read(y_);
-        const auto released = look(y_);
+        const auto released = configuration_of(y_);
         start_energy_ = released.energy.total;
         const double interval = spec.sample_interval.value();
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
@@ -59,7 +59,7 @@ public:
                     fastest = std::max(fastest, static_cast<double>(motor.frequency));
             }
             const double pieces =
-                std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / most_unwatched<Scalar>);
+                std::max(follows_turns ? interval / Turns::longest : 1, interval * fastest / max_unwatched<Scalar>);
             whole_ = static_cast<long>(std::ceil(std::min(pieces, 1e12)));
             portion_ = spec.sample_interval.as<Scalar>() / Scalar(whole_);
         } else {
@@ -93,7 +93,7 @@ public:
     Observation observe() const override {
         State y;
         stepper_->read(y);
-        auto [bobs, pivot, energy] = look(y);
+        auto [bobs, pivot, energy] = configuration_of(y);
         (ahead_ ? *ahead_ : turns_).add_to(bobs);
         const Scalar work = layout_ ? layout_->work_of(y) : Scalar(0);
         Observation seen{.bobs = {},
@@ -107,8 +107,8 @@ public:
         for (const auto& bob : bobs) seen.bobs.push_back(in_double(bob));
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         if (wants_tension_)
-            seen.tension = weighed_ ? weighed_->tensions(particles_of(seen.bobs))
-                                    : tensions(pendulum_->template cast<double>(), seen.bobs);
+            seen.tension = tension_model_ ? tension_model_->tensions(particles_of(seen.bobs))
+                                          : tensions(pendulum_->template cast<double>(), seen.bobs);
         return seen;
     }
 
@@ -134,28 +134,28 @@ private:
     }
 
     /// Bobs, pivot and energy of a state.
-    struct Look {
+    struct Configuration {
         Bobs<Scalar> bobs;  // for a chain with their angles, which are within (−π, π] except in the model of angles
         Bob<Scalar> pivot{};
         struct {
             Scalar total, kinetic;
         } energy;
     };
-    Look look(const State& y) const {
+    Configuration configuration_of(const State& y) const {
         if (physical_) {
             const PivotPlace<Scalar> at(physical_->pivot, layout_->time_of(y));
-            Look seen{.bobs = bobs_of_angles(*pendulum_, layout_->of_links(y)),
-                      .pivot = {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y},
-                      .energy = {}};
+            Configuration seen{.bobs = bobs_of_angles(*pendulum_, layout_->of_links(y)),
+                               .pivot = {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y},
+                               .energy = {}};
             move_with(seen.bobs, seen.pivot);
             const auto parts = energies(*physical_, seen.bobs, seen.pivot);
             seen.energy = {Scalar(parts.kinetic + parts.potential), parts.kinetic};
             return seen;
         }
-        Look seen{.bobs = model_ == Model::angles ? bobs_of_angles(*pendulum_, y)
-                          : pendulum_             ? bobs_of_particles(*pendulum_, y)
-                                                  : mechanism_->bobs(y),
-                  .energy = {}};
+        Configuration seen{.bobs = model_ == Model::angles ? bobs_of_angles(*pendulum_, y)
+                                   : pendulum_             ? bobs_of_particles(*pendulum_, y)
+                                                           : mechanism_->bobs(y),
+                           .energy = {}};
         seen.energy = {mechanism_ ? mechanism_->energy(y) : energy(seen.bobs, pendulum_->gravity),
                        kinetic_energy(seen.bobs)};
         return seen;
@@ -187,10 +187,10 @@ private:
 
     /// For adaptive methods, in as many parts as counting turns requires.
     void advance_by(const Scalar& seconds) {
-        constexpr double most = 1e6;
+        constexpr double maximum = 1e6;
         const double pieces =
             turns_.followed()
-                ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.longest_interval()), 1.0, most)
+                ? std::clamp(std::ceil(static_cast<double>(seconds) / turns_.longest_interval()), 1.0, maximum)
                 : 1;
         const Scalar piece = seconds / Scalar(pieces);
         for (double i = 0; i < pieces; ++i) {
@@ -213,7 +213,7 @@ private:
     std::optional<PhysicalLayout> layout_;  // of the state of a rigid-body chain
     std::optional<Mechanism<Scalar>> mechanism_;
     mutable std::optional<Mechanism<double>>
-        weighed_;                   // for rod tensions; a separate copy, because it needs scratch space
+        tension_model_;             // for rod tensions; a separate copy, because it needs scratch space
     long whole_ = 1;                // portions per sample (adaptive methods), or steps
     Scalar portion_{0};             // s
     long portion_steps_ = 1;        // fixed steps taken at a time
@@ -231,7 +231,7 @@ std::unique_ptr<Motion> make_motion(const MotionSpec& spec) {
     const auto* method = find_method(spec.method);
     if (!method) throw bad_input("there is no method \"{}\"", spec.method);
     if (spec.stabilise != Stabilise::none && spec.model == Model::angles)
-        throw bad_input("in angles the rods have constant length; there is nothing to stabilise");
+        throw bad_input("with angles as coordinates the rods have constant length; there is nothing to stabilise");
     if (spec.stabilise != Stabilise::none && !method->stabilised)
         throw bad_input("the method \"{}\" keeps the constraints itself; there is nothing to stabilise", spec.method);
     if (spec.physical && spec.model != Model::angles)

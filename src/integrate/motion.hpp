@@ -70,9 +70,9 @@ public:
     virtual Effort effort() const = 0;
 };
 
-/// Throws Error (exit 2) if no method has that name, it does not support the model, a stabilisation has no effect (in
-/// angles, or with a method that preserves the constraints), tensions are requested for rods that have none (rigid
-/// bodies), or the system is invalid.
+/// Throws Error (exit 2) for an unknown method, one that does not support the model, or an invalid system. Also for a
+/// stabilisation without effect (in angles, or with a method that preserves the constraints), and for tensions of rigid
+/// bodies.
 std::unique_ptr<Motion> make_motion(const MotionSpec& spec);
 
 }  // namespace doppel

@@ -75,10 +75,10 @@ private:
 namespace {
 
 /// Whether a Batch can integrate them together.
-bool are_stepped_alike(std::span<const MotionSpec> specs) {
+bool can_share_batch(std::span<const MotionSpec> specs) {
     const auto& one = specs.front();
     return one.chain && one.model != Model::mechanism && one.precision == Precision::in_double &&
-           one.stabilise == Stabilise::none && Batch::serves(one.method, one.chain->links()) &&
+           one.stabilise == Stabilise::none && Batch::supports(one.method, one.chain->links()) &&
            std::all_of(specs.begin(), specs.end(), [&](const MotionSpec& spec) {
                return spec.chain && spec.chain->links() == one.chain->links() && spec.model == one.model &&
                       spec.precision == one.precision && spec.stabilise == one.stabilise && spec.method == one.method &&
@@ -90,10 +90,10 @@ bool are_stepped_alike(std::span<const MotionSpec> specs) {
 /// The size of a part: one part for each of `threads` threads, but large enough to be worthwhile, and in full
 /// registers.
 std::size_t part_of(std::size_t size, int threads) {
-    constexpr std::size_t least = 64;
+    constexpr std::size_t minimum = 64;
     const auto share =
-        std::max((size + static_cast<std::size_t>(threads) - 1) / static_cast<std::size_t>(threads), least);
-    return (share + least - 1) / least * least;
+        std::max((size + static_cast<std::size_t>(threads) - 1) / static_cast<std::size_t>(threads), minimum);
+    return (share + minimum - 1) / minimum * minimum;
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ std::size_t part_of(std::size_t size, int threads) {
 MotionBatch::MotionBatch(std::span<const MotionSpec> specs, int jobs) : size_(specs.size()), jobs_(std::max(jobs, 1)) {
     if (specs.empty()) throw bad_input("a batch needs at least one motion");
     part_ = part_of(size_, jobs_);
-    if (are_stepped_alike(specs))
+    if (can_share_batch(specs))
         for (std::size_t first = 0; first < size_; first += part_)
             together_.push_back(std::make_unique<SideBySide>(specs.subspan(first, std::min(part_, size_ - first))));
     else
@@ -119,9 +119,9 @@ template <class Act>
 void MotionBatch::with_name(std::size_t k, const Act& act) const {
     try {
         act();
-    } catch (const Error& fault) {
-        if (fault.code() == ExitCode::interrupted) throw;
-        throw Error(fault.code(), fmt::format("pendulum {} of {}: {}", k + 1, size_, fault.what()));
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::interrupted) throw;
+        throw Error(error.code(), fmt::format("pendulum {} of {}: {}", k + 1, size_, error.what()));
     }
 }
 

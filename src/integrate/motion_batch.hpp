@@ -11,8 +11,8 @@
 namespace doppel {
 
 /// Many motions that advance together from sample to sample, each with the same bits as alone. Chains of two or three
-/// links that only differ in masses, lengths, gravity and release, with Euler's or the classical Runge–Kutta method,
-/// are integrated side by side (integrate/batch.hpp). All others are integrated one by one.
+/// links that only differ in masses, lengths, gravity and release are integrated side by side by Euler or RK4
+/// (integrate/batch.hpp). All others are integrated one by one.
 class MotionBatch {
 public:
     /// On `jobs` threads; the results do not depend on their number. Throws as make_motion() does.

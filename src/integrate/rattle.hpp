@@ -15,8 +15,8 @@ namespace doppel {
 
 /// Whether forces depend on velocity (friction); such models say so by themselves.
 template <Constrained Model>
-bool forces_feel_velocity([[maybe_unused]] const Model& model) {
-    if constexpr (requires { model.feels_velocity(); }) return model.feels_velocity();
+bool forces_depend_on_velocity([[maybe_unused]] const Model& model) {
+    if constexpr (requires { model.depends_on_velocity(); }) return model.depends_on_velocity();
     return false;
 }
 
@@ -27,7 +27,7 @@ bool forces_feel_velocity([[maybe_unused]] const Model& model) {
 ///     v1 = u + h/2 a(q1, v1) + M⁻¹ Jᵀ(q1) μ ,                     μ such that J(q1) v1 = 0 ,
 /// where a = M⁻¹ F is the acceleration without constraints. u is corrected by the multipliers, never by (q1 − q) / h,
 /// which would cost three digits.
-/// If forces do not depend on velocity, μ is merged into the λ of the next step, which acts in the same direction, and
+/// If forces do not depend on velocity, μ is merged into the λ of the next step, which acts in the same direction. It
 /// is only computed for state(): the same motion at half the cost. If they do, v1 is found by iteration, so that a step
 /// remains of second order and time-reversible, although no longer symplectic.
 /// Errors  exit 3 if λ or v1 is not found.
@@ -40,7 +40,7 @@ public:
 
     ComposedRattle(Model& model, const State& start, const Scalar& step)
         : model_(model),
-          friction_(forces_feel_velocity(model)),
+          friction_(forces_depend_on_velocity(model)),
           y_(start),
           step_(step),
           sizes_(2 * Which::fractions.size() + 1, step),
@@ -106,11 +106,11 @@ private:
         q0_ = q_;
         u_ = v_;
         add(u_, half, a_);
-        model_.pull(q0_, guess_, u_);
+        model_.apply_multipliers(q0_, guess_, u_);
         add(q_, h, u_);
-        if (!newton_.project_positions(model_, q0_, q_)) fail_to_meet();
+        if (!newton_.project_positions(model_, q0_, q_)) throw_no_convergence();
         newton_.lambda /= h;
-        model_.pull(q0_, newton_.lambda, u_);
+        model_.apply_multipliers(q0_, newton_.lambda, u_);
         force_ = (guess_ + newton_.lambda) / span;
 
         // v1
@@ -156,7 +156,7 @@ private:
         return after_many && abs(half) * change <= rounding * v_.cwiseAbs().maxCoeff();
     }
 
-    [[noreturn]] void fail_to_meet() const {
+    [[noreturn]] void throw_no_convergence() const {
         throw method_failed(
             "{}: step {}: the constraints still have an error of {:.2g} after {} corrections; choose a smaller step_s "
             "than "

@@ -23,7 +23,7 @@ using Methods =
 
 /// Whether a method supports a model: its class states the requirements.
 template <class Which, class Model>
-inline constexpr bool serves = requires {
+inline constexpr bool supports = requires {
     typename Which::template Stepper<Model>;
 };
 
@@ -80,9 +80,9 @@ template <class Which, class Model>
 consteval bool is_compiled_for() {
     using Any = AnySystem<typename Model::State>;
     constexpr bool has_any_size = Model::State::RowsAtCompileTime == Eigen::Dynamic;
-    if (!serves<Which, Model>) return false;
+    if (!supports<Which, Model>) return false;
     if (std::is_same_v<Model, Any>) return true;
-    if (!serves<Which, Any>)
+    if (!supports<Which, Any>)
         return has_any_size || std::is_same_v<Which, Taylor> ||
                std::is_same_v<Model, DoublePendulum<typename Model::Scalar>>;
     constexpr bool has_few_stages =

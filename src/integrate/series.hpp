@@ -32,7 +32,7 @@ public:
     /// The largest coefficient k of the rates divided by their scale, 1/s^k; NaN if a coefficient is NaN.
     virtual double size(int k) const = 0;
     /// log2(tolerance / size(k)); NaN if that is not finite.
-    virtual double log2_room(double tolerance, int k) const {
+    virtual double log2_tolerance_ratio(double tolerance, int k) const {
         const double now = size(k);
         if (!(now <= std::numeric_limits<double>::max())) return std::numeric_limits<double>::quiet_NaN();
         return rough_log2(tolerance / now);

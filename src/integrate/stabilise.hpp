@@ -57,7 +57,7 @@ public:
         model.constraint_velocity(q, v, c_);
         model.solve(q, q, c_);
         lambda = -c_;
-        model.pull(q, lambda, v);
+        model.apply_multipliers(q, lambda, v);
         ++solves;
     }
 
@@ -84,7 +84,7 @@ private:
         model.solve(q, q0, c_);
         c_ = -c_;
         move_.setZero();
-        model.pull(q0, c_, move_);
+        model.apply_multipliers(q0, c_, move_);
         lambda += c_;
         add(q, Scalar(1), move_);
         ++solves;
@@ -97,7 +97,7 @@ private:
 };
 
 /// A model that projects positions onto the constraints after every step of any method, then velocities onto their
-/// tangents, both to rounding and along M⁻¹Jᵀ, the shortest way in the metric of the masses.
+/// tangents. Both are done to rounding and along M⁻¹Jᵀ, the shortest way in the metric of the masses.
 /// Errors  exit 3 if no point on the constraints is found.
 /// Source  Hairer & Wanner, Solving Ordinary Differential Equations II, §VII.2.
 template <Constrained Model>
@@ -109,7 +109,6 @@ public:
     using State = typename Model::State;
     using Half = typename Model::Half;
 
-    /// `description`: as for the model.
     template <class Description>
     explicit Projected(const Description& description)
         : Model(description), q_(half_of(Model::start(description))), v_(q_), newton_(*this, q_) {}
@@ -173,7 +172,7 @@ public:
         this->residual(q_, c_);
         lambda_ = -(lambda_ + (alpha_ * alpha_) * c_);
         this->solve(q_, q_, lambda_);
-        this->pull(q_, lambda_, a_);
+        this->apply_multipliers(q_, lambda_, a_);
         dydt.head(n) = v_;
         dydt.tail(n) = a_;
     }

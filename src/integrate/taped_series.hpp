@@ -46,7 +46,7 @@ public:
                 tape_.term(y_[i].node(), k + 1) = rate * by_next;
             }
         }
-        amount_ = greatest(0) + std::sqrt(scale_.length * greatest(1));
+        amount_ = largest(0) + std::sqrt(scale_.length * largest(1));
     }
 
     void move(const Scalar& h, State& change) override {
@@ -57,20 +57,20 @@ public:
         }
     }
 
-    double size(int k) const override { return amount_ == 0 ? 0 : greatest(k) / amount_; }
+    double size(int k) const override { return amount_ == 0 ? 0 : largest(k) / amount_; }
     double longest_step() const override { return scale_.longest; }
     double rate(int k, Eigen::Index i) const override { return static_cast<double>(series(scale_.rates + i)[k]); }
 
     /// For quads also if the size exceeds double: soon after rest, quadratic drag has coefficients like 10^(14 k).
-    double log2_room(double tolerance, int k) const override {
-        if constexpr (std::is_same_v<Scalar, double>) return Series<Scalar>::log2_room(tolerance, k);
-        Scalar most = greatest_of(k);
-        if (!(most - most == Scalar(0))) return std::numeric_limits<double>::quiet_NaN();  // infinite, or NaN
+    double log2_tolerance_ratio(double tolerance, int k) const override {
+        if constexpr (std::is_same_v<Scalar, double>) return Series<Scalar>::log2_tolerance_ratio(tolerance, k);
+        Scalar maximum = largest_of(k);
+        if (!(maximum - maximum == Scalar(0))) return std::numeric_limits<double>::quiet_NaN();  // infinite, or NaN
         if (amount_ == 0) return std::numeric_limits<double>::infinity();
         constexpr int shift = 512;
         int shifts = 0;
-        for (; most > Scalar(0x1p512); ++shifts) most *= Scalar(0x1p-512);
-        return rough_log2(tolerance) - (rough_log2(static_cast<double>(most) / amount_) + shift * shifts);
+        for (; maximum > Scalar(0x1p512); ++shifts) maximum *= Scalar(0x1p-512);
+        return rough_log2(tolerance) - (rough_log2(static_cast<double>(maximum) / amount_) + shift * shifts);
     }
 
     /// Just after the first change of a comparison, s; at most `h`.
@@ -135,16 +135,16 @@ private:
 
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
     /// The largest coefficient k of the rates of angles or positions.
-    Scalar greatest_of(int k) const {
+    Scalar largest_of(int k) const {
         using std::abs;
-        Scalar most(0);
+        Scalar maximum(0);
         for (Eigen::Index i = 0; i < scale_.coordinates; ++i) {
             const Scalar size = abs(series(scale_.rates + i)[k]);
-            if (!(size <= most) && most == most) most = size;  // keeps NaN
+            if (!(size <= maximum) && maximum == maximum) maximum = size;  // keeps NaN
         }
-        return most;
+        return maximum;
     }
-    double greatest(int k) const { return static_cast<double>(greatest_of(k)); }
+    double largest(int k) const { return static_cast<double>(largest_of(k)); }
 
     int order_;
     Tape<Scalar> tape_;

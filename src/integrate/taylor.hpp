@@ -96,12 +96,12 @@ public:
     long evaluations() const { return steps_ * order_; }
 
 private:
-    static int order_for(double tolerance, int asked) {
-        const auto least = 4 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
-        if (!(tolerance >= least))
+    static int order_for(double tolerance, int requested) {
+        const auto minimum = 4 * static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+        if (!(tolerance >= minimum))
             throw bad_input("taylor: tolerance = {:.3g} is too small for {} digits; it must be at least {:.1g}",
-                            tolerance, std::numeric_limits<Scalar>::digits10 + 1, least);
-        const long order = asked == 0 ? std::lround(10 - 0.5 * std::log(tolerance)) : asked;
+                            tolerance, std::numeric_limits<Scalar>::digits10 + 1, minimum);
+        const long order = requested == 0 ? std::lround(10 - 0.5 * std::log(tolerance)) : requested;
         return static_cast<int>(std::clamp(order, watched_coefficients + 1L, 64L));
     }
     bool has_events() const { return system_ && system_->switches(); }
@@ -149,7 +149,7 @@ private:
             return change_;
         });
         if (!event) return false;
-        stall_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * step_);
+        repeated_events_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * step_);
         step_ = *event;
         return true;
     }
@@ -158,7 +158,7 @@ private:
         constexpr double growth = 2;
         double exponent = 900;  // log2 h
         for (int k = order_ - watched_coefficients + 1; k <= order_; ++k) {
-            const double room = series_->log2_room(tolerance_, k);
+            const double room = series_->log2_tolerance_ratio(tolerance_, k);
             if (std::isnan(room))
                 throw method_failed("taylor: coefficient {} of the series is not finite; the motion diverged", k);
             exponent = std::min(exponent, room / k);
@@ -186,7 +186,7 @@ private:
     OutputTime<Scalar> time_;
     long steps_ = 0;
     bool ends_at_event_ = false;  // the step
-    Stall stall_;
+    RepeatedEvents repeated_events_;
 };
 // Compiled in integrate/taylor.cpp.
 extern template class SeriesStepper<double>;
@@ -219,7 +219,6 @@ concept HasSeries = requires(const Model& model) {
     series_of(model, 1);
 };
 
-/// The Taylor method on a model (integrate/stepper.hpp).
 template <HasSeries Model>
 class TaylorStepper : public SeriesStepper<typename Model::Scalar> {
 public:
@@ -240,7 +239,6 @@ private:
                   "what projects or has events has a state of any size");
 };
 
-/// The Taylor method, for every model that has a series.
 struct Taylor {
     static constexpr Method method{"taylor", "Taylor series", 0, true, "explicit, order from the tolerance"};
     template <HasSeries Model>

@@ -81,8 +81,8 @@ private:
 /// The number of fixed steps to take at a time, for a state of this dimension: few enough that an interruption is
 /// noticed.
 inline long steps_in_one_go(Eigen::Index dimensions) {
-    constexpr long most = 200'000;
-    return std::max(1L, most / static_cast<long>(dimensions));
+    constexpr long maximum = 200'000;
+    return std::max(1L, maximum / static_cast<long>(dimensions));
 }
 
 /// The number of steps until turns must be updated.

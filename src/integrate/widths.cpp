@@ -15,12 +15,12 @@ std::vector<int> register_widths() {
     return widths;
 }
 
-int chosen_width(int asked) {
+int chosen_width(int requested) {
     const auto all = register_widths();
-    if (asked == 0) return all.back();
-    if (std::find(all.begin(), all.end(), asked) == all.end())
-        throw bad_input("this processor has no registers of {} doubles; the widest have {}", asked, all.back());
-    return asked;
+    if (requested == 0) return all.back();
+    if (std::find(all.begin(), all.end(), requested) == all.end())
+        throw bad_input("this processor has no registers of {} doubles; the widest have {}", requested, all.back());
+    return requested;
 }
 
 }  // namespace doppel

@@ -7,8 +7,8 @@ namespace doppel {
 /// The register widths, in doubles, that both this processor and this build support, in ascending order.
 std::vector<int> register_widths();
 
-/// `asked`, or the widest if it is 0. Throws Error (exit 2) if it is not among register_widths().
-int chosen_width(int asked);
+/// `requested`, or the widest if it is 0. Throws Error (exit 2) if it is not among register_widths().
+int chosen_width(int requested);
 
 /// Calls call.operator()<width>() with the code compiled for that width (cmake/widths.cmake).
 template <class Call>

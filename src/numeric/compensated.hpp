@@ -20,14 +20,12 @@ struct Compensated {
     Scalar value, rest;
 };
 
-/// a − b.
 template <class Scalar>
 Compensated<Scalar> exact_difference(const Scalar& a, const Scalar& b) {
     const Scalar value = a - b, part = value - a;
     return {value, (a - (value - part)) - (b + part)};
 }
 
-/// a · b.
 template <class Scalar>
 Compensated<Scalar> exact_product(const Scalar& a, const Scalar& b) {
     // 2^s + 1 for s bits of 2 s, or one less

@@ -18,7 +18,6 @@ namespace literals {
 consteval Decimal operator""_d(const char* text) {
     __extension__ using Whole = unsigned __int128;  // 38 digits
 
-    // text = digits / scale
     Whole digits = 0, scale = 1;
     bool point = false;
     for (; *text != '\0'; ++text) {

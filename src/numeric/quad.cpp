@@ -22,8 +22,8 @@ std::string text_of(const Quad& value) {
     for (int digits = 34;; ++digits) {
         std::ostringstream stream;
         stream << std::setprecision(digits) << value;
-        constexpr int always_enough = 36;
-        if (digits == always_enough || parse_quad(stream.str()) == value) return stream.str();
+        constexpr int sufficient_digits = 36;
+        if (digits == sufficient_digits || parse_quad(stream.str()) == value) return stream.str();
     }
 }
 

@@ -72,8 +72,8 @@ std::optional<Rational> parse_decimal(std::string_view text) {
         int written = 0;
         auto digits = text.substr(at + 1);
         if (digits.starts_with('+')) digits.remove_prefix(1);
-        const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), written);
-        if (fault != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), written);
+        if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
         if (written < -1000 || written > 1000) return std::nullopt;
         exponent += written;
     }

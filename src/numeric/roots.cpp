@@ -23,10 +23,10 @@ std::pair<std::vector<double>, std::vector<double>> halves(const std::vector<dou
 }
 
 void add_rises(const std::vector<double>& b, const Bracket& part, int halved, std::vector<Bracket>& found) {
-    constexpr int most_halvings = 50;
+    constexpr int max_halvings = 50;
     const int changes = sign_changes(b);
     if (changes == 0) return;
-    if (changes == 1 || halved == most_halvings) {
+    if (changes == 1 || halved == max_halvings) {
         if (b.front() < 0 && !(b.back() < 0)) found.push_back(part);
         return;
     }

@@ -69,11 +69,11 @@ struct SinCos<Lanes<width, Build>> {
         for (int k = 0; k < Pack::parts; ++k)
             sin_cos_of<typename Pack::Doubles, typename Pack::Masks>(angle.v[k], sin.v[k], cos.v[k]);
         if (!all_of(abs(angle) <= Pack(largest_reduced_angle))) [[unlikely]]
-            take_huge(angle);
+            evaluate_huge(angle);
     }
 
 private:
-    [[gnu::noinline]] void take_huge(const Pack& angle) {
+    [[gnu::noinline]] void evaluate_huge(const Pack& angle) {
         for (int lane = 0; lane < width; ++lane)
             if (!(std::abs(angle[lane]) <= largest_reduced_angle)) {
                 sin.set(lane, std::sin(angle[lane]));
@@ -142,7 +142,6 @@ public:
 
     explicit StageAngles(Eigen::Index count = N) : angle_(count), sin_(count), cos_(count) {}
 
-    /// At the start of a step.
     template <class Angles>
     [[gnu::always_inline]] void start(const Angles& angles, Column& sin, Column& cos) {
         for (Eigen::Index i = 0; i < angle_.size(); ++i) angle_[i] = angles[i];
@@ -161,7 +160,7 @@ public:
             turned.turn(d, d * d);
             const auto is_near = abs(d) <= Scalar(largest_turn);
             if (!all_of(is_near)) [[unlikely]]
-                turned = taken_far(is_near, angles[i], turned);
+                turned = evaluated(is_near, angles[i], turned);
             sin[i] = turned.sin;
             cos[i] = turned.cos;
         }
@@ -169,7 +168,7 @@ public:
 
 private:
     template <class Mask>
-    [[gnu::noinline]] static TurningAngle<Scalar> taken_far(const Mask& is_near, const Scalar& angle,
+    [[gnu::noinline]] static TurningAngle<Scalar> evaluated(const Mask& is_near, const Scalar& angle,
                                                             const TurningAngle<Scalar>& near) {
         const SinCos<Scalar> far(angle);
         return {select(is_near, near.sin, far.sin), select(is_near, near.cos, far.cos)};

@@ -28,7 +28,7 @@ void Csv::add(long value) {
 void Csv::add(double value) {
     const bool is_written = separate();
     if (!std::isfinite(value))
-        throw method_failed("{}: {} of row {} would be {}; a table holds only finite numbers", file_.path().string(),
+        throw method_failed("{}: {} of row {} would be {}; a table contains only finite numbers", file_.path().string(),
                             columns_[cell_ - 1], row_, value);
     if (is_written) fmt::format_to(std::back_inserter(buffer_), "{}", value);
 }

@@ -35,10 +35,10 @@ Stream open_file(const fs::path& path) {
     return stream;
 }
 
-std::string start_of_file(const fs::path& path, std::size_t most) {
+std::string start_of_file(const fs::path& path, std::size_t maximum) {
     try {
         const Stream file = open_file(path);
-        std::string bytes(most, '\0');
+        std::string bytes(maximum, '\0');
         bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
         return bytes;
     } catch (const Error&) {

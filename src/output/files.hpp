@@ -28,8 +28,8 @@ Stream create_file(const std::filesystem::path& path);
 /// Opens a regular file for reading. Throws Error (exit 4).
 Stream open_file(const std::filesystem::path& path);
 
-/// The first bytes of a regular file, at most `most`; empty if it cannot be read.
-std::string start_of_file(const std::filesystem::path& path, std::size_t most);
+/// The first bytes of a regular file, at most `maximum`; empty if it cannot be read.
+std::string start_of_file(const std::filesystem::path& path, std::size_t maximum);
 /// The type of what has this name; links are not followed.
 std::filesystem::file_type type_of(const std::filesystem::path& path);
 /// The names in a folder, sorted. Throws Error (exit 4).

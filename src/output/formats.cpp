@@ -29,56 +29,57 @@ bool libav_takes(Size size) {
 }
 
 /// The largest size that libav accepts, of about the same aspect ratio, with even sides.
-Size largest_alike(Size size) {
+Size largest_similar(Size size) {
     const double height = static_cast<double>(size.height) / size.width;
     for (int width = size.width - size.width % 2; width > 2; width -= 2)
-        if (const Size alike{width, 2 * static_cast<int>(width * height / 2)}; alike.height > 0 && libav_takes(alike))
-            return alike;
+        if (const Size similar{width, 2 * static_cast<int>(width * height / 2)};
+            similar.height > 0 && libav_takes(similar))
+            return similar;
     return {2, 2};
 }
 
-std::optional<FormatFault> codec_fault(const VideoOptions& options) {
+std::optional<FormatError> codec_error(const VideoOptions& options) {
     const auto codecs = codecs_of(options.format);
     if (options.codec.empty() || std::ranges::find(codecs, options.codec) != codecs.end()) return std::nullopt;
     if (codecs.empty())
-        return FormatFault{"codec", fmt::format("must not be given: {} has only one, and no name for it; it is \"{}\"",
+        return FormatError{"codec", fmt::format("must not be given: {} has only one, and no name for it; it is \"{}\"",
                                                 name_of_format(options), options.codec)};
-    return FormatFault{"codec", fmt::format("of {} must be {}; it is \"{}\"", name_of_format(options),
+    return FormatError{"codec", fmt::format("of {} must be {}; it is \"{}\"", name_of_format(options),
                                             fmt::join(codecs, " or "), options.codec)};
 }
 
-std::optional<FormatFault> size_fault(const VideoOptions& options, const FormatRow& row) {
+std::optional<FormatError> size_error(const VideoOptions& options, const FormatRow& row) {
     const auto [width, height] = options.size;
     const auto given = words_of(options.size);
     if (std::min(width, height) < 1 || std::max(width, height) > row.largest_side)
-        return FormatFault{"size",
+        return FormatError{"size",
                            fmt::format("must be from 1 to {} of {}; it is {}", row.largest_side, row.title, given)};
     if (options.format != FilmFormat::png && !libav_takes(options.size))
-        return FormatFault{"size", fmt::format("exceeds what libav encodes as {}; it is {}; {} is possible{}",
-                                               row.title, given, words_of(largest_alike(options.size)),
+        return FormatError{"size", fmt::format("exceeds what libav encodes as {}; it is {}; {} is possible{}",
+                                               row.title, given, words_of(largest_similar(options.size)),
                                                options.format == FilmFormat::mp4
                                                    ? ", and [8192, 4352] for players limited to level 6.2 of H.264"
                                                    : "")};
     const bool halved = row.is_encoded() && options.pixel_format != PixelFormat::yuv444;
     if (halved && (width % 2 != 0 || height % 2 != 0))
-        return FormatFault{"size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title,
+        return FormatError{"size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title,
                                                pixel_format_names[static_cast<std::size_t>(options.pixel_format)],
                                                given, words_of({width + width % 2, height + height % 2}))};
     return std::nullopt;
 }
 
-std::optional<FormatFault> alpha_fault(const VideoOptions& options, const FormatRow& row) {
-    const auto fault = [](std::string_view key, std::string_view value) {
-        return FormatFault{
+std::optional<FormatError> alpha_error(const VideoOptions& options, const FormatRow& row) {
+    const auto error = [](std::string_view key, std::string_view value) {
+        return FormatError{
             "transparent",
             fmt::format("needs a format with opacity: png, apng, or webm (VP9, yuv420p); the {} is \"{}\"", key,
                         value)};
     };
     if (!options.transparent) return std::nullopt;
-    if (!row.has_alpha && format_row(options.format, "").has_alpha) return fault("codec", row.codec);
-    if (!row.has_alpha) return fault("format", name_of_format(options));
+    if (!row.has_alpha && format_row(options.format, "").has_alpha) return error("codec", row.codec);
+    if (!row.has_alpha) return error("format", name_of_format(options));
     if (row.is_encoded() && options.pixel_format != PixelFormat::yuv420)
-        return fault("pixel_format", pixel_format_names[static_cast<std::size_t>(options.pixel_format)]);
+        return error("pixel_format", pixel_format_names[static_cast<std::size_t>(options.pixel_format)]);
     return std::nullopt;
 }
 
@@ -97,39 +98,39 @@ const FormatRow& format_row(FilmFormat format, std::string_view codec) {
     return found != film_formats.end() ? *found : *std::ranges::find(film_formats, format, &FormatRow::format);
 }
 
-std::optional<FormatFault> format_fault(const VideoOptions& options) {
+std::optional<FormatError> format_error(const VideoOptions& options) {
     const auto& row = format_row(options.format, options.codec);
-    if (auto fault = codec_fault(options)) return fault;
-    if (auto fault = alpha_fault(options, row)) return fault;
-    if (auto fault = size_fault(options, row)) return fault;
+    if (auto error = codec_error(options)) return error;
+    if (auto error = alpha_error(options, row)) return error;
+    if (auto error = size_error(options, row)) return error;
     if (!row.is_encoded()) return std::nullopt;
     if (std::ranges::find(encoder_presets, options.preset) == encoder_presets.end())
-        return FormatFault{"preset",
+        return FormatError{"preset",
                            fmt::format("must be {}; it is \"{}\"", fmt::join(encoder_presets, ", "), options.preset)};
     if (options.crf < 0 || options.crf > row.largest_crf)
-        return FormatFault{"crf", fmt::format("must be from 0 to {}; it is {}", row.largest_crf, options.crf)};
+        return FormatError{"crf", fmt::format("must be from 0 to {}; it is {}", row.largest_crf, options.crf)};
     return std::nullopt;
 }
 
-std::optional<FormatFault> rate_fault(const VideoOptions& options) {
+std::optional<FormatError> rate_error(const VideoOptions& options) {
     const auto& row = format_row(options.format, options.codec);
     const long numerator = options.fps_numerator, denominator = options.fps_denominator;
     const auto given = denominator == 1 ? fmt::to_string(numerator) : fmt::format("{}/{}", numerator, denominator);
-    const auto fault = [&](const std::string& limit) {
-        return FormatFault{"fps", fmt::format("must be {}; it is {}", limit, given)};
+    const auto error = [&](const std::string& limit) {
+        return FormatError{"fps", fmt::format("must be {}; it is {}", limit, given)};
     };
-    if (numerator < 1 || denominator < 1) return fault("> 0");
-    if (row.most_fps > 0 && numerator > row.most_fps * denominator)
-        return fault(fmt::format("at most {}, as {}", row.most_fps, row.rate_words));
+    if (numerator < 1 || denominator < 1) return error("> 0");
+    if (row.max_fps > 0 && numerator > row.max_fps * denominator)
+        return error(fmt::format("at most {}, as {}", row.max_fps, row.rate_words));
     if (row.longest_frame_s > 0 &&
         static_cast<double>(denominator) > row.longest_frame_s * static_cast<double>(numerator))
-        return fault(fmt::format("at least {:.3g}, as {}", 1 / row.longest_frame_s, row.rate_words));
+        return error(fmt::format("at least {:.3g}, as {}", 1 / row.longest_frame_s, row.rate_words));
     const long largest = std::max(numerator, denominator) / std::gcd(numerator, denominator);
-    if (row.most_terms > 0 && largest > row.most_terms)
-        return fault(fmt::format("a fraction of whole numbers up to {}, as {}", row.most_terms, row.rate_words));
-    constexpr long most_of_libav = 1'000'000'000;
-    if (std::max(numerator, denominator) > most_of_libav)
-        return fault(fmt::format("a fraction of whole numbers up to {}", most_of_libav));
+    if (row.max_terms > 0 && largest > row.max_terms)
+        return error(fmt::format("a fraction of whole numbers up to {}, as {}", row.max_terms, row.rate_words));
+    constexpr long max_of_libav = 1'000'000'000;
+    if (std::max(numerator, denominator) > max_of_libav)
+        return error(fmt::format("a fraction of whole numbers up to {}", max_of_libav));
     return std::nullopt;
 }
 

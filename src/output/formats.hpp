@@ -34,7 +34,7 @@ struct FormatRow {
     int largest_crf = 0;               // 0: no quality, encoder preset or pixel format
     bool has_alpha = false;            // for formats with a quality: only with yuv420p
     std::string_view rate_words = {};  // why the frame rate is limited as follows; limits of 0 mean none
-    int most_fps = 0, most_terms = 0;  // most_terms: the largest numerator and denominator
+    int max_fps = 0, max_terms = 0;    // max_terms: the largest numerator and denominator
     double longest_frame_s = 0;
 
     bool is_encoded() const { return largest_crf > 0; }
@@ -73,14 +73,14 @@ struct VideoOptions {
 };
 
 /// An option that the format does not allow: its name in presets, and what it must be ("must be even, as …").
-struct FormatFault {
+struct FormatError {
     std::string_view key;
     std::string words;
 };
 
 /// Checks all options except the frame rate, and the frame rate alone. Nothing if the format allows them.
-std::optional<FormatFault> format_fault(const VideoOptions& options);
-std::optional<FormatFault> rate_fault(const VideoOptions& options);
+std::optional<FormatError> format_error(const VideoOptions& options);
+std::optional<FormatError> rate_error(const VideoOptions& options);
 
 /// ".mp4", ".webm", ".gif", ".apng".
 inline std::string extension(FilmFormat format) {

@@ -32,12 +32,12 @@ thread_local std::string messages;
 
 /// One line may arrive in several calls.
 void keep(void* /*source*/, int level, const char* format, va_list arguments) {
-    constexpr std::size_t enough = 4096;
+    constexpr std::size_t maximum = 4096;
     std::array<char, 512> piece{};
     if (level > AV_LOG_ERROR || std::vsnprintf(piece.data(), piece.size(), format, arguments) < 0) return;
     try {
         messages += piece.data();
-        if (messages.size() > enough) messages.erase(0, messages.size() - enough);
+        if (messages.size() > maximum) messages.erase(0, messages.size() - maximum);
     } catch (...) {  // out of memory; an exception must not pass through C code
     }
 }

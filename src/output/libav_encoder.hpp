@@ -40,7 +40,6 @@ using Libav = std::unique_ptr<T, LibavFree>;
 /// The first of these encoders that libav contains. Throws Error (exit 4) that lists libav's encoders for the codec.
 const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec);
 
-/// Parameters of a container and an encoder.
 struct Encoding {
     const char* container;   // libav's name
     const AVCodec* encoder;  // from find_encoder()

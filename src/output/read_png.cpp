@@ -55,13 +55,13 @@ bool has_its_checksum(std::FILE* file, const unsigned char (&start)[8]) {
 /// (W3C, 2003), 5.3 and 11.2.2; RFC 1951: DEFLATE expands at most by 1032.
 std::string impossible_claim(std::FILE* file, std::uint64_t bytes) {
     constexpr std::uint64_t signature = 8, around = 12;  // length, type and checksum of a chunk
-    constexpr std::uint64_t most_inflated = 1032, most_bytes = std::uint64_t{1} << 30;
-    if (bytes > most_bytes) return fmt::format("it has more than {} MB", most_bytes >> 20);
+    constexpr std::uint64_t max_inflated = 1032, max_bytes = std::uint64_t{1} << 30;
+    if (bytes > max_bytes) return fmt::format("it has more than {} MB", max_bytes >> 20);
     unsigned char head[26];  // signature, length, type, width, height, bits, kind of colour
     if (std::fread(head, 1, sizeof head, file) == sizeof head) {
         const auto width = big_endian(head + 16), height = big_endian(head + 20);
         const std::uint64_t bits = head[24] * (head[25] == 2 ? 3U : head[25] == 4 ? 2U : head[25] == 6 ? 4U : 1U);
-        if (width * bits / 8 > most_inflated * bytes / std::max<std::uint64_t>(height, 1))
+        if (width * bits / 8 > max_inflated * bytes / std::max<std::uint64_t>(height, 1))
             return fmt::format("{}x{} pixels cannot be in {} bytes", width, height, bytes);
     }
     for (std::uint64_t at = signature; at + 8 <= bytes;) {
@@ -88,8 +88,8 @@ std::string other_colors(std::FILE* file) {
     constexpr std::array<std::uint64_t, 8> srgb_primaries{31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
     std::string gamma, primaries, profile;
     bool is_srgb = false, is_coded_srgb = false;
-    const auto near = [](std::uint64_t a, std::uint64_t b, std::uint64_t most) {
-        return std::max(a, b) - std::min(a, b) <= most;
+    const auto near = [](std::uint64_t a, std::uint64_t b, std::uint64_t maximum) {
+        return std::max(a, b) - std::min(a, b) <= maximum;
     };
     for (long at = 8; std::fseek(file, at, SEEK_SET) == 0;) {
         unsigned char chunk[8 + 32]{};  // length, type and the contents of these chunks

@@ -62,7 +62,6 @@ struct SampledAreas {
     Buffer bytes;
 };
 
-/// Converts the changed areas.
 void convert(const Picture& picture, const std::vector<Rect>& changed, AVPixelFormat format, SampledAreas& to);
 
 }  // namespace doppel

@@ -12,7 +12,6 @@
 
 namespace doppel {
 
-/// For sinks that are never stopped.
 inline const std::atomic<bool> never_stopped = false;
 
 /// Writes pictures in order, to a video or a folder of images. take() and finish() may block, and throw Error (exit 4)

@@ -120,25 +120,25 @@ bool Transaction::lock() {
     auto file = open_stream(path, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK, "a+");
     if (!file && errno == ENOENT) return false;
     if (!file) throw cannot(folder_, "written to");
-    const int fault = flock(fileno(file.get()), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+    const int error = flock(fileno(file.get()), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
     struct stat status {};
     fstat(fileno(file.get()), &status);
-    if (fault == EINTR || (fault == 0 && inode_of(path) != status.st_ino)) return false;
-    const bool knows_no_locks = fault == ENOLCK || fault == EOPNOTSUPP || fault == ENOSYS;
-    if (fault == 0 || (knows_no_locks && is_new)) {
+    if (error == EINTR || (error == 0 && inode_of(path) != status.st_ino)) return false;
+    const bool knows_no_locks = error == ENOLCK || error == EOPNOTSUPP || error == ENOSYS;
+    if (error == 0 || (knows_no_locks && is_new)) {
         lock_ = std::move(file);
         return true;
     }
-    if (fault != EWOULDBLOCK && !knows_no_locks) throw cannot(path, "locked", fault);
+    if (error != EWOULDBLOCK && !knows_no_locks) throw cannot(path, "locked", error);
     auto process = start_of_file(path, 64);
     process = process.empty() ? "" : fmt::format(", process {},", process.substr(0, process.find('\n')));
-    if (fault == EWOULDBLOCK)
+    if (error == EWOULDBLOCK)
         throw try_again("{}: another run{} is writing there; wait for it, or give another folder with --out",
                         folder_.string(), process);
     throw io_failed(
         "{}: another run{} may be writing there: the file system has no locks ({}); remove {} if no run is active, or "
         "give another folder with --out",
-        folder_.string(), process, std::generic_category().message(fault), hidden_.string());
+        folder_.string(), process, std::generic_category().message(error), hidden_.string());
 }
 
 /// Publishes the files that an interrupted run had committed.
@@ -198,15 +198,16 @@ void Transaction::refuse_foreign_file(const std::string& name) const {
     const auto path = folder_ / name;
     std::error_code error;
     for (const auto& input : replacing_.inputs)
-        if (fs::equivalent(input, path, error) &&
-            !error)  // compares the file itself: links and hard links are equivalent
+        // compares the file itself: links and hard links are equivalent
+        if (fs::equivalent(input, path, error) && !error)
             throw io_failed("{} is read by this run and would be replaced; give another folder with --out",
                             path.string());
     const auto origin = origin_of(folder_, name, written_);
     if (!origin.is_ours) throw not_ours(path);
     if (!replacing_.force && !origin.kind.empty() && !kind_.empty() && origin.kind != kind_)
-        throw io_failed("{} is of a {}, and this is a {}; give another folder with --out, or replace it with --force",
-                        path.string(), origin.kind, kind_);
+        throw io_failed(
+            "{} was made by a {}, and this is a {}; give another folder with --out, or replace it with --force",
+            path.string(), origin.kind, kind_);
     if (!replacing_.force && origin.is_changed)
         throw io_failed(
             "{} was changed since Doppel wrote it; move it, give another folder with --out, or replace it "

@@ -129,8 +129,8 @@ AVPixelFormat pixels_of(const VideoOptions& options) {
 }  // namespace
 
 void check_options(const VideoOptions& options) {
-    for (const auto& fault : {format_fault(options), rate_fault(options)})
-        if (fault) throw bad_input("{} {}", fault->key, fault->words);
+    for (const auto& error : {format_error(options), rate_error(options)})
+        if (error) throw bad_input("{} {}", error->key, error->words);
 }
 
 Encoding encoding_of(const VideoOptions& options) {

@@ -71,7 +71,7 @@ class Pool {
 public:
     /// A returned object, or a new one.
     T take() {
-        const std::lock_guard hold(mutex_);
+        const std::lock_guard lock(mutex_);
         if (free_.empty()) return {};
         T thing = std::move(free_.back());
         free_.pop_back();
@@ -79,7 +79,7 @@ public:
     }
 
     void give_back(T thing) {
-        const std::lock_guard hold(mutex_);
+        const std::lock_guard lock(mutex_);
         free_.push_back(std::move(thing));
     }
 

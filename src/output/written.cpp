@@ -36,16 +36,15 @@ std::string sha256_of(const Next& next) {
 
 /// The contents of a manifest of Doppel; null if the file is none.
 Json manifest_of(const fs::path& path) {
-    constexpr std::size_t most_bytes = 64 << 20;  // enough for some 400 000 frames
+    constexpr std::size_t max_bytes = 64 << 20;  // enough for some 400 000 frames
     if (path.extension() != ".json" || type_of(path) != fs::file_type::regular) return nullptr;
     const auto bytes = fs::file_size(path);
-    if (bytes > most_bytes) return nullptr;
+    if (bytes > max_bytes) return nullptr;
     auto json = Json::parse(start_of_file(path, bytes), nullptr, false);
     const auto has = [&](const char* key) { return json.is_object() && json.contains(key) && json[key].is_object(); };
     return has("doppel") && has("files") ? json : nullptr;
 }
 
-/// The kind of run that wrote the manifest.
 std::string kind_of_manifest(const Json& manifest) {
     return manifest.contains("models") ? "fit" : manifest.contains("figure") ? "figure" : "film";
 }

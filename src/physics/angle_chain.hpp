@@ -170,7 +170,7 @@ struct DoublePendulum {
           mass_ratio_(m1 / m2),
           length_ratio_(l2 / l1),
           lever_((m1 + m2) / (m2 * length_ratio_)),
-          pull_(g / l1) {}
+          gravity_by_length_(g / l1) {}
 
     static State start(const Pendulum<Scalar>& p) { return released_in_angles<Scalar, 2>(p); }
 
@@ -203,8 +203,8 @@ private:
     void rate_of_angles(const State& y, const Pair& sin, const Pair& cos, State& dydt) const {
         const Scalar square1 = y[2] * y[2], square2 = y[3] * y[3];
         const Scalar f = sin[1] / (mass_ratio_ + sin[1] * sin[1]);
-        const Scalar q = square1 + pull_ * cos[0];
-        const Scalar a1 = (q * cos[1] + length_ratio_ * square2) * f - pull_ * sin[0];
+        const Scalar q = square1 + gravity_by_length_ * cos[0];
+        const Scalar a1 = (q * cos[1] + length_ratio_ * square2) * f - gravity_by_length_ * sin[0];
         const Scalar a2 = -((q * lever_ + square2 * cos[1]) * f);
         dydt[0] = y[2];
         dydt[1] = y[3];
@@ -214,7 +214,7 @@ private:
 
     Scalar mass_ratio_, length_ratio_;  // μ, L
     Scalar lever_;                      // (1 + μ) / L
-    Scalar pull_;                       // g / l1, 1/s²
+    Scalar gravity_by_length_;          // g / l1, 1/s²
 };
 
 }  // namespace doppel

@@ -17,8 +17,8 @@ namespace doppel {
 ///     A₊ = m + A − h hᵀ / d ,     b₊ = b + h c / d − ω² (m a n + l A n) .
 /// Gravity is equivalent to an upward acceleration of the pivot.
 /// A massless link transmits no force across itself, so that subtraction in A₊ and b₊ would lose all digits. They are
-/// stored by components across and along the link, and det A, as sums of products in which those of a light link do not
-/// cancel.
+/// stored by components across and along the link, and det A. These are sums of products in which those of a light link
+/// do not cancel.
 /// Source  Featherstone 2008, Rigid Body Dynamics Algorithms, §7.2, in the plane.
 template <class S>
 class ArticulatedBodies {
@@ -100,11 +100,11 @@ public:
                 along -= dot(link.along, on_ends[i]);
             }
             const Scalar square = omega[k] * omega[k], l_square = link.length * square;
-            const Scalar pulled = across - l_square * link.a.mixed;
-            alpha[k] = (torque[k] - link.length * pulled) * link.by_d;
+            const Scalar force_across = across - l_square * link.a.mixed;
+            alpha[k] = (torque[k] - link.length * force_across) * link.by_d;
             along += link.h_along * ((torque[k] - link.length * across) * link.by_d) - square * link.first -
                      l_square * link.carried;
-            across = (pulled * link.rest + link.h_across * torque[k]) * link.by_d;
+            across = (force_across * link.rest + link.h_across * torque[k]) * link.by_d;
         }
         const auto& top = links_[0];
         const Vector lifted{pivot.x, Scalar(pivot.y + gravity)};

@@ -84,7 +84,6 @@ State<Scalar, times<4, N>> particles_of(const Bobs<Scalar>& bobs) {
     return y;
 }
 
-/// The same at the release.
 template <class Scalar, int N>
 State<Scalar, times<4, N>> released_as_particles(const Pendulum<Scalar>& p) {
     return particles_of<N>(bobs_of_angles(p, released_in_angles<Scalar, N>(p)));

@@ -14,7 +14,7 @@ namespace doppel {
 /// with Taylor sums up to d⁵ and d⁶. The limit of d makes d⁷/7! far smaller than rounding. This error is systematic:
 /// with a limit of ε/16 it already made the energy drift by 4e-17 J per second, instead of a random walk.
 template <class Scalar>
-class NearbyAngle {
+class CachedSinCos {
 public:
     SinCos<Scalar> at(const Scalar& angle) {
         const Scalar d = angle - angle_;
@@ -34,12 +34,12 @@ public:
 private:
     static Scalar part(int n) { return Scalar(1) / Scalar(n); }
     /// The limit of d: d⁷/7! = 10⁻⁹ ε.
-    static Scalar where_rounding_hides() {
+    static Scalar largest_angle() {
         using std::pow;
         return pow(Scalar(5040) / Scalar(1'000'000'000) * std::numeric_limits<Scalar>::epsilon(), part(7));
     }
     inline static const Scalar half = part(2), sixth = part(6), twelfth = part(12), twentieth = part(20),
-                               thirtieth = part(30), reach = where_rounding_hides();
+                               thirtieth = part(30), reach = largest_angle();
 
     Scalar angle_ = Scalar(0);
     SinCos<Scalar> exact_{angle_};
@@ -51,7 +51,6 @@ private:
 template <class Model>
 struct Canonical;
 
-/// A model with a Hamiltonian form.
 template <class M>
 concept Hamiltonian = requires(M& model, Canonical<M> form, typename Canonical<M>::Angles angles,
                                const typename M::State& from, typename M::State& to) {
@@ -154,7 +153,7 @@ struct Canonical<DoublePendulum<S>> {
     using Model = DoublePendulum<S>;
     using State = typename Model::State;
     struct Angles {
-        NearbyAngle<Scalar> one, two;
+        CachedSinCos<Scalar> one, two;
     };
 
     explicit Canonical(const Model& d)

@@ -13,12 +13,10 @@ namespace doppel {
 template <class Scalar>
 using Place = State<Scalar, 2>;
 
-/// a · b
 template <class Scalar>
 Scalar inner(const Place<Scalar>& a, const Place<Scalar>& b) {
     return a[0] * b[0] + a[1] * b[1];
 }
-/// |r|
 template <class Scalar>
 Scalar length_of(const Place<Scalar>& r) {
     using std::sqrt;
@@ -121,18 +119,18 @@ struct ConstraintRow {
     Place<Scalar> normal;  // n, for a straight slot
 
     template <class Vector>
-    Place<Scalar> ends_apart(const Vector& q) const {
+    Place<Scalar> distance_of_ends(const Vector& q) const {
         return part_of(q, a) - place_of(b, q);
     }
     template <class Vector>
     Scalar value(const Vector& q) const {
-        const auto r = ends_apart(q);
+        const auto r = distance_of_ends(q);
         return is_straight ? inner(normal, r) : Scalar((inner(r, r) - length * length) * Scalar(0.5));
     }
     /// ∂C/∂q_a; if b is a particle, ∂C/∂q_b is its negative.
     template <class Vector>
     Place<Scalar> gradient(const Vector& q) const {
-        return is_straight ? normal : ends_apart(q);
+        return is_straight ? normal : distance_of_ends(q);
     }
     /// J̇ v, the part of C″ without accelerations
     template <class Vector>
@@ -163,9 +161,9 @@ template <class Scalar, class Vector>
 Scalar error_of(const Constraint<Scalar>& constraint, const Vector& q) {
     using std::abs;
     const auto row = rows_of(constraint)[0];
-    if (std::holds_alternative<Anchor<Scalar>>(constraint)) return length_of(row.ends_apart(q));
+    if (std::holds_alternative<Anchor<Scalar>>(constraint)) return length_of(row.distance_of_ends(q));
     if (row.is_straight) return abs(row.value(q)) / length_of(row.normal);
-    return abs(Scalar(length_of(row.ends_apart(q)) - row.length));
+    return abs(Scalar(length_of(row.distance_of_ends(q)) - row.length));
 }
 
 /// A first-order system y′ = f(y), as required by every method. rate() may use scratch memory of the model, so each
@@ -182,13 +180,13 @@ template <class M>
 concept Constrained = System<M> && requires(M model, const typename M::Half& q, typename M::Half& v,
                                             const typename M::Multipliers& lambda, typename M::Multipliers& c) {
     { model.constraints() } -> std::convertible_to<Eigen::Index>;
-    model.free_acceleration(q, q, v);    // v ← M⁻¹ F(q, v)
-    model.residual(q, c);                // c ← C(q)
-    model.constraint_velocity(q, q, c);  // c ← J(q) v
-    model.jdot_v(q, q, c);               // c ← J̇(q, v) v
-    model.pull(q, lambda, v);            // v ← v + M⁻¹ Jᵀ(q) λ
-    model.solve(q, q, c);                // c ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ c
-    model.rounding(q, c);                // c ← ε |q| Σ_j |J_ij|, with the largest coordinate: the rounding of C
+    model.free_acceleration(q, q, v);       // v ← M⁻¹ F(q, v)
+    model.residual(q, c);                   // c ← C(q)
+    model.constraint_velocity(q, q, c);     // c ← J(q) v
+    model.jdot_v(q, q, c);                  // c ← J̇(q, v) v
+    model.apply_multipliers(q, lambda, v);  // v ← v + M⁻¹ Jᵀ(q) λ
+    model.solve(q, q, c);                   // c ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ c
+    model.rounding(q, c);                   // c ← ε |q| Σ_j |J_ij|, with the largest coordinate: the rounding of C
 };
 
 /// The same, without stabilisation of its own (integrate/stabilise.hpp).

@@ -45,7 +45,6 @@ public:
 
     Eigen::Index constraints() const { return static_cast<Eigen::Index>(rows_.size()); }
 
-    /// The constraint that a row belongs to.
     std::size_t owner(Eigen::Index row) const { return owner_[static_cast<std::size_t>(row)]; }
 
     /// The longest rod or radius, m; 0 if all constraints are straight.
@@ -91,7 +90,7 @@ public:
     }
     /// v ← v + M⁻¹ Jᵀ λ
     template <class Vector>
-    void add_pull(const Gradients& gradients, const Column& lambda, Vector& v) const {
+    void add_multipliers(const Gradients& gradients, const Column& lambda, Vector& v) const {
         for (std::size_t k = 0; k < blocks_.size(); ++k) {
             const auto i = blocks_[k].particle;
             const Scalar share = w_[i] * lambda[blocks_[k].row];
@@ -122,9 +121,9 @@ public:
         s.setZero();
         add_constraint_velocity(scratch_, v, s);
     }
-    void pull(const Column& q, const Column& lambda, Column& v) {
+    void apply_multipliers(const Column& q, const Column& lambda, Column& v) {
         update(q, scratch_);
-        add_pull(scratch_, lambda, v);
+        add_multipliers(scratch_, lambda, v);
     }
 
 protected:

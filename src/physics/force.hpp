@@ -61,19 +61,19 @@ struct Spring {
     template <class Vector, class Sum>
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector& v, Sum& sum) const {
         const Place<Scalar> r = part_of(q, a) - place_of(b, q), u = part_of(v, a) - velocity_of(b, v);
-        const auto pull = [&](std::size_t particle, const Scalar& f) {
+        const auto add_force = [&](std::size_t particle, const Scalar& f) {
             const auto i = static_cast<Eigen::Index>(particle);
             for (Eigen::Index axis = 0; axis < 2; ++axis) sum[2 * i + axis] += masses.w[i] * f * r[axis];
         };
-        const auto pull_ends = [&](const Scalar& f) {
-            pull(a, Scalar(-f));
-            if (const auto* particle = std::get_if<std::size_t>(&b)) pull(*particle, f);
+        const auto add_forces = [&](const Scalar& f) {
+            add_force(a, Scalar(-f));
+            if (const auto* particle = std::get_if<std::size_t>(&b)) add_force(*particle, f);
         };
         if constexpr (requires { length.tape(); })  // |r| has no Taylor series at 0
-            if (!has_direction()) return pull_ends(stiffness);
+            if (!has_direction()) return add_forces(stiffness);
         const Scalar now = length_of(r);
         if (now == Scalar(0)) return;
-        pull_ends((stiffness * (now - length) + damping * Scalar(inner(r, u) / now)) / now);
+        add_forces((stiffness * (now - length) + damping * Scalar(inner(r, u) / now)) / now);
     }
     /// Whether the direction matters: without rest length and damping, the force is just k r.
     bool has_direction() const { return length != Scalar(0) || damping != Scalar(0); }
@@ -107,10 +107,10 @@ struct Attraction {
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector&, Sum& sum) const {
         const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
         const Place<Scalar> r = part_of(q, a) - part_of(q, b);
-        const Scalar pull = constant * inverse_cube(r);
+        const Scalar factor = constant * inverse_cube(r);
         for (Eigen::Index axis = 0; axis < 2; ++axis) {
-            sum[2 * i + axis] -= pull * masses.m[j] * r[axis];
-            sum[2 * j + axis] += pull * masses.m[i] * r[axis];
+            sum[2 * i + axis] -= factor * masses.m[j] * r[axis];
+            sum[2 * j + axis] += factor * masses.m[i] * r[axis];
         }
     }
     template <class Vector>
@@ -136,8 +136,8 @@ struct Droplet {
     void accelerate(const Masses<Scalar>& masses, const Vector& q, const Vector&, Sum& sum) const {
         for (Eigen::Index i = 0; i < masses.m.size(); ++i) {
             const Place<Scalar> r = part_of(q, static_cast<std::size_t>(i)) - place;
-            const Scalar pull = constant * mass * inverse_cube(r);
-            for (Eigen::Index axis = 0; axis < 2; ++axis) sum[2 * i + axis] -= pull * r[axis];
+            const Scalar factor = constant * mass * inverse_cube(r);
+            for (Eigen::Index axis = 0; axis < 2; ++axis) sum[2 * i + axis] -= factor * r[axis];
         }
     }
     template <class Vector>

@@ -19,9 +19,9 @@ struct Dependence {
 };
 
 /// Exit 3: the meaning of the dependence for a motion at these positions, (x1, y1, x2, y2 …) in m, where the constraint
-/// error is `off` times the longest rod.
+/// error is `relative_error` times the longest rod.
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,
-                             double off);
+                             double relative_error);
 
 template <class Scalar>
 class MechanismSeries;
@@ -74,11 +74,10 @@ struct Mechanism : ConstraintSet<S> {
         else
             factor_and_check_path(q, gradients_);
         find_multipliers(gradients_, v, a);
-        this->add_pull(gradients_, lambda_, a);
+        this->add_multipliers(gradients_, lambda_, a);
     }
 
-    /// Whether a force depends on velocities.
-    bool feels_velocity() const { return !parts.conserves_energy(); }
+    bool depends_on_velocity() const { return !parts.conserves_energy(); }
 
     template <class Vector, class Sum>
     void free_acceleration(const Vector& q, const Vector& v, Sum& a) const {
@@ -200,7 +199,7 @@ private:
     void factor_and_check_path(const Vector& q, const Gradients& zero) {
         factor(q, zero);
         const bool was_near = std::exchange(is_near_, matrix_.nearly_singular());
-        if (!(was_near || is_near_) || !alike(gradients_, gradients_before_)) return;
+        if (!(was_near || is_near_) || !nearly_parallel(gradients_, gradients_before_)) return;
         factor(q, gradients_before_);
         factor(q, zero);
     }
@@ -214,11 +213,12 @@ private:
         this->couple(gradients_, zero, matrix_);
         matrix_.factor();
         if (const auto row = matrix_.dependent_row(); row < matrix_.rows()) fail(q, row);
-        if (const auto row = matrix_.negative_row(); row < matrix_.rows() && alike(gradients_, zero)) fail(q, row);
+        if (const auto row = matrix_.negative_row(); row < matrix_.rows() && nearly_parallel(gradients_, zero))
+            fail(q, row);
     }
 
     /// Whether no gradient differs by more than half its length.
-    static bool alike(const Gradients& one, const Gradients& zero) {
+    static bool nearly_parallel(const Gradients& one, const Gradients& zero) {
         for (std::size_t k = 0; k < one.size(); ++k) {
             const Place<Scalar> change = one[k] - zero[k];
             if (Scalar(4) * inner(change, change) > inner(zero[k], zero[k])) return false;
@@ -231,10 +231,10 @@ private:
         std::vector<double> places;
         for (Eigen::Index i = 0; i < q.size(); ++i) places.push_back(static_cast<double>(q[i]));
         const Scalar& rod = this->longest_rod();
-        const double off = rod > Scalar(0) ? static_cast<double>(Scalar(length_error(q) / rod)) : 0;
+        const double relative_error = rod > Scalar(0) ? static_cast<double>(Scalar(length_error(q) / rod)) : 0;
         const auto found = dependence_of(row);
         throw singular_configuration(name_of(found.constraint, parts.constraints[found.constraint]), found, places,
-                                     off);
+                                     relative_error);
     }
 
     /// Row j counts if its share in row i exceeds rounding.

@@ -91,9 +91,9 @@ std::string name_of(const std::vector<Force<Scalar>>& forces, std::size_t index)
     return fmt::format("force {} ({})", before + 1, words);
 }
 
-/// The unit of lengths of a mechanism, m: the largest of the extent of its particles at the start, its longest rod,
-/// radius or spring, and the distances from particles to the points of their slots. If these are all 0, the distance of
-/// the nearest droplet, or 1 without droplets.
+/// The unit of lengths of a mechanism, m: the largest of the initial extent of its particles, its longest rod, radius
+/// or spring, and the distances of particles from the points of their slots. If these are all 0, the distance of the
+/// nearest droplet, or 1 without droplets.
 double size_of(const Assembly<double>& assembly);
 
 /// Checks that an assembly can be built and released. Throws Error (exit 2) with the part, the value and what would be

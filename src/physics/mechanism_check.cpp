@@ -65,13 +65,13 @@ public:
     void operator()(const Attraction<double>& attraction) const {
         joins(attraction.a, attraction.b);
         finite("G", attraction.constant, "m³/(kg s²)");
-        apart(attraction.a, particles_[attraction.b].place);
+        require_distance(attraction.a, particles_[attraction.b].place);
     }
     void operator()(const Droplet<double>& droplet) const {
         finite("place", droplet.place);
         positive("mass", droplet.mass, "kg");
         finite("G", droplet.constant, "m³/(kg s²)");
-        for (std::size_t i = 0; i < particles_.size(); ++i) apart(i, droplet.place);
+        for (std::size_t i = 0; i < particles_.size(); ++i) require_distance(i, droplet.place);
     }
 
 private:
@@ -88,7 +88,7 @@ private:
         if (*particle == a)
             throw bad_input("{}: it joins particle {} to itself; it needs two different particles", name_, a + 1);
     }
-    void apart(std::size_t particle, const Place<double>& place) const {
+    void require_distance(std::size_t particle, const Place<double>& place) const {
         if (particles_[particle].place == place)
             throw bad_input("{}: particle {} starts at {} m, the place of what attracts it; start it elsewhere", name_,
                             particle + 1, text(place));
@@ -129,7 +129,7 @@ std::string remedy(const Constraint<double>& constraint, const Places& q, double
         return fmt::format("the particle starts at {} m, {:.3g} m off the line; start it at {}", text(place), error,
                            text(foot));
     }
-    const double length = row.ends_apart(q).norm();
+    const double length = row.distance_of_ends(q).norm();
     if (std::holds_alternative<Rod<double>>(constraint))
         return fmt::format("its ends start {} m apart, {:.3g} m from its length {} m; make the length {}", length,
                            error, row.length, length);
@@ -220,7 +220,7 @@ void check(const Assembly<double>& assembly) {
 }
 
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,
-                             double off) {
+                             double relative_error) {
     std::string where;
     for (std::size_t i = 0; i + 1 < places.size(); i += 2)
         where += fmt::format("{}({:.6g}, {:.6g})", i == 0 ? "" : ", ", places[i], places[i + 1]);
@@ -229,11 +229,11 @@ Error singular_configuration(const std::string& name, const Dependence& dependen
         return method_failed("the particles are at {} m: the motion diverged; use a smaller step", where);
     constexpr double torn =
         0.1;  // relative to the longest rod; drift is this large only where forces are not determined any more
-    if (!(off < torn))
+    if (!(relative_error < torn))
         return method_failed(
             "the particles are at {} m, where a constraint has an error of {:.2g} times the longest rod: the motion "
             "diverged; use a smaller step",
-            where, off);
+            where, relative_error);
     return method_failed(
         "singular configuration: {} now follows from {}, so the forces are not determined; the particles are at {} m; "
         "choose a start that does not lead there, or leave the constraint out",

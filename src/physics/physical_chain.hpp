@@ -79,13 +79,13 @@ public:
     }
     Scalar margin(const State& y) {
         const auto omega = y.segment(layout.half, layout.coordinates);
-        Scalar least(1);
+        Scalar minimum(1);
         for (Eigen::Index i = 0; i < omega.size(); ++i)
-            if (slides_[at(i)] != 0) least = std::min(least, Scalar(Scalar(slides_[at(i)]) * rate_at(omega, i)));
+            if (slides_[at(i)] != 0) minimum = std::min(minimum, Scalar(Scalar(slides_[at(i)]) * rate_at(omega, i)));
         const auto joints = held();
         if (!joints.empty()) accelerate(y, omega);
-        for (const auto i : joints) least = std::min(least, Scalar(Scalar(1) - load(i)));
-        return least;
+        for (const auto i : joints) minimum = std::min(minimum, Scalar(Scalar(1) - load(i)));
+        return minimum;
     }
     /// Half a period of the fastest drive, because joints at rest do not limit steps.
     Scalar longest_step() const {
@@ -143,16 +143,16 @@ private:
     /// The friction torque of a held joint relative to its limit; within rounding it is not exceeded.
     Scalar load(Eigen::Index i) const {
         using std::abs;
-        const Scalar most =
+        const Scalar maximum =
             pendulum.friction.coulomb[at(i)] * (Scalar(1) + Scalar(64) * std::numeric_limits<Scalar>::epsilon());
-        return abs(holding_[i]) / most;
+        return abs(holding_[i]) / maximum;
     }
     /// The held joint that exceeds its limit the most.
     std::optional<Eigen::Index> overloaded() const {
         std::optional<Eigen::Index> worst;
-        Scalar most(1);
+        Scalar maximum(1);
         for (const auto i : held())
-            if (load(i) > most) most = load(i), worst = i;
+            if (load(i) > maximum) maximum = load(i), worst = i;
         return worst;
     }
 

@@ -108,13 +108,13 @@ public:
             torque[i] += at_joint;
             if (i > 0) torque[i - 1] -= at_joint;
             power += at_joint * rate;
-            const auto on_arm = [&](const Scalar& on_it) {
+            const auto on_link = [&](const Scalar& on_it) {
                 torque[i] += on_it;
                 power += on_it * omega[i];
             };
-            if (!friction_.arm_linear.empty()) on_arm(Scalar(-(of(friction_.arm_linear, i) * omega[i])));
-            if (!friction_.arm_quadratic.empty())
-                on_arm(Scalar(-(of(friction_.arm_quadratic, i) * (size(omega[i]) * omega[i]))));
+            if (!friction_.link_linear.empty()) on_link(Scalar(-(of(friction_.link_linear, i) * omega[i])));
+            if (!friction_.link_quadratic.empty())
+                on_link(Scalar(-(of(friction_.link_quadratic, i) * (size(omega[i]) * omega[i]))));
         }
     }
     /// Adds the drag at the end of link i, for its velocity and speed.
@@ -130,13 +130,13 @@ public:
     template <class Link>
     void update_air(Eigen::Index i, const Link& link, const Planar<Scalar>& joint, const Scalar& rate) {
         if (friction_.air_quadratic.empty()) return;
-        const Scalar by_arm = link.first / link.second;
-        const Scalar met = rate + by_arm * dot(link.across, joint);
+        const Scalar lever = link.first / link.second;
+        const Scalar met = rate + lever * dot(link.across, joint);
         const Scalar on_it = -(of(friction_.air_quadratic, i) * (size(met) * met));
         torque[i] += on_it;
         power += on_it * met;
         auto& sum = i == 0 ? at_pivot : drag[static_cast<std::size_t>(i - 1)];
-        sum = sum + link.across * Scalar(on_it * by_arm);
+        sum = sum + link.across * Scalar(on_it * lever);
     }
 
     /// |v| with derivatives 0 at 0.

@@ -20,14 +20,14 @@ template <class Scalar>
 struct Friction {
     std::vector<Scalar> viscous;         // b, N m s
     std::vector<Scalar> coulomb;         // c, N m
-    std::vector<Scalar> arm_linear;      // k1, N m s
-    std::vector<Scalar> arm_quadratic;   // k2, N m s²
+    std::vector<Scalar> link_linear;     // k1, N m s
+    std::vector<Scalar> link_quadratic;  // k2, N m s²
     std::vector<Scalar> air_quadratic;   // k3, N m s²
     std::vector<Scalar> drag_linear;     // d1, N s/m
     std::vector<Scalar> drag_quadratic;  // d2, N s²/m²
 
     auto members() const {
-        return std::tie(viscous, coulomb, arm_linear, arm_quadratic, air_quadratic, drag_linear, drag_quadratic);
+        return std::tie(viscous, coulomb, link_linear, link_quadratic, air_quadratic, drag_linear, drag_quadratic);
     }
 
     /// Whether there are forces on the links' ends.

@@ -48,11 +48,11 @@ struct RodChain {
             l2[k] = p.length[i] * p.length[i];
         }
         if constexpr (N == 2 || N == 3) {
-            pulls_ = RodMultipliers<Scalar>(w, g);
+            multipliers_ = RodMultipliers<Scalar>(w, g);
             by_rho2_ = w[0] / w[1];
             const Scalar never(std::numeric_limits<double>::infinity());
             for (Eigen::Index k = 0; k + 1 < N; ++k)
-                least_motion_ = select(w[k + 1] * Scalar(8) < w[k], never, least_motion_);
+                min_motion_ = select(w[k + 1] * Scalar(8) < w[k], never, min_motion_);
         }
     }
 
@@ -103,7 +103,7 @@ struct RodChain {
     void jdot_v(const Half&, const Half& v, Multipliers& s) const {
         for (Eigen::Index k = 0; k < w.size(); ++k) s[k] = square(v, k);
     }
-    void pull(const Half& q, const Multipliers& lambda, Half& v) const {
+    void apply_multipliers(const Half& q, const Multipliers& lambda, Half& v) const {
         for (Eigen::Index k = 0; k < w.size(); ++k)
             for (Eigen::Index axis = 0; axis < 2; ++axis) {
                 Scalar force = lambda[k] * along(q, k, axis);
@@ -175,30 +175,30 @@ private:
             r[2] = r[2] * by_rho2_;
             u[2] = u[2] * by_rho2_;
         }
-        pulls_.find(r, u, p);
+        multipliers_.find(r, u, p);
         dydt.head(2 * N) = y.tail(2 * N);
         auto a = dydt.tail(2 * N);
         a[0] = p[0].x - p[1].x;
         a[1] = (p[0].y - p[1].y) - g;
-        a[2] = p[1].x * pulls_.rho2;
-        a[3] = p[1].y * pulls_.rho2;
+        a[2] = p[1].x * multipliers_.rho2;
+        a[3] = p[1].y * multipliers_.rho2;
         if constexpr (N == 3) {
             a[2] -= p[2].x;
             a[3] -= p[2].y;
-            a[4] = p[2].x * pulls_.below;
-            a[5] = p[2].y * pulls_.below - g;
+            a[4] = p[2].x * multipliers_.below;
+            a[5] = p[2].y * multipliers_.below - g;
         }
         a[3] -= g;
 
         Scalar motion(0);
         for (const auto& rate : u) motion += dot(rate, rate);
-        const auto moves = motion > least_motion_;
+        const auto moves = motion > min_motion_;
         if (!all_of(moves)) [[unlikely]]
-            take_carefully(moves, y, dydt);
+            compute_with_equilibria(moves, y, dydt);
     }
     /// In equilibrium these sums are exactly zero; they also keep the digits of a light mass.
     template <class Mask>
-    [[gnu::noinline]] void take_carefully(const Mask& moves, const State& y, State& dydt) {
+    [[gnu::noinline]] void compute_with_equilibria(const Mask& moves, const State& y, State& dydt) {
         State careful = dydt;
         rate_of_any(y, careful);
         for (Eigen::Index i = 0; i < y.size(); ++i) dydt[i] = select(moves, dydt[i], careful[i]);
@@ -238,9 +238,10 @@ private:
     Multipliers squares_, crosses_,
         products_;  // |r_k|², w_k r_k × r_{k+1}, its square (for RATTLE, from two positions)
     // for two or three rods
-    RodMultipliers<Scalar> pulls_;
+    RodMultipliers<Scalar> multipliers_;
     Scalar by_rho2_{1};
-    Scalar least_motion_{0};  // m²/s²: Σ |u_k|² above which pulls_ is used; infinite if a mass is below 1/8 of the next
+    // m²/s²: Σ |u_k|² above which multipliers_ is used; infinite if a mass is below 1/8 of the next
+    Scalar min_motion_{0};
 };
 
 /// The rod tensions of a chain from the state of its bobs, N, from the pivot down: > 0 if a rod pulls, < 0 if it

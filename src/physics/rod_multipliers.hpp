@@ -30,7 +30,6 @@ struct RodMultipliers {
     Scalar kappa2{0}, kappa3{0};  // as above
 
     RodMultipliers() = default;
-    /// From inverse masses.
     template <class Masses>
     RodMultipliers(const Masses& w, const Scalar& g) : gravity(g), rho2(w[1] / w[0]), kappa2(Scalar(1) + rho2) {
         if (w.size() == 2) return;

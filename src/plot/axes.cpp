@@ -56,7 +56,7 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
                  const PlotStyle& style, PageList& list) {
     const float em = style.tick;
     append(axis_items(x, x_ticks(x, plot.x, style), area, held,
-                      {.edge = AxisLook::Edge::bottom,
+                      {.edge = AxisStyle::Edge::bottom,
                        .em = em,
                        .line = style.line,
                        .grid = style.theme.grid,
@@ -75,9 +75,9 @@ void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& 
 }
 
 /// A vertical axis at the left or right edge of the area.
-void draw_y_axis(const Axis& y, const PlotAxis& asked, AxisLook::Edge edge, const Area& area, bool grid, bool words,
-                 Color color, const PlotStyle& style, PageList& list) {
-    append(axis_items(y, y_ticks(y, asked, style), area, area,
+void draw_y_axis(const Axis& y, const PlotAxis& requested, AxisStyle::Edge edge, const Area& area, bool grid,
+                 bool words, Color color, const PlotStyle& style, PageList& list) {
+    append(axis_items(y, y_ticks(y, requested, style), area, area,
                       {.edge = edge,
                        .em = style.tick,
                        .line = style.line,
@@ -91,22 +91,22 @@ void draw_y_axis(const Axis& y, const PlotAxis& asked, AxisLook::Edge edge, cons
 
 }  // namespace
 
-std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style) {
-    return spaced_ticks(axis, false, style.tick, asked.every);
+std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style) {
+    return spaced_ticks(axis, false, style.tick, requested.every);
 }
 
-std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style) {
-    return spaced_ticks(axis, true, style.tick, asked.every);
+std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style) {
+    return spaced_ticks(axis, true, style.tick, requested.every);
 }
 
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
                const AxisWords& words, const PlotStyle& style, PageList& list) {
     const Theme& theme = style.theme;
     draw_x_axis(plot, x, area, held, words.x, style, list);
-    draw_y_axis(y, plot.y, AxisLook::Edge::left, area, !plot.map, words.y, theme.quiet_text, style, list);
+    draw_y_axis(y, plot.y, AxisStyle::Edge::left, area, !plot.map, words.y, theme.quiet_text, style, list);
     if (right) {
         const Color color = axis_color(plot, true, style);
-        draw_y_axis(*right, *plot.right, AxisLook::Edge::right, area, false, true, color, style, list);
+        draw_y_axis(*right, *plot.right, AxisStyle::Edge::right, area, false, true, color, style, list);
         list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
     list.push_back(vertical_line(area.left, area.top, area.bottom, style.line, theme.frame));
@@ -128,10 +128,10 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
     for (const Heading& heading : headings(plot, {}, style))
         fit(heading.text, style.axis, Weight::regular, width, fitted.axis);
     // shrinks the title a little, so that the note fits beside it
-    constexpr float least = 0.85f;
+    constexpr float minimum = 0.85f;
     const float beside = plot.note.empty() ? 0 : 1.5f * style.heading + text_width(plot.note, style.tick);
     const bool has_note =
-        fitting_size(plot.title, style.heading, Weight::bold, width - beside) >= least * style.heading;
+        fitting_size(plot.title, style.heading, Weight::bold, width - beside) >= minimum * style.heading;
     fit(plot.title, style.heading, Weight::bold, width - (has_note ? beside : 0), fitted.heading);
     fitted.has_notes = fitted.has_notes && has_note;
 }

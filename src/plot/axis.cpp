@@ -44,7 +44,6 @@ struct Step {
     int exponent = 0;
 
     long double value() const { return static_cast<long double>(multiple) * std::pow(10.0L, exponent); }
-    /// The double nearest to k steps.
     double times(long long k) const {
         const auto whole = static_cast<long double>(k * multiple), power = std::pow(10.0L, std::abs(exponent));
         return static_cast<double>(exponent < 0 ? whole / power : whole * power);
@@ -69,12 +68,12 @@ int decade_below(long double value) {
     return static_cast<int>(std::floor(std::log10(value)));
 }
 
-/// The label of k steps, on an axis whose largest value is `most`.
-std::string tick_text(const Step& step, long long k, double most) {
+/// The label of k steps, on an axis whose largest value is `maximum`.
+std::string tick_text(const Step& step, long long k, double maximum) {
     const long long number = k * step.multiple;
-    if (number == 0) return step.exponent < 0 && most < 1e6 && most >= 1e-4 ? decimal(0, step.exponent) : "0";
-    if (most >= 1e-4 && most < 1e6) return decimal(number, step.exponent);
-    const int power = decade_below(most);
+    if (number == 0) return step.exponent < 0 && maximum < 1e6 && maximum >= 1e-4 ? decimal(0, step.exponent) : "0";
+    if (maximum >= 1e-4 && maximum < 1e6) return decimal(number, step.exponent);
+    const int power = decade_below(maximum);
     return fmt::format("{} × {}", decimal(number, step.exponent - power), power_of_ten(power));
 }
 
@@ -95,9 +94,10 @@ bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickLabels& la
 
 /// All multiples of the step on the axis; none if there are too many to be distinct.
 std::vector<Tick> multiples(const Step& step, double low, double high) {
-    constexpr long double most = 1e15L;  // steps; doubles still distinguish k from k + 1
+    constexpr long double maximum = 1e15L;  // steps; doubles still distinguish k from k + 1
     const long double width = step.value(), from = std::ceil(low / width), to = std::floor(high / width);
-    if (!(std::abs(from) * step.multiple < most && std::abs(to) * step.multiple < most && to - from < 1000)) return {};
+    if (!(std::abs(from) * step.multiple < maximum && std::abs(to) * step.multiple < maximum && to - from < 1000))
+        return {};
     auto first = static_cast<long long>(from), last = static_cast<long long>(to);
     // rounding in the division may have missed an end
     if (step.times(first - 1) >= low) --first;
@@ -116,12 +116,12 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
     const float room = std::abs(axis.to - axis.from);
     if (!(span > 0 && room > 0)) return {};
     // from the smallest step that could fit, up to the first that does
-    const long double least = span * std::max(1.0f, labels.spacing) / room;
+    const long double minimum = span * std::max(1.0f, labels.spacing) / room;
     std::vector<Tick> best;
-    for (int exponent = decade_below(least); exponent <= decade_below(span) + 1; ++exponent) {
+    for (int exponent = decade_below(minimum); exponent <= decade_below(span) + 1; ++exponent) {
         for (const long long nice : {1, 2, 5}) {
             const Step step{nice, exponent};
-            if (step.value() < 0.999999L * least) continue;
+            if (step.value() < 0.999999L * minimum) continue;
             auto ticks = multiples(step, low, high);
             if (!fits(ticks, axis, labels)) continue;
             if (ticks.size() >= 2) return ticks;
@@ -132,7 +132,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
 }
 
 /// Multiples of the requested step, to ten digits; none if no two of them fit.
-std::vector<Tick> asked_ticks(const Axis& axis, const TickLabels& labels, double every) {
+std::vector<Tick> requested_ticks(const Axis& axis, const TickLabels& labels, double every) {
     int exponent = decade_below(every) - 9;
     auto number = static_cast<long long>(std::llround(every / std::pow(10.0L, exponent)));
     for (; number % 10 == 0; number /= 10) ++exponent;
@@ -213,7 +213,7 @@ std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::o
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high)) return {};
     if (axis.logarithmic) return logarithmic_ticks(axis, labels, every);
     if (every) {
-        auto ticks = asked_ticks(axis, labels, *every);
+        auto ticks = requested_ticks(axis, labels, *every);
         if (!ticks.empty()) return ticks;
     }
     return linear_ticks(axis, labels);
@@ -229,38 +229,38 @@ std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::opt
 }
 
 DisplayList axis_items(const Axis& axis, const std::vector<Tick>& ticks, const Area& area, const Area& within,
-                       const AxisLook& look) {
-    const bool across = look.edge == AxisLook::Edge::bottom, right = look.edge == AxisLook::Edge::right;
-    const float em = look.em,
+                       const AxisStyle& style) {
+    const bool across = style.edge == AxisStyle::Edge::bottom, right = style.edge == AxisStyle::Edge::right;
+    const float em = style.em,
                 edge = across  ? area.bottom
                        : right ? area.right
                                : area.left,
                 out = across || right ? 1 : -1;
     DisplayList list;
     const auto add_line = [&](float at, float from, float to, Color color) {
-        if (!(look.line > 0)) return;
+        if (!(style.line > 0)) return;
         const auto [low, high] = std::minmax(from, to);
-        list.push_back(across ? vertical_line(at, low, high, look.line, color)
-                              : horizontal_line(at, low, high, look.line, color));
+        list.push_back(across ? vertical_line(at, low, high, style.line, color)
+                              : horizontal_line(at, low, high, style.line, color));
     };
     const auto last = std::find_if(ticks.rbegin(), ticks.rend(), [](const Tick& tick) { return !tick.text.empty(); });
     for (const Tick& tick : ticks) {
         const float at = axis.at(tick.value);
         const bool named = !tick.text.empty();
-        if (named && look.has_grid)
-            add_line(at, across ? area.top : area.left, across ? area.bottom : area.right, look.grid);
-        add_line(at, edge, edge + out * (named ? 0.34f : 0.18f) * em, look.frame);
-        if (!named || !look.has_numbers) continue;
+        if (named && style.has_grid)
+            add_line(at, across ? area.top : area.left, across ? area.bottom : area.right, style.grid);
+        add_line(at, edge, edge + out * (named ? 0.34f : 0.18f) * em, style.frame);
+        if (!named || !style.has_numbers) continue;
         if (!across) {
-            list.push_back(label(tick.text, {edge + out * 0.55f * em, at + 0.36f * em}, em, look.text,
+            list.push_back(label(tick.text, {edge + out * 0.55f * em, at + 0.36f * em}, em, style.text,
                                  right ? Align::left : Align::right));
             continue;
         }
         // the number is centred below its tick; a unit follows it
-        const std::string unit = &tick == &*last ? look.unit : "";
+        const std::string unit = &tick == &*last ? style.unit : "";
         const float half = text_width(tick.text, em) / 2, end = half + text_width(unit, em);
         if (at - half < within.left - 0.5f || at + end > within.right + 0.5f) continue;
-        list.push_back(label(tick.text + unit, {unit.empty() ? at : at + end, edge + 1.45f * em}, em, look.text,
+        list.push_back(label(tick.text + unit, {unit.empty() ? at : at + end, edge + 1.45f * em}, em, style.text,
                              unit.empty() ? Align::center : Align::right));
     }
     return list;

@@ -32,7 +32,6 @@ struct Axis {
 /// "10⁻⁴"; 0.1, 1 and 10 are written as such.
 std::string power_of_ten(int exponent);
 
-/// Size and spacing of the labels at ticks.
 struct TickLabels {
     float size = 19;     // px per em
     float gap = 12;      // px between labels
@@ -54,7 +53,7 @@ std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::o
 std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every = {});
 
 /// How an axis is drawn. Sizes in px.
-struct AxisLook {
+struct AxisStyle {
     enum class Edge { bottom, left, right } edge = Edge::left;  // of the chart
     float em = 19;                                              // size of the numbers
     float line = 1;                                             // line width; 0 = none
@@ -66,6 +65,6 @@ struct AxisLook {
 /// The axis of a chart in `area`: grid lines at labelled ticks, marks outside, and labels. Labels below the chart that
 /// are not inside `within` are left out.
 DisplayList axis_items(const Axis& axis, const std::vector<Tick>& ticks, const Area& area, const Area& within,
-                       const AxisLook& look);
+                       const AxisStyle& style);
 
 }  // namespace doppel

@@ -46,8 +46,8 @@ PlotRanges fitted_ranges(const Plot& plot);
 void check(const Figure& figure);
 
 /// Labelled ticks of a vertical axis, and of a horizontal one.
-std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
-std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& asked, const PlotStyle& style);
+std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style);
+std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style);
 
 /// The axes whose texts a panel shows: the numbers at the ticks, and the label of the vertical axis above the panel.
 struct AxisWords {
@@ -70,7 +70,6 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
 void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
                    const AxisWords& words, const PlotStyle& style, PageList& list);
 
-/// The cells of the map, mapped by the axes.
 CellImage map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
 
 /// Width of a map's colour bar and its labels at the right of a panel, px. If maps share the bar, its label is above
@@ -103,7 +102,6 @@ Gutters united(const Gutters& a, const Gutters& b);
 LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
                       const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list);
 
-/// Arrangement of the panels.
 struct PanelGrid {
     int columns, rows;
 };

@@ -53,9 +53,9 @@ private:
 };
 
 /// Passes on at most four points of a dense line for each half pixel column.
-class Thinner {
+class PointReducer {
 public:
-    explicit Thinner(Clipper& clipper) : clipper_(clipper) {}
+    explicit PointReducer(Clipper& clipper) : clipper_(clipper) {}
 
     void add(Place place) {
         const double column = std::floor(2 * place.x);
@@ -127,7 +127,7 @@ DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& a
     DrawnCurve made;
     if (curve.background != Background::none) return made;
     Clipper clipper(area, made.lines);
-    Thinner thinner(clipper);
+    PointReducer thinner(clipper);
     const bool dense = static_cast<float>(curve.x.size()) > 2 * area.width();
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
@@ -207,10 +207,10 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, c
     if (curve.mark == Mark::line) radius = 0.8f * width;
     if (drawn.marks_in_panel > many) {
         // px for unit 1: the width of a panel to which `many` refers, and the smallest marks that give no moiré pattern
-        constexpr float wide = 450, least = 1;
+        constexpr float wide = 450, minimum = 1;
         const float side = std::sqrt(std::max(area.width(), 0.0f) * std::max(area.height(), 0.0f)) / style.unit;
         const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);
-        radius = std::max(radius * std::sqrt(share) * std::min(side / wide, 1.0f), least * style.unit);
+        radius = std::max(radius * std::sqrt(share) * std::min(side / wide, 1.0f), minimum * style.unit);
         const float opacity = curve.mark == Mark::density ? 0.4f : 1;
         if (over_map) list.push_back(scatter_image(drawn.points, radius + casing, edge, 1, area, style.scale));
         list.push_back(scatter_image(drawn.points, radius, color, opacity, area, style.scale));

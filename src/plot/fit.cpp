@@ -8,7 +8,7 @@
 namespace doppel {
 namespace {
 
-constexpr double greatest = std::numeric_limits<double>::max();
+constexpr double largest = std::numeric_limits<double>::max();
 
 /// The extent of the values on one axis.
 class Extent {
@@ -32,11 +32,11 @@ public:
         if (logarithmic_) {
             const double part = std::pow(10.0, margin * (std::log10(high) - std::log10(low)));
             low = std::max(low / part, std::numeric_limits<double>::min());
-            high = std::min(high * part, greatest);
+            high = std::min(high * part, largest);
         } else {
             const double part = 2 * margin * (high / 2 - low / 2);
-            low = low >= 0 && low < part ? 0 : std::max(low - part, -greatest);
-            high = std::min(high + part, greatest);
+            low = low >= 0 && low < part ? 0 : std::max(low - part, -largest);
+            high = std::min(high + part, largest);
         }
         Axis made{.low = axis.low.value_or(low), .high = axis.high.value_or(high), .logarithmic = logarithmic_};
         if (made.low == made.high) made.low = below(made.low, made.low), made.high = above(made.high, made.high);
@@ -47,13 +47,13 @@ private:
     /// `value`, or something a little larger than `limit`.
     double above(double limit, double value) const {
         if (value > limit) return value;
-        return logarithmic_ ? std::min(limit * 3, greatest)
+        return logarithmic_ ? std::min(limit * 3, largest)
                : limit == 0 ? 1
-                            : std::min(limit + 0.1 * std::abs(limit), greatest);
+                            : std::min(limit + 0.1 * std::abs(limit), largest);
     }
     double below(double limit, double value) const {
         if (value < limit) return value;
-        return logarithmic_ ? limit / 3 : limit == 0 ? -1 : std::max(limit - 0.1 * std::abs(limit), -greatest);
+        return logarithmic_ ? limit / 3 : limit == 0 ? -1 : std::max(limit - 0.1 * std::abs(limit), -largest);
     }
 
     bool logarithmic_;

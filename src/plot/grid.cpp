@@ -7,7 +7,7 @@ namespace doppel {
 namespace {
 
 /// The map whose colour bar is shared by all panels; null if each has its own.
-const HeatMap* sharing_map(const Figure& figure) {
+const HeatMap* shared_map(const Figure& figure) {
     const auto found = std::find_if(figure.panels.begin(), figure.panels.end(),
                                     [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
     return found == figure.panels.end() ? nullptr : &*found->map;
@@ -29,14 +29,14 @@ AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t column
 void share_ranges(const std::vector<Plot>& panels, std::vector<PlotRanges>& ranges) {
     for (const auto& [axis, range] : {std::pair(&Plot::x, &PlotRanges::x), {&Plot::y, &PlotRanges::y}})
         for (const auto& one : panels) {
-            std::vector<Axis*> alike;
+            std::vector<Axis*> matching;
             for (std::size_t i = 0; i < panels.size(); ++i)
-                if (panels[i].*axis == one.*axis) alike.push_back(&(ranges[i].*range));
-            Axis all = *alike.front();
-            for (const Axis* each : alike)
+                if (panels[i].*axis == one.*axis) matching.push_back(&(ranges[i].*range));
+            Axis all = *matching.front();
+            for (const Axis* each : matching)
                 if (all.low < all.high)
                     all.low = std::min(all.low, each->low), all.high = std::max(all.high, each->high);
-            for (Axis* each : alike) *each = all;
+            for (Axis* each : matching) *each = all;
         }
 }
 
@@ -88,19 +88,19 @@ PanelGrid grid_of(const Figure& figure, const Area& body) {
     if (figure.columns > 0) return grid(std::min(figure.columns, panels));
     const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // preferred ratio of width to height
     PanelGrid best = grid(1);
-    float most = 0;
+    float maximum = 0;
     for (int columns = 1; columns <= panels; ++columns) {
         const PanelGrid tried = grid(columns);
         const float room = std::min(body.width() / static_cast<float>(columns),
                                     shape * (body.height() / static_cast<float>(tried.rows)));
-        if (room > 1.001f * most) most = room, best = tried;
+        if (room > 1.001f * maximum) maximum = room, best = tried;
     }
     return best;
 }
 
 void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
     const PanelGrid grid = grid_of(figure, body);
-    if (const HeatMap* map = sharing_map(figure)) {
+    if (const HeatMap* map = shared_map(figure)) {
         const float gutter = bar_gutter(*map, body.height(), style);
         draw_bar(*map, body, body.right - gutter, style, list);
         body.right -= gutter;

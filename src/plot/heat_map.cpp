@@ -60,7 +60,6 @@ TextBlock bar_heading(const HeatMap& map, const PlotStyle& style) {
             Weight::regular, style.theme.text};
 }
 
-/// The height below a heading.
 float below(const TextBlock& heading, float height, const PlotStyle& style) {
     return heading.lines.empty() ? height : std::max(height - heading.height() - style.tick, 1.0f);
 }

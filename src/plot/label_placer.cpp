@@ -33,8 +33,8 @@ void LabelPlacer::add_line(Point from, Point to, std::size_t owner) {
 }
 
 LabelPlacer::Squares LabelPlacer::squares(const Area& box) const {
-    const auto within = [](float v, int most) {
-        return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(most)));
+    const auto within = [](float v, int maximum) {
+        return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(maximum)));
     };
     return {within(std::floor((box.left - area_.left) / square), columns_),
             within(std::floor((box.top - area_.top) / square), rows_),
@@ -53,7 +53,7 @@ int LabelPlacer::ink(const Area& box, std::size_t except) const {
 }
 
 bool LabelPlacer::is_free(const Area& box) const {
-    return area_.holds(box) &&
+    return area_.contains(box) &&
            std::none_of(texts_.begin(), texts_.end(), [&](const Area& text) { return text.overlaps(box); });
 }
 

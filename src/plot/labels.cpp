@@ -16,7 +16,6 @@ struct LabelText {
     Weight weight;
     Color color;
 
-    /// The label with its ink box at `left` and `top`.
     Label at(float left, float top) const {
         return {text, {left, top + 0.8f * size}, size, Align::left, weight, color};
     }
@@ -60,9 +59,9 @@ std::vector<Point> places(const DrawnCurve& curve) {
     if (curve.lines.empty()) all = curve.points;
     if (all.empty()) return {};
     // a few of many, evenly spaced, always with both ends
-    constexpr std::size_t most = 72;
+    constexpr std::size_t maximum = 72;
     std::vector<Point> few;
-    const std::size_t step = all.size() / most + 1;
+    const std::size_t step = all.size() / maximum + 1;
     for (std::size_t i = 0; i < all.size(); i += step) few.push_back(all[i]);
     few.push_back(all.back());
     std::stable_sort(few.begin(), few.end(), [](const Point& a, const Point& b) { return a.x > b.x; });
@@ -70,8 +69,8 @@ std::vector<Point> places(const DrawnCurve& curve) {
 }
 
 /// The best position beside the curve that touches nothing.
-std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const LabelText& text, float clear,
-                            const LabelPlacer& placer) {
+std::optional<Found> label_beside(const DrawnCurve& curve, std::size_t owner, const LabelText& text, float clear,
+                                  const LabelPlacer& placer) {
     std::optional<Found> best;
     const float w = text.width(), h = text.height(), gap = clear + 0.3f * text.size;
     const std::vector<Point> at = places(curve);
@@ -104,8 +103,8 @@ std::optional<Found> beside(const DrawnCurve& curve, std::size_t owner, const La
 }
 
 /// The position on the curve at which the label hides the least of the other curves.
-std::optional<Found> upon(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
-                          const LabelPlacer& placer) {
+std::optional<Found> label_on_curve(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
+                                    const LabelPlacer& placer) {
     std::optional<Found> best;
     const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
     for (const Point& p : places(curve)) {
@@ -179,18 +178,19 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
 namespace {
 
 /// The labels placed beside or on the curves, and the curves without space for one.
-struct Written {
+struct PlacedLabels {
     std::vector<Label> labels;
     std::vector<Area> backgrounds;
     std::vector<Capsule> leaders;
-    std::vector<std::size_t> left_over;
+    std::vector<std::size_t> left_out;
 };
 
 /// Places labels of `size` at all curves except those named elsewhere.
-Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, float size, bool dense,
-                const std::vector<std::size_t>& elsewhere, const PlotStyle& style, bool over_map, LabelPlacer placer) {
-    constexpr std::size_t most_marks = 60;  // beside more marks no label has space
-    Written made;
+PlacedLabels place_labels(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, float size,
+                          bool dense, const std::vector<std::size_t>& elsewhere, const PlotStyle& style, bool over_map,
+                          LabelPlacer placer) {
+    constexpr std::size_t max_marks = 60;  // beside more marks no label has space
+    PlacedLabels made;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& curve = curves[i];
         const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
@@ -198,8 +198,8 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
         const LabelText text = text_for(curve, size, style, over_map);
         const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
         std::optional<Found> found;
-        if (curve.mark != Mark::points || drawn[i].points.size() <= most_marks)
-            found = beside(drawn[i], i, text, clear, placer);
+        if (curve.mark != Mark::points || drawn[i].points.size() <= max_marks)
+            found = label_beside(drawn[i], i, text, clear, placer);
         if (!found && dense && drawn[i].lines.empty() && drawn[i].points.size() == 1) {
             Capsule leader{};
             found = with_leader(drawn[i].points.front(), text, placer, leader);
@@ -207,11 +207,11 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
             if (found) made.leaders.push_back(leader);
         }
         if (!found && dense && !drawn[i].lines.empty()) {
-            found = upon(drawn[i], i, text, placer);
+            found = label_on_curve(drawn[i], i, text, placer);
             if (found) made.backgrounds.push_back(text_area(found->label).grown(0.15f * text.size, 0.05f * text.size));
         }
         if (!found) {
-            made.left_over.push_back(i);
+            made.left_out.push_back(i);
             continue;
         }
         placer.add_text(text_area(found->label).grown(0.3f * text.size, 0.1f * text.size));
@@ -223,7 +223,7 @@ Written written(const std::vector<Curve>& curves, const std::vector<DrawnCurve>&
 }  // namespace
 
 LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const LabelNeeds& given,
-                        const Area& beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list) {
+                        const Area& label_beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list) {
     constexpr int many = 10;  // so many curves leave little space beside each
     const auto& curves = plot.curves;
     const bool over_map = plot.map.has_value();
@@ -232,22 +232,22 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
                  std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
     const auto tried = [&](float size, const LabelPlacer& left) {
-        return written(curves, drawn, size, dense, others, style, over_map, left);
+        return place_labels(curves, drawn, size, dense, others, style, over_map, left);
     };
     float size = dense ? small : style.text;
-    Written made = tried(size, placer);
+    PlacedLabels made = tried(size, placer);
     // prefers small labels at all curves to a legend, and labels on the curves to a legend that covers them
-    if (!dense && !made.left_over.empty()) {
-        Written fine = tried(small, placer);
-        const auto legend = fitted_legend(curves, made.left_over, size, placer);
-        dense = !fine.left_over.empty() && (plot.needs_no_legend || !legend);
+    if (!dense && !made.left_out.empty()) {
+        PlacedLabels fine = tried(small, placer);
+        const auto legend = fitted_legend(curves, made.left_out, size, placer);
+        dense = !fine.left_out.empty() && (plot.needs_no_legend || !legend);
         if (dense) fine = tried(small, placer);
-        if (dense || fine.left_over.empty()) made = std::move(fine), size = small;
+        if (dense || fine.left_out.empty()) made = std::move(fine), size = small;
     }
     // the legend is larger and placed first; curves that then have no space beside it join it
     std::optional<Legend> legend;
-    while (!made.left_over.empty()) {
-        others.insert(others.end(), made.left_over.begin(), made.left_over.end());
+    while (!made.left_out.empty()) {
+        others.insert(others.end(), made.left_out.begin(), made.left_out.end());
         legend = fitted_legend(curves, others, size, placer);
         LabelPlacer left = placer;
         if (legend) left.add_text(legend->box);
@@ -257,7 +257,7 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
                            others.empty() || legend ? given.legend : legend_gutter(curves, size)};
     if (!others.empty() && !legend && given.legend > 0) {
         const bool covers_map = false;
-        draw_legend(legend_in(beside, curves, others, size), curves, style, covers_map, list);
+        draw_legend(legend_in(label_beside, curves, others, size), curves, style, covers_map, list);
     }
     if (legend) draw_legend(*legend, curves, style, over_map, list);
     const Color background = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);

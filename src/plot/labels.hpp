@@ -54,7 +54,7 @@ std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vecto
 /// Width that the names of all curves take beside a panel, px.
 float legend_gutter(const std::vector<Curve>& curves, float size);
 /// In the upper left corner of `area`, with text of at most `size` px per em.
-Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float most);
+Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float maximum);
 
 void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
                  PageList& list);

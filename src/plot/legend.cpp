@@ -16,7 +16,7 @@ std::optional<Point> empty_place(float width, float height, float margin, const 
     const float across = area.width() - width - 2 * margin, down = area.height() - height - 2 * margin;
     if (across < 0 || down < 0) return {};
     std::optional<Point> best;
-    float least = 0;
+    float minimum = 0;
     for (int row = 0; row <= steps; ++row) {
         for (int column = steps; column >= 0; --column) {
             const float left = area.left + margin + across * static_cast<float>(column) / steps;
@@ -25,13 +25,12 @@ std::optional<Point> empty_place(float width, float height, float margin, const 
             if (!placer.is_free(box) || placer.ink(box) > 0) continue;
             const bool side = column == 0 || column == steps, end = row == 0 || row == steps;
             const float cost = side && end ? 0 : side || end ? 6.0f : 15.0f;
-            if (!best || cost < least) best = Point{left, top}, least = cost;
+            if (!best || cost < minimum) best = Point{left, top}, minimum = cost;
         }
     }
     return best;
 }
 
-/// A short sample of the curve.
 void draw_sample(const Curve& curve, float left, float right, float y, const PlotStyle& style, bool over_map,
                  PageList& list) {
     DrawnCurve sample;
@@ -71,9 +70,9 @@ float legend_gutter(const std::vector<Curve>& curves, float size) {
     return legend_width(curves, all, size);
 }
 
-Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float most) {
+Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float maximum) {
     const float width = legend_width(curves, which, 1), height = legend_rows(which.size());
-    const float size = std::min({most, area.width() / width, area.height() / height});
+    const float size = std::min({maximum, area.width() / width, area.height() / height});
     return {std::move(which), {area.left, area.top, area.left + width * size, area.top + height * size}, size};
 }
 

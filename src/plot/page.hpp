@@ -45,7 +45,6 @@ using PageList = std::vector<PageItem>;
 
 PageList page_list(const DisplayList& list);
 
-/// A page and the items on it.
 struct Page {
     Size size;        // px
     float scale = 1;  // px per unit of the items

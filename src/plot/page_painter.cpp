@@ -76,7 +76,7 @@ struct Part {
     Point from, to;
     float alpha, width, glow;  // alpha 0…1; px
 
-    bool goes_on(const Part& next) const {
+    bool continues(const Part& next) const {
         return to.x == next.from.x && to.y == next.from.y && alpha == next.alpha && width == next.width &&
                glow == next.glow;
     }
@@ -90,10 +90,10 @@ std::vector<Part> parts_of(const Stroke& stroke) {
         const Chord chord(from.at, to.at);
         if (!(chord.length > 0)) continue;
         const float bends = std::sqrt(std::abs(from.bend) / 0.05f);
-        const float looks = std::max({std::abs(to.alpha - from.alpha), std::abs(to.width - from.width),
-                                      std::abs(to.glow - from.glow)}) /
-                            0.04f;
-        const int count = std::max(1, static_cast<int>(std::ceil(std::max(bends, looks))));
+        const float part = std::max({std::abs(to.alpha - from.alpha), std::abs(to.width - from.width),
+                                     std::abs(to.glow - from.glow)}) /
+                           0.04f;
+        const int count = std::max(1, static_cast<int>(std::ceil(std::max(bends, part))));
         const auto at = [&](int k) {
             const float share = static_cast<float>(k) / static_cast<float>(count);
             const float along = share * chord.length, right = 4 * share * (1 - share) * from.bend;
@@ -185,26 +185,26 @@ void PagePainter::operator()(const Stroke& stroke) {
     const auto parts = parts_of(stroke);
     const auto for_each_even_part = [&](const auto& draw) {
         for (std::size_t i = 0; i < parts.size();) {
-            const Part& looks = parts[i];
-            std::vector<Point> line{looks.from};
+            const Part& part = parts[i];
+            std::vector<Point> line{part.from};
             do line.push_back(parts[i].to);
-            while (++i < parts.size() && parts[i - 1].goes_on(parts[i]));
-            if (stroke.color.a * looks.alpha > 0) draw(looks, line);
+            while (++i < parts.size() && parts[i - 1].continues(parts[i]));
+            if (stroke.color.a * part.alpha > 0) draw(part, line);
         }
     };
-    for_each_even_part([&](const Part& looks, const std::vector<Point>& line) {
-        if (!(looks.glow > 0.5f)) return;
-        for_each_ring(looks.glow, [&](float beyond, float alpha) {
+    for_each_even_part([&](const Part& part, const std::vector<Point>& line) {
+        if (!(part.glow > 0.5f)) return;
+        for_each_ring(part.glow, [&](float beyond, float alpha) {
             add_line(to_, line);
-            this->stroke(looks.width + 2 * beyond, stroke.color.with_alpha(stroke.color.a * looks.alpha * alpha),
+            this->stroke(part.width + 2 * beyond, stroke.color.with_alpha(stroke.color.a * part.alpha * alpha),
                          CAIRO_LINE_CAP_BUTT);
         });
     });
-    for_each_even_part([&](const Part& looks, const std::vector<Point>& line) {
-        const auto color = stroke.color.with_alpha(stroke.color.a * looks.alpha);
+    for_each_even_part([&](const Part& part, const std::vector<Point>& line) {
+        const auto color = stroke.color.with_alpha(stroke.color.a * part.alpha);
         add_line(to_, line);
         // transparent parts must not overlap
-        this->stroke(looks.width, color, color.a == 1 ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+        this->stroke(part.width, color, color.a == 1 ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
     });
 }
 

@@ -21,7 +21,7 @@ struct Layout {
     std::string_view left_out;  // left out for lack of space
 };
 
-Layout laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style, bool subtitle, bool captions) {
+Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& style, bool subtitle, bool captions) {
     Layout page;
     const Theme& theme = style.theme;
     const float width = sheet.width();
@@ -61,10 +61,10 @@ bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
 
 /// The layout with all text if that leaves the panels enough space; otherwise without captions, or also without
 /// subtitle.
-Layout laid_out(const Figure& figure, const Area& sheet, const PlotStyle& style) {
+Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& style) {
     Layout page;
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}, {false, false}}) {
-        page = laid_out(figure, sheet, style, subtitle, captions);
+        page = figure_layout(figure, sheet, style, subtitle, captions);
         if (legible(figure, page.body, sheet, style)) break;
     }
     const bool lacks_subtitle = page.subtitle.lines.empty() && !figure.subtitle.empty();
@@ -94,10 +94,10 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         const float across = std::round((style.on_paper ? 8 : 34) * style.unit);
         const float down = std::round((style.on_paper ? 8 : 28) * style.unit);
         const Area sheet{across, down, width - across, height - down};
-        const Layout page = laid_out(figure, sheet, style);
+        const Layout page = figure_layout(figure, sheet, style);
         // with many panels in a small picture, shrinks the text to leave space for the panels
-        constexpr float least_scale = 0.1f;
-        if (!has_room(figure, page.body, style) && made.scale > least_scale) continue;
+        constexpr float min_scale = 0.1f;
+        if (!has_room(figure, page.body, style) && made.scale > min_scale) continue;
 
         made.items = {Box{0, 0, width, height, 0, theme.background}};
         page.title.draw({sheet.left, sheet.top}, made.items);

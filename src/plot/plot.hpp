@@ -83,7 +83,6 @@ struct Figure {
     std::vector<std::string> captions;  // paragraphs, broken into lines
 };
 
-/// The colour scale of a map.
 struct MapScale {
     explicit MapScale(const HeatMap& map);
 

@@ -94,10 +94,10 @@ std::vector<std::string> wrapped(std::string_view text, float size, Weight weigh
 }
 
 std::vector<std::string> evenly_wrapped(std::string_view text, float size, Weight weight, float width) {
-    constexpr float least_share = 1.0f / 3, narrower = 0.97f;
+    constexpr float min_share = 1.0f / 3, narrower = 0.97f;
     auto lines = wrapped(text, size, weight, width);
     const auto ends_short = [&](const std::vector<std::string>& all, float measure) {
-        return all.size() > 1 && text_width(all.back(), size, weight) < least_share * measure;
+        return all.size() > 1 && text_width(all.back(), size, weight) < min_share * measure;
     };
     for (float measure = width; ends_short(lines, measure);) {
         measure *= narrower;

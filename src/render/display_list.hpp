@@ -115,10 +115,10 @@ struct Area {
     bool overlaps(const Area& other) const {
         return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
     }
-    bool holds(const Area& other) const {
+    bool contains(const Area& other) const {
         return left <= other.left && other.right <= right && top <= other.top && other.bottom <= bottom;
     }
-    bool holds(Point p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
+    bool contains(Point p) const { return p.x >= left && p.x <= right && p.y >= top && p.y <= bottom; }
     Area grown(float x, float y) const { return {left - x, top - y, right + x, bottom + y}; }
 };
 

@@ -29,7 +29,7 @@ namespace doppel {
 namespace {
 
 /// Synthetic bold, em: extra width and height of the letters, and extra distance between them.
-constexpr float bolder_across = 0.043f, bolder_up = 0.026f, bolder_apart = 0.030f;
+constexpr float bold_width = 0.043f, bold_height = 0.026f, bold_spacing = 0.030f;
 
 /// The rectangle that contains an outline, in px right of the pen's pixel and below the baseline.
 Area extent_of(std::span<const stbtt_vertex> outline, float scale, float shift) {
@@ -70,7 +70,7 @@ Coverage missing_box(float size, Weight weight, float shift) {
     return coverage;
 }
 
-constexpr float most_ems = 16;  // largest distance from the pen; a glyph that extends further is damaged
+constexpr float max_ems = 16;  // largest distance from the pen; a glyph that extends further is damaged
 
 /// Converts an outline to stb_truetype's vertices, in font units.
 class OutlineBuilder {
@@ -176,7 +176,7 @@ std::shared_ptr<const Font> Font::from_file(const std::filesystem::path& path, i
 }
 
 int Font::number_of(char32_t character) const {
-    const std::lock_guard hold(tables_->mutex);
+    const std::lock_guard lock(tables_->mutex);
     const int number = static_cast<int>(FT_Get_Char_Index(tables_->face, character));
     if (number == 0 || tables_->is_complete) return number;
     const bool is_space = character == U' ' || character == U'\u00a0' || character == U'\u3000' ||
@@ -187,30 +187,30 @@ int Font::number_of(char32_t character) const {
 }
 
 float Font::advance(int glyph, float size, Weight weight) const {
-    const std::lock_guard hold(tables_->mutex);
+    const std::lock_guard lock(tables_->mutex);
     FT_Fixed units = 0;
     if (FT_Get_Advance(tables_->face, static_cast<FT_UInt>(glyph), FT_LOAD_NO_SCALE, &units) != 0) units = 0;
     // letters move apart by less than they grow, because heavier text is set tighter
-    const float extra = lacks(weight) && units > 0 ? bolder_apart * size : 0;
+    const float extra = lacks(weight) && units > 0 ? bold_spacing * size : 0;
     return static_cast<float>(units) * tables_->scale(size) + extra;
 }
 
 Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) const {
     if (glyph == 0) return missing_box(size, weight, shift);
-    const std::lock_guard hold(tables_->mutex);
+    const std::lock_guard lock(tables_->mutex);
     FT_Outline* const read = tables_->outline_of(glyph);
     if (!read) return missing_box(size, weight, shift);
     const float scale = tables_->scale(size);
     if (lacks(weight)) {
         const auto units = [&](float em) { return static_cast<FT_Pos>(std::lround(em * size / scale)); };
-        FT_Outline_EmboldenXY(read, units(bolder_across), units(bolder_up));  // to the right and up
-        FT_Outline_Translate(read, units((bolder_apart - bolder_across) / 2), units(-bolder_up / 2));
+        FT_Outline_EmboldenXY(read, units(bold_width), units(bold_height));  // to the right and up
+        FT_Outline_Translate(read, units((bold_spacing - bold_width) / 2), units(-bold_height / 2));
     }
     auto outline = OutlineBuilder(*read).vertices();
     if (outline.empty()) return {};
     const Area extent = extent_of(outline, scale, shift);
     const float reach = std::max({-extent.left, -extent.top, extent.right, extent.bottom});
-    if (!(reach <= most_ems * size)) return missing_box(size, weight, shift);
+    if (!(reach <= max_ems * size)) return missing_box(size, weight, shift);
 
     Coverage coverage;
     coverage.left = static_cast<int>(std::floor(extent.left));

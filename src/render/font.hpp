@@ -23,7 +23,6 @@ struct Coverage {
 /// font only gives wrong or missing letters, or boxes.
 class Font {
 public:
-    /// The built-in font of that weight.
     static const Font& built_in(Weight weight = Weight::regular);
     /// Font `index` of a file. Throws Error: exit 2 if it is no such font, exit 4 if it cannot be read.
     static std::shared_ptr<const Font> from_file(const std::filesystem::path& path, int index = 0);

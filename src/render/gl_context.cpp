@@ -140,18 +140,18 @@ private:
     EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-/// Makes a context of this library current. On failure returns null and adds the reason to `faults`. `packages` are
+/// Makes a context of this library current. On failure returns null and adds the reason to `errors`. `packages` are
 /// Debian's.
 template <class LibraryContext>
 std::unique_ptr<Context> try_library(const char* library, const char* packages, const std::vector<std::string>& names,
-                                     std::string& faults) {
+                                     std::string& errors) {
     try {
         std::unique_ptr<Context> context = std::make_unique<LibraryContext>(names);
         context->make_current();
         return context;
-    } catch (const Error& fault) {
-        faults += fmt::format("{}{} cannot draw here: {} (in Debian: {})", faults.empty() ? "" : "; ", library,
-                              fault.what(), packages);
+    } catch (const Error& error) {
+        errors += fmt::format("{}{} cannot draw here: {} (in Debian: {})", errors.empty() ? "" : "; ", library,
+                              error.what(), packages);
         return nullptr;
     }
 }
@@ -192,12 +192,12 @@ void Context::retire() {
 
 std::unique_ptr<Context> make_context(Gl gl, const GlLibraries& libraries) {
     [[maybe_unused]] static const bool done = set_mesa_defaults();  // only once: setenv() is not thread-safe
-    std::string faults;
+    std::string errors;
     std::unique_ptr<Context> context;
-    if (gl != Gl::egl) context = try_library<OsmesaContext>("OSMesa", "libosmesa6", libraries.osmesa, faults);
+    if (gl != Gl::egl) context = try_library<OsmesaContext>("OSMesa", "libosmesa6", libraries.osmesa, errors);
     if (!context && gl != Gl::osmesa)
-        context = try_library<EglContext>("EGL", "libegl1, libegl-mesa0, libgl1-mesa-dri", libraries.egl, faults);
-    if (!context) throw Error(ExitCode::io_failed, faults);
+        context = try_library<EglContext>("EGL", "libegl1, libegl-mesa0, libgl1-mesa-dri", libraries.egl, errors);
+    if (!context) throw Error(ExitCode::io_failed, errors);
     return context;
 }
 

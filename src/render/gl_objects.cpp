@@ -23,7 +23,6 @@ std::string log(GetLog get, GLuint number) {
     return text;
 }
 
-/// Compiles a shader and attaches it to the program.
 void attach(GLuint program, GLenum type, const std::string& name) {
     const std::string_view source = shader_source(name);
     const char* text = source.data();

@@ -8,7 +8,7 @@
 namespace doppel::gl {
 namespace {
 
-constexpr std::size_t most_quads = 16384;  // in one call: the range of 16-bit indices
+constexpr std::size_t max_quads = 16384;  // in one call: the range of 16-bit indices
 constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
                                    "vertex_params",   "vertex_parabola", "vertex_tint"};
 
@@ -39,7 +39,7 @@ Painter::Painter(Size size)
     Enable(GL_BLEND);
     BindVertexArray(vertex_array_);
     std::vector<std::uint16_t> indices;
-    for (std::size_t first = 0; first < 4 * most_quads; first += 4) {
+    for (std::size_t first = 0; first < 4 * max_quads; first += 4) {
         for (const std::size_t corner : {0, 1, 2, 2, 1, 3}) {
             indices.push_back(static_cast<std::uint16_t>(first + corner));
         }
@@ -177,8 +177,8 @@ void Painter::upload(const GlyphAtlas& atlas) {
 void Painter::draw(const Batch& batch) {
     const auto draw_quads = [&](const Program& program) {
         UseProgram(program);
-        for (std::size_t begin = batch.begin; begin < batch.end; begin += most_quads) {
-            const std::size_t count = std::min(batch.end - begin, most_quads);
+        for (std::size_t begin = batch.begin; begin < batch.end; begin += max_quads) {
+            const std::size_t count = std::min(batch.end - begin, max_quads);
             DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_SHORT, nullptr,
                                    static_cast<GLint>(4 * begin));
         }

@@ -8,8 +8,8 @@
 namespace doppel::gl {
 
 /// Draws render lists onto the bound canvas. A stroke takes two passes. The first writes 1 - opacity of each segment
-/// into the canvas's alpha, which is 1 otherwise, and keeps the minimum, so that overlapping segments do not add up.
-/// The second blends the colour by alpha and restores alpha 1, so that drawing a pixel twice changes nothing.
+/// into the canvas's alpha, which is 1 otherwise. The minimum is kept, so that overlapping segments do not add up. The
+/// second blends the colour by alpha and restores alpha 1, so that drawing a pixel twice changes nothing.
 class Painter {
 public:
     explicit Painter(Size size);

@@ -22,8 +22,8 @@ const GlyphAtlas::Slot& GlyphAtlas::slot(const TextLine::Glyph& glyph, float siz
                         drawn.size.width, drawn.size.height);
     }
     if (shelf_ + shelf_height_ > height()) {
-        const int enough = std::min(std::max(2 * height(), shelf_ + shelf_height_ + 255), max_height_);
-        values_.resize(static_cast<std::size_t>(width) * enough);
+        const int rows = std::min(std::max(2 * height(), shelf_ + shelf_height_ + 255), max_height_);
+        values_.resize(static_cast<std::size_t>(width) * rows);
     }
 
     const Slot slot{drawn.left, drawn.top, drawn.size, pen_, shelf_};

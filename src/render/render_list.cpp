@@ -108,7 +108,6 @@ public:
     }
 
 private:
-    /// A piece of a stroke.
     struct Segment {
         Stroke::Vertex from, to;
         float bend;  // px
@@ -138,7 +137,9 @@ private:
     /// Adds the primitive, which touches only pixels between `from` and `to`.
     void add(const Primitive& primitive, Point from, Point to) {
         // fmin and fmax ignore NaN
-        const auto within = [](float v, int most) { return std::fmin(std::fmax(v, 0.f), static_cast<float>(most)); };
+        const auto within = [](float v, int maximum) {
+            return std::fmin(std::fmax(v, 0.f), static_cast<float>(maximum));
+        };
         const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
                           static_cast<int>(std::ceil(within(to.x, size_.width))),
                           static_cast<int>(std::ceil(within(to.y, size_.height)))};

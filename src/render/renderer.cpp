@@ -68,13 +68,13 @@ public:
 private:
     /// The regions in groups to draw at once. Large pictures are drawn in bands, so that a stop takes effect soon.
     static std::vector<std::vector<Rect>> bands(const std::vector<Rect>& regions) {
-        constexpr long most = 16'000'000;  // px
+        constexpr long maximum = 16'000'000;  // px
         long pixels = 0;
         for (const Rect& r : regions) pixels += long{r.right - r.left} * (r.bottom - r.top);
-        if (pixels <= most) return {regions};
+        if (pixels <= maximum) return {regions};
         std::vector<std::vector<Rect>> result;
         for (const Rect& r : regions) {
-            const int rows = std::max(1, static_cast<int>(most / std::max(1, r.right - r.left)));
+            const int rows = std::max(1, static_cast<int>(maximum / std::max(1, r.right - r.left)));
             for (int top = r.top; top < r.bottom; top += rows)
                 result.push_back({{r.left, top, r.right, std::min(top + rows, r.bottom)}});
         }
@@ -97,9 +97,9 @@ private:
     }
 
     void check_size() const {
-        const int most = limit(GL_MAX_TEXTURE_SIZE);
-        if (size_.width < 1 || size_.height < 1 || size_.width > most || size_.height > most) {
-            throw io_failed("OpenGL draws pictures of 1 to {} px a side; {} × {} px is none", most, size_.width,
+        const int maximum = limit(GL_MAX_TEXTURE_SIZE);
+        if (size_.width < 1 || size_.height < 1 || size_.width > maximum || size_.height > maximum) {
+            throw io_failed("OpenGL draws pictures of 1 to {} px a side; {} × {} px is none", maximum, size_.width,
                             size_.height);
         }
     }

@@ -8,7 +8,7 @@
 namespace doppel {
 namespace {
 
-constexpr float hair = 1.0f / 10;  // tolerance of positions, px
+constexpr float position_tolerance = 1.0f / 10;  // tolerance of positions, px
 constexpr float steepest =
     0.25f;  // largest slope of a parabola at its ends; the shader's distance is an approximation for flat ones
 
@@ -27,10 +27,10 @@ float height(float part) {
     return 4 * part * (1 - part);
 }
 
-bool is_like(const Stroke::Vertex& from, const Stroke::Vertex& to, float part, const Stroke::Vertex& v) {
+bool is_close(const Stroke::Vertex& from, const Stroke::Vertex& to, float part, const Stroke::Vertex& v) {
     return std::abs(std::lerp(from.alpha, to.alpha, part) - v.alpha) <= 1.0f / 255 &&
-           std::abs(std::lerp(from.width, to.width, part) - v.width) <= 2 * hair &&
-           std::abs(std::lerp(from.glow, to.glow, part) - v.glow) <= 5 * hair;
+           std::abs(std::lerp(from.width, to.width, part) - v.width) <= 2 * position_tolerance &&
+           std::abs(std::lerp(from.glow, to.glow, part) - v.glow) <= 5 * position_tolerance;
 }
 
 /// The bend of the piece that passes all vertices between first and last within tolerance, if there is one.
@@ -50,10 +50,10 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
         const Point at = local(chord, v.at), between{(before.x + at.x) / 2, (before.y + at.y) / 2};
         const float part = part_of(chord, at.x);
         const auto aside = [&](Point p) { return std::abs(p.y - bend * height(part_of(chord, p.x))); };
-        if (!(at.x >= before.x - hair && at.x <= chord.length + hair && aside(at) <= hair &&
-              aside(between) <= 2 * hair))
+        if (!(at.x >= before.x - position_tolerance && at.x <= chord.length + position_tolerance &&
+              aside(at) <= position_tolerance && aside(between) <= 2 * position_tolerance))
             return {};
-        if (i < last && (v.joint || v.bend != 0 || !is_like(from, to, part, v))) return {};
+        if (i < last && (v.joint || v.bend != 0 || !is_close(from, to, part, v))) return {};
         before = at;
     }
     return bend;
@@ -75,9 +75,9 @@ std::optional<Shares> clip_segment(const Area& area, double x0, double y0, doubl
     return meets ? std::optional(within) : std::nullopt;
 }
 
-StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t most) {
+StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t maximum) {
     StrokePiece piece{first, first + 1, path[first].bend};
-    const std::size_t end = std::min(path.size() - 1, first + most);
+    const std::size_t end = std::min(path.size() - 1, first + maximum);
     if (path[first].bend != 0 || path[piece.last].joint) return piece;
     while (piece.last < end) {
         const auto bend = bend_of(path, first, piece.last + 1, bends);

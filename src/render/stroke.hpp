@@ -9,7 +9,6 @@
 
 namespace doppel {
 
-/// The straight line between two points.
 struct Chord {
     Point from, to, axis{1, 0};  // axis: unit vector along the line
     float length;                // px
@@ -39,10 +38,11 @@ struct StrokePiece {
 /// Whether pieces may be parabolas, or only straight lines.
 enum class Bends { no, yes };
 
-/// The longest piece from vertex `first`, of at most `most` vertices and up to the next joint, that fits the vertices
-/// in between. Tolerances: position and edges 1/10 px (1/5 px half way between vertices), glow 1/2 px, opacity 1/255.
-/// Widths and glow are in px.
-StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t most = 24);
+/// The longest piece from vertex `first`, of at most `maximum` vertices and up to the next joint, that fits the
+/// vertices in between. Tolerances: position and edges 1/10 px (1/5 px half way between vertices), glow 1/2 px, opacity
+/// 1/255. Widths and glow are in px.
+StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends,
+                       std::size_t maximum = 24);
 
 /// The simplified curve of a quantity over time: points within 1/5 px of the line through the kept points are left out.
 /// Which points are kept depends only on earlier points.

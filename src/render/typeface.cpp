@@ -29,12 +29,12 @@ Point start_of(const Label& label, const TextLine& line) {
     return {label.anchor.x - before * line.width, std::round(label.anchor.y)};
 }
 
-TextLine::Glyph Typeface::glyph_of(char32_t character, bool in_system, Weight weight) const {
+TextLine::Glyph Typeface::glyph_of(char32_t character, Weight weight) const {
     if (own_)
         if (const int number = own_->number_of(character)) return {own_.get(), number};
     const Font& built_in = Font::built_in(weight);
     const int number = built_in.number_of(character);
-    if (number != 0 || !in_system) return {&built_in, number};
+    if (number != 0 || !system_) return {&built_in, number};
     const Font* const found = system_font_for(character);
     return found ? TextLine::Glyph{found, found->number_of(character)} : TextLine::Glyph{&built_in, 0};
 }
@@ -47,7 +47,7 @@ TextLine Typeface::lay_out(std::string_view text, float size, Weight weight) con
         const std::size_t byte = bytes - text.size();
         const char32_t character = next_character(text);
         if (is_variation_selector(character)) continue;
-        auto& glyph = line.glyphs.emplace_back(glyph_of(character, system_, weight));
+        auto& glyph = line.glyphs.emplace_back(glyph_of(character, weight));
         glyph.pen = line.width;
         glyph.byte = byte;
         line.width += glyph.font->advance(glyph.number, size, weight);
@@ -69,18 +69,10 @@ std::string_view Typeface::missing_character(std::string_view text) const {
         const auto from = text;
         const char32_t character = next_character(text);
         if (is_variation_selector(character)) continue;
-        if (is_control(character) || needs_shaping(character) || glyph_of(character, system_).number == 0)
+        if (is_control(character) || needs_shaping(character) || glyph_of(character).number == 0)
             return from.substr(0, from.size() - text.size());
     }
     return {};
-}
-
-bool Typeface::has_own(std::string_view text) const {
-    while (!text.empty()) {
-        const char32_t character = next_character(text);
-        if (!is_variation_selector(character) && glyph_of(character, false).number == 0) return false;
-    }
-    return true;
 }
 
 std::set<std::filesystem::path> Typeface::files_of(std::string_view text) const {

@@ -11,7 +11,6 @@
 
 namespace doppel {
 
-/// A line of positioned glyphs.
 struct TextLine {
     struct Glyph {
         const Font* font = nullptr;  // of the typeface
@@ -45,8 +44,6 @@ public:
     /// The first character of `text` that no font contains, or that cannot be set as a separate letter from left to
     /// right (control characters, Arabic …). Empty if there is none.
     std::string_view missing_character(std::string_view text) const;
-    /// Whether the user's and the built-in font contain all of `text`. System fonts differ between machines.
-    bool has_own(std::string_view text) const;
 
     /// The files of the fonts used for `text`, except the built-in one.
     std::set<std::filesystem::path> files_of(std::string_view text) const;
@@ -57,7 +54,7 @@ public:
 
 private:
     Typeface(std::shared_ptr<const Font> own, bool system) : own_(std::move(own)), system_(system) {}
-    TextLine::Glyph glyph_of(char32_t character, bool in_system, Weight weight = Weight::regular) const;
+    TextLine::Glyph glyph_of(char32_t character, Weight weight = Weight::regular) const;
 
     std::shared_ptr<const Font> own_;  // the user's
     bool system_ = false;

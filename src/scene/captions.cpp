@@ -35,13 +35,13 @@ std::string model_words(const Side& side) {
 
 /// States a quantity of all links, given for both sides with the same length. Short chains: link by link. Long chains:
 /// the common value of the links, or the links in which the sides differ.
-void say_links(std::string_view symbol, const std::vector<Quad>& values, const std::vector<Quad>& others,
-               std::string_view unit, bool angle, std::vector<Statement>& all) {
-    constexpr std::size_t most_listed = 3;
+void state_links(std::string_view symbol, const std::vector<Quad>& values, const std::vector<Quad>& others,
+                 std::string_view unit, bool angle, std::vector<Statement>& all) {
+    constexpr std::size_t max_listed = 3;
     const auto alike = [](const std::vector<Quad>& of) {
         return std::all_of(of.begin(), of.end(), [&](const Quad& value) { return value == of[0]; });
     };
-    const bool listed = values.size() <= most_listed;
+    const bool listed = values.size() <= max_listed;
     if (!listed && alike(values) && alike(others)) {
         all.push_back({fmt::format("all {} = {}{}", symbol, text_of(values[0]), unit), angle});
         return;
@@ -56,6 +56,13 @@ void say_links(std::string_view symbol, const std::vector<Quad>& values, const s
         if (listed || values[i] != others[i])
             all.push_back({fmt::format("{}{} = {}{}", symbol, subscript(i + 1), text_of(values[i]), unit), angle,
                            fmt::format("{}{}", text_of(values[i]), unit)});
+}
+
+/// "1.2e-03" → "1.2 × 10⁻³"; other numbers are unchanged.
+std::string with_power_of_ten(const std::string& digits) {
+    const auto e = digits.find('e');
+    if (e == std::string::npos) return digits;
+    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
 }
 
 /// For example 0.001 → "1 mm".
@@ -86,11 +93,11 @@ std::string speed_words(const QuadPair& velocity, const QuadPair& other) {
 
 /// How the particles of a side differ from those of side a, or, for side a, from the other side's. Particles with the
 /// same displacement are named together.
-void say_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<Statement>& all) {
+void state_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<Statement>& all) {
     std::vector<std::pair<std::string, std::string>> moved;  // displacement; names of the particles
     for (std::size_t i = 0; i < std::min(a.particles.size(), b.particles.size()); ++i) {
         const auto &one = a.particles[i], &other = b.particles[i];
-        const auto &self = of_b ? other : one, &twin = of_b ? one : other;
+        const auto &self = of_b ? other : one, &opposite = of_b ? one : other;
         if (one.position_m != other.position_m) {
             const auto how = offset_words(one.position_m, other.position_m);
             const auto same = std::find_if(moved.begin(), moved.end(), [&](const auto& m) { return m.first == how; });
@@ -100,14 +107,14 @@ void say_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<
                 same->second += " and " + one.name;
         }
         if (one.velocity_m_per_s != other.velocity_m_per_s)
-            all.push_back({self.name + " " + speed_words(self.velocity_m_per_s, twin.velocity_m_per_s)});
+            all.push_back({self.name + " " + speed_words(self.velocity_m_per_s, opposite.velocity_m_per_s)});
         if (one.mass_kg != other.mass_kg) all.push_back({fmt::format("{} {} kg", self.name, text_of(self.mass_kg))});
     }
     for (const auto& [how, who] : moved) all.push_back({who + " " + (of_b ? how : "in place")});
 }
 
 /// The drive, if the other side's is different.
-void say_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<Statement>& all) {
+void state_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<Statement>& all) {
     if (one.pivot != other.pivot)
         all.push_back({one.pivot.amplitude_m == 0 ? "pivot at rest"
                                                   : fmt::format("pivot ±{} m at {} Hz", text_of(one.pivot.amplitude_m),
@@ -130,15 +137,15 @@ std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDiffe
     const auto& side = of_b ? scene.b : scene.a;
     std::vector<Statement> all;
     if (spec.particles.empty()) {
-        say_links("θ", spec.angle_deg, other.angle_deg, "°", true, all);
-        say_links("ω", spec.omega_deg_per_s, other.omega_deg_per_s, "°/s", false, all);
-        say_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
-        say_links("l", spec.length_m, other.length_m, " m", false, all);
+        state_links("θ", spec.angle_deg, other.angle_deg, "°", true, all);
+        state_links("ω", spec.omega_deg_per_s, other.omega_deg_per_s, "°/s", false, all);
+        state_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
+        state_links("l", spec.length_m, other.length_m, " m", false, all);
     }
     for (const auto& difference : differences)
         if (difference.any().is_of_links) all.push_back({difference.words(of_b)});
-    say_drives(spec.physical, other.physical, all);
-    say_particles(scene.preset.a, scene.preset.b, of_b, all);
+    state_drives(spec.physical, other.physical, all);
+    state_particles(scene.preset.a, scene.preset.b, of_b, all);
     for (const auto& difference : differences)
         if (difference.any().is_of_part) all.push_back({difference.words(of_b)});
     const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
@@ -165,7 +172,7 @@ std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDiffe
 std::string track_words(const Side& side, const TrackSpec& spec) {
     const auto& samples = side.replay->samples();
     const double rate = static_cast<double>(samples.size() - 1) / samples.duration();
-    return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), roughly(rate));
+    return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), two_digits(rate));
 }
 
 /// For a measured pendulum or its simulation.
@@ -174,7 +181,6 @@ SideCaptions captions_of_track(const Side& side, const TrackSpec& track) {
     return {"computed", fmt::format("{}, {}", side.method.title, control_words(side))};
 }
 
-/// The system, in the plural or singular.
 std::string system_words(const SideSpec& side, std::string_view plural = "s") {
     if (!side.particles.empty()) {
         const auto masses = side.particles.size();
@@ -196,8 +202,9 @@ SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>
 }
 
 /// For side b or side a: the difference from the other side.
-SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
-                            const std::vector<KeyDifference>& differences, bool of_b, bool has_label, Wording wording) {
+SideCaptions difference_captions(const std::array<std::vector<Statement>, 2>& all,
+                                 const std::vector<KeyDifference>& differences, bool of_b, bool has_label,
+                                 Wording wording) {
     std::vector<std::string> differs, start;
     const auto &own = all[of_b ? 1 : 0], &others = all[of_b ? 0 : 1];
     for (std::size_t i = 0; i < own.size(); ++i) {
@@ -212,13 +219,13 @@ SideCaptions captions_apart(const std::array<std::vector<Statement>, 2>& all,
     const bool says_nothing = differs.empty();
     if (says_nothing) differs.push_back(of_b ? "b, the same" : "a");
     // a heading contains two statements; the others go to the note
-    constexpr std::size_t most = 2, most_noted = 4;
-    start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(most, differs.size())), differs.end());
-    if (start.size() > most_noted) {
-        start.resize(most_noted);
+    constexpr std::size_t maximum = 2, max_noted = 4;
+    start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(maximum, differs.size())), differs.end());
+    if (start.size() > max_noted) {
+        start.resize(max_noted);
         start.back() = "…";
     }
-    differs.resize(std::min(most, differs.size()));
+    differs.resize(std::min(maximum, differs.size()));
     // with a label set by the preset, the note also states the difference
     if (has_label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
     return {joined(differs), joined(start)};
@@ -255,7 +262,12 @@ std::string subscript(std::size_t number) {
 }
 
 std::string step_control_text(const Side& side) {
-    return side.method.adaptive ? fmt::format("tolerance {}", text_of(side.motion.tolerance)) : step_words(side.step);
+    return side.method.adaptive ? "tolerance " + tolerance_text(side.motion.tolerance) : step_words(side.step);
+}
+
+std::string tolerance_text(const Quad& tolerance) {
+    const auto text = with_power_of_ten(text_of(tolerance));
+    return text.starts_with("1 × ") ? text.substr(std::string_view("1 × ").size()) : text;
 }
 
 std::string grouped(long number) {
@@ -266,7 +278,7 @@ std::string grouped(long number) {
     return digits;
 }
 
-std::string roughly(double value) {
+std::string two_digits(double value) {
     const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - 1);
     return unit < 1 ? fmt::format("{:.2g}", value) : grouped(std::lround(std::round(value / unit) * unit));
 }
@@ -290,7 +302,7 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
         const auto& spec = *specs[i];
         words[i] = has_track ? captions_of_track(i == 0 ? scene.a : scene.b, spec.track)
                    : differ  ? captions_of_kind(spec, all[i])
-                             : captions_apart(all, differences, i == 1, spec.label.has_value(), wording);
+                             : difference_captions(all, differences, i == 1, spec.label.has_value(), wording);
         words[i] = {spec.label.value_or(words[i].heading), spec.note.value_or(words[i].note)};
     }
     return words;
@@ -328,10 +340,8 @@ std::string scene_caption(const Scene& scene, Wording wording) {
 
 std::string scientific(double value) {
     if (!(value > 0)) return "0";
-    if (value >= 0.1 && value < 1000) return roughly(value);
-    const auto digits = fmt::format("{:.1e}", value);
-    const auto e = digits.find('e');
-    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
+    if (value >= 0.1 && value < 1000) return two_digits(value);
+    return with_power_of_ten(fmt::format("{:.1e}", value));
 }
 
 }  // namespace doppel

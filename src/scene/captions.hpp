@@ -27,8 +27,10 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording = 
 /// explicit Euler, 1/30 000 s".
 std::string scene_caption(const Scene& scene, Wording wording = Wording::exact);
 
-/// The step size or tolerance: "1/30 000 s", "tolerance 1e-12".
+/// The step size or tolerance: "1/30 000 s", "tolerance 10⁻¹²".
 std::string step_control_text(const Side& side);
+/// 3e-12 → "3 × 10⁻¹²", 1e-12 → "10⁻¹²".
+std::string tolerance_text(const Quad& tolerance);
 
 /// 12 → "₁₂"
 std::string subscript(std::size_t number);
@@ -37,7 +39,7 @@ std::string subscript(std::size_t number);
 std::string grouped(long number);
 
 /// 223456 → "220 000": two significant digits, as for a single measurement.
-std::string roughly(double value);
+std::string two_digits(double value);
 
 /// 0.0123 → "1.2 × 10⁻²"
 std::string scientific(double value);

@@ -20,15 +20,15 @@ void check_droplets(const Scene& scene, const Side& side) {
     for (const auto& force : parts.forces) {
         const auto* droplet = std::get_if<Droplet<double>>(&force);
         if (!droplet) continue;
-        const double pull =
+        const double attraction =
             droplet->constant * droplet->mass / (parts.particles.front().place - droplet->place).squaredNorm();
         const double rounding = std::nextafter(side.gravity, 2 * side.gravity) - side.gravity;
-        if (pull >= rounding) continue;
+        if (attraction >= rounding) continue;
         throw bad_input(
             "{}: the droplet attracts with {:.2g} m/s², below the rounding of g in double ({:.2g}): both sides would "
             "move "
             "identically{}",
-            scene.preset.name, pull, rounding, remedy<double>);
+            scene.preset.name, attraction, rounding, remedy<double>);
     }
 }
 

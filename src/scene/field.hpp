@@ -31,12 +31,12 @@ constexpr Bounds from_to(double low, double high, std::string_view zero = {}) {
 inline constexpr Bounds angle_bounds{.low = -1e6, .high = 1e6, .why = "beyond, rounding hides the motion"};
 
 /// The most letters in one drawn text, and the most texts in a list.
-inline constexpr std::size_t most_letters = 1000, most_texts = 20;
+inline constexpr std::size_t max_letters = 1000, max_texts = 20;
 
 /// The condition under which a key applies.
-struct Only {
-    bool holds = true;
-    std::string fault = {};  // error if the key does not apply; if empty, the key is read but not written
+struct Condition {
+    bool applies = true;
+    std::string error = {};  // error if the key does not apply; if empty, the key is read but not written
     bool drops = false;      // the command line excludes the key: then the preset's value is ignored without an error
     bool hides = false;      // the table has no such key if it does not apply
     std::string_view beside = {};  // the key that decides, if it is one key
@@ -50,12 +50,12 @@ struct Field {
     std::string_view unit = {};
     Bounds bounds = {};
     std::string_view absent = {};  // meaning of an optional key that is not given
-    Only only = {};
+    Condition only = {};
     std::string_view each = {};                    // for arrays: "one per link"
     std::span<const std::string_view> names = {};  // choices of a text, or of the texts in a list
     std::string_view needed_by = {};               // kind of entry that requires the key
-    bool is_drawn = false;                         // shown in pictures: at most `most_letters`, all of them in the font
-    std::size_t most = 0;                          // for arrays of 1 or more numbers: the most
+    bool is_drawn = false;                         // shown in pictures: at most `max_letters`, all of them in the font
+    std::size_t maximum = 0;                       // for arrays of 1 or more numbers: the most
     std::span<const std::string_view> known = {};  // known values, if the reader does not check them
     std::string_view pattern = {};                 // regular expression of a text, for the schema
     std::optional<Bounds> otherwise = {};          // the widest bounds, if `bounds` depend on other keys

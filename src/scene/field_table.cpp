@@ -52,9 +52,9 @@ std::string ListedField::takes() const {
     std::string text(type.words);
     if (!choices.empty()) text = fmt::format("`\"{}\"`", fmt::join(choices, "\"`, `\""));
     if (!choices.empty() && type.is_list) text = "list of " + text;
-    if (most > 0) text = fmt::format("1 to {} {}", most, text);
+    if (maximum > 0) text = fmt::format("1 to {} {}", maximum, text);
     if (const auto range = range_text(); !range.empty()) text += ", " + range;
-    if (is_drawn && choices.empty()) text += fmt::format(", at most {} letters", most_letters);
+    if (is_drawn && choices.empty()) text += fmt::format(", at most {} letters", max_letters);
     return text;
 }
 
@@ -120,9 +120,11 @@ std::vector<FieldTable> film_tables() {
     clock_fields(scene, preset);
     column_fields(scene, preset);
     side_fields(system, preset.a);
-    particle(
-        {.key = "name", .help = "by which constraints and forces call it", .needed_by = "particle", .is_drawn = true},
-        std::string());
+    particle({.key = "name",
+              .help = "the name that constraints and forces refer to",
+              .needed_by = "particle",
+              .is_drawn = true},
+             std::string());
     ParticleSpec released;
     part_fields(particle, released);
     std::vector<FieldTable> tables{top, scene, system, particle};

@@ -41,8 +41,8 @@ struct ListedField : Field {
     std::string example() const;
 };
 
-/// JSON schema of a list of `least` to `most` items; 0 = any number.
-Json list_schema(Json items, std::size_t least, std::size_t most);
+/// JSON schema of a list of `minimum` to `maximum` items; 0 = any number.
+Json list_schema(Json items, std::size_t minimum, std::size_t maximum);
 
 /// Markdown without code marks.
 std::string plain_words(std::string text);
@@ -59,7 +59,6 @@ struct FieldTable : KeyVisitor {
 
     void key(const Field& field, const KeyMember& by_default) override;
     void table(std::string_view key, const std::function<void(KeyVisitor&)>& list) override;
-    /// Adds the keys and tables of `other`.
     void append(const FieldTable& other);
 
     /// "system" for "[system]", "colors" for "[video.colors]".
@@ -71,7 +70,6 @@ struct FieldTable : KeyVisitor {
 /// The keys that [a] and [b] of a film have in addition to those of [system].
 FieldTable side_text_table();
 
-/// Name of the table of joint torques.
 inline constexpr std::string_view torque_table = "[[system.torque]]";
 
 /// All tables of a film's preset: keys outside of tables; [scene]; [system], [a], [b]; particles; the kinds of

@@ -10,28 +10,29 @@
 namespace doppel {
 namespace {
 
-constexpr double off = 0.5;  // rad: a run with this error has diverged
+constexpr double diverged_error = 0.5;  // rad: a run with this error has diverged
 
 /// Results of some runs: the samples at which they diverge, and the largest and smallest error of the others.
 struct Ends {
     std::vector<long> lost;
-    double least_error = off, greatest_error = 0;
+    double min_error = diverged_error, max_error = 0;
 };
 
 Ends ends_of_fine_runs(const Side& side, const ReferenceTrajectory& reference, long samples,
                        const std::atomic<bool>& stop) {
     Ends ends;
     const auto add = [&](const std::vector<double>& error) {
-        if (static_cast<long>(error.size()) <= samples || error.back() > off) {
+        if (static_cast<long>(error.size()) <= samples || error.back() > diverged_error) {
             ends.lost.push_back(static_cast<long>(error.size()) - 1);
         } else {
-            ends.least_error = std::min(ends.least_error, error.back());
-            ends.greatest_error = std::max(ends.greatest_error, error.back());
+            ends.min_error = std::min(ends.min_error, error.back());
+            ends.max_error = std::max(ends.max_error, error.back());
         }
     };
     if (reference.is_wider) {
         for (const char* tolerance : {"3e-14", "1e-14", "3e-15", "2e-15", "1e-15"})
-            add(error_history(by_taylor_series(side.motion, parse_quad(tolerance)), reference, off, stop).error);
+            add(error_history(by_taylor_series(side.motion, parse_quad(tolerance)), reference, diverged_error, stop)
+                    .error);
     } else {
         add(reference.uncertainty);
     }
@@ -59,16 +60,16 @@ std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, co
         const auto [first, last] = std::minmax_element(ends.lost.begin(), ends.lost.end());
         limit = {scene.time(*first), scene.time(*last)};
     }
-    if (ends.greatest_error == 0) return limit;
+    if (ends.max_error == 0) return limit;
     if (!seen.exponent || seen.kind == Forecast::Kind::regular) return std::nullopt;
     const auto time_to_grow = [&](double error, int sign) {
         const ExponentSpec spec;
-        const double mean = seen.exponent->value, growth = std::log(off / error), time = growth / mean;
+        const double mean = seen.exponent->value, growth = std::log(diverged_error / error), time = growth / mean;
         const double spread = seen.exponent->uncertainty * std::sqrt((spec.duration_s - spec.transient_s) / time);
         return growth / std::max(mean + sign * spread, 0.5 * mean);
     };
     const double end = scene.time(scene.samples);
-    const double first = end + time_to_grow(ends.greatest_error, 1), last = end + time_to_grow(ends.least_error, -1);
+    const double first = end + time_to_grow(ends.max_error, 1), last = end + time_to_grow(ends.min_error, -1);
     return Forecast::Limit{limit ? limit->from : first, last};
 }
 
@@ -76,16 +77,17 @@ std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, co
 
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
     const auto known = side.choice ? side.choice->reference : nullptr;
-    const auto& reference = known ? *known : reference_trajectory(side.motion, scene.samples, side.reach, off, stop);
-    const auto history = error_history(side.motion, reference, off, stop);
+    const auto& reference =
+        known ? *known : reference_trajectory(side.motion, scene.samples, side.reach, diverged_error, stop);
+    const auto history = error_history(side.motion, reference, diverged_error, stop);
     if (history.error.empty()) throw method_failed("the method fails at once");
     Forecast seen{.error = history.error.back(),
                   .error_s = scene.time(static_cast<long>(history.error.size()) - 1),
                   .exponent = std::nullopt,
                   .limit = std::nullopt};
 
-    constexpr std::size_t most_links = 12;
-    if (is_plain_chain(side.motion) && side.motion.chain->links() <= most_links) {
+    constexpr std::size_t max_links = 12;
+    if (is_plain_chain(side.motion) && side.motion.chain->links() <= max_links) {
         const auto pendulum = side.motion.chain->cast<double>();
         seen.exponent = largest_exponent(pendulum, {}, stop);
         seen.kind = kind_of(pendulum, *seen.exponent);
@@ -101,10 +103,11 @@ std::string error_words(const Side& side, double from_s) {
 
 std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop) {
     if (side.replay || (side.choice && side.choice->horizon >= last)) return std::nullopt;
-    if (side.choice) return fmt::format("the accuracy holds up to {:.3g} s", scene.time(side.choice->horizon));
+    if (side.choice) return fmt::format("the accuracy is kept up to {:.3g} s", scene.time(side.choice->horizon));
     const auto history =
-        error_history(side.motion, reference_trajectory(side.motion, last, side.reach, off, stop, 0), off, stop);
-    if (history.error.empty() || !(history.error.back() > off)) return std::nullopt;
+        error_history(side.motion, reference_trajectory(side.motion, last, side.reach, diverged_error, stop, 0),
+                      diverged_error, stop);
+    if (history.error.empty() || !(history.error.back() > diverged_error)) return std::nullopt;
     const long first = static_cast<long>(history.error.size()) - 1;
     return first <= last ? std::optional(error_words(side, scene.time(first))) : std::nullopt;
 }

@@ -22,10 +22,10 @@ void check_changes(const Preset& preset, const TomlReader& video) {
     const auto& changes = preset.video.speed.changes;
     const double end = preset.duration_s.value();
     if (changes.front().at_s.numerator != 0)
-        throw video.fault("speed", "must begin at 0 s; it begins at {} s", changes.front().at_s.value());
+        throw video.error("speed", "must begin at 0 s; it begins at {} s", changes.front().at_s.value());
     for (std::size_t i = 1; i < changes.size(); ++i)
         if (changes[i].at_s.value() <= changes[i - 1].at_s.value() || changes[i].at_s.value() > end)
-            throw video.fault("speed", "must have increasing times, up to {} s; {} s comes after {} s", end,
+            throw video.error("speed", "must have increasing times, up to {} s; {} s comes after {} s", end,
                               changes[i].at_s.value(), changes[i - 1].at_s.value());
 }
 
@@ -73,16 +73,16 @@ long FrameTimes::first_from(const Moment& moment) const {
 
 double film_time(const VideoSpec& video, double time) {
     const auto& changes = video.speed.changes;
-    double sum = 0, pace = 1 / changes.front().speed.value(), done = 0;  // up to `done`, s
+    double sum = 0, slowness = 1 / changes.front().speed.value(), done = 0;  // up to `done`, s
     for (std::size_t i = 1; i < changes.size() && done < time; ++i) {
         const double next = 1 / changes[i].speed.value(), at = changes[i].at_s.value(), ease = ease_before(video, i);
-        sum += pace * (std::min(time, at) - done);
+        sum += slowness * (std::min(time, at) - done);
         if (const double since = time - (at - ease); ease > 0 && since > 0)
-            sum += (next - pace) * ease * eased(std::min(since / ease, 1.0));
+            sum += (next - slowness) * ease * eased(std::min(since / ease, 1.0));
         done = at;
-        pace = next;
+        slowness = next;
     }
-    return sum + pace * std::max(time - done, 0.0);
+    return sum + slowness * std::max(time - done, 0.0);
 }
 
 Rational speed_at(const VideoSpec& video, double time) {
@@ -125,22 +125,22 @@ void check_frames(Preset& preset, const TomlReader& video) {
         spec.fps = quotient(*sampled, {std::max(1L, std::lround(std::ceil(sampled->value() / usual_gif_fps))), 1});
     if (!spec.fps && spec.speed.changes_over_time()) spec.fps = preset.sample_hz;
     const auto fps = spec.fps ? spec.fps : sampled;
-    constexpr double most_fps = 1000;
-    constexpr long most_digits = 1'000'000;
-    if (!fps || fps->value() > most_fps || fps->numerator > most_digits || fps->denominator > most_digits)
-        throw video.fault("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", most_fps,
-                          most_digits, fps ? fps->text() : "beyond them");
+    constexpr double max_fps = 1000;
+    constexpr long max_digits = 1'000'000;
+    if (!fps || fps->value() > max_fps || fps->numerator > max_digits || fps->denominator > max_digits)
+        throw video.error("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", max_fps,
+                          max_digits, fps ? fps->text() : "beyond them");
     const double end = preset.duration_s.value(), samples = end * preset.sample_hz.value();
     const double seconds = spec.speed.changes_over_time() ? film_time(spec, end) : end / spec.speed.constant.value();
-    const double frames = seconds * fps->value(), most_frames = std::max(1e7, samples);
-    if (frames > most_frames)
-        throw video.fault("speed", "makes a film of {:.3g} frames; at most {} are possible", frames, most_frames);
+    const double frames = seconds * fps->value(), max_frames = std::max(1e7, samples);
+    if (frames > max_frames)
+        throw video.error("speed", "makes a film of {:.3g} frames; at most {} are possible", frames, max_frames);
     const auto stride = sampled ? quotient(*sampled, *fps) : std::nullopt;
     if (!stride || static_cast<double>(stride->numerator) * (frames + 1) > 2e18)  // range of 64-bit integers
-        throw video.fault("speed", "and fps must have simpler ratios to scene.sample_hz; it is {}",
+        throw video.error("speed", "and fps must have simpler ratios to scene.sample_hz; it is {}",
                           spec.speed.constant.text());
     if (spec.poster_s && spec.poster_s->value() > end)
-        throw video.fault("poster_s", "must be up to {} s; it is {}", end, spec.poster_s->value());
+        throw video.error("poster_s", "must be up to {} s; it is {}", end, spec.poster_s->value());
 }
 
 }  // namespace doppel

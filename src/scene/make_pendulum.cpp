@@ -44,7 +44,7 @@ PhysicalPendulum<Quad> physical_of(const SideSpec& spec) {
     return made;
 }
 
-bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other) {
+bool differ_in_numbers_only(const PhysicalSpec& one, const PhysicalSpec& other) {
     const auto same_joint = [](const TorqueSpec& a, const TorqueSpec& b) { return a.joint == b.joint; };
     return one.center_m.empty() == other.center_m.empty() &&
            std::equal(one.torques.begin(), one.torques.end(), other.torques.begin(), other.torques.end(), same_joint);

@@ -20,12 +20,13 @@ std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEnt
     if (spec.is_mechanism())
         return {Model::mechanism, "a chain with further constraints or forces needs the general mechanism"};
     if (!spec.physical.is_none())
-        return {Model::angles, fmt::format("{}: rigid bodies in angles, cost O(N)", physical_words(spec.physical))};
+        return {Model::angles,
+                fmt::format("{}: rigid bodies with angles as coordinates, cost O(N)", physical_words(spec.physical))};
     if (!method.angles)
         return {Model::constraints, fmt::format("\"{}\" integrates particles with constraints", method.name)};
     if (spec.stabilise != Stabilise::none) return {Model::constraints, "only constraints can be stabilised"};
     if (spec.links() == 2)
-        return {Model::angles, "two links and no further forces: the closed form in angles is the smallest model"};
+        return {Model::angles, "two links and no further forces: the closed form with angles is the smallest model"};
     return {Model::angles, fmt::format("a chain of {} and no further forces: angles, cost O(N)",
                                        spec.links() == 1 ? "one link" : fmt::format("{} links", spec.links()))};
 }
@@ -135,7 +136,6 @@ Place<Quad> place(const QuadPair& xy) {
     return {xy[0], xy[1]};
 }
 
-/// The names of the particles, and their initial positions.
 class ParticleNames {
 public:
     ParticleNames(std::vector<std::string> names, const Assembly<Quad>& assembly)
@@ -158,7 +158,7 @@ public:
         const auto* particle = std::get_if<std::size_t>(&end);
         return particle ? assembly_.particles[*particle].place : std::get<Place<Quad>>(end);
     }
-    Quad apart(const End<Quad>& one, const End<Quad>& other) const {
+    Quad distance(const End<Quad>& one, const End<Quad>& other) const {
         using std::sqrt;
         const Place<Quad> r = start(one) - start(other);
         return sqrt(Quad(r[0] * r[0] + r[1] * r[1]));
@@ -187,7 +187,7 @@ public:
         const auto at = part_.position_m ? place(*part_.position_m) : by_name_.start(particle);
         if (part_.kind == PartKind::anchor) return Anchor<Quad>{particle, at};
         if (part_.kind == PartKind::slot_line) return SlotLine<Quad>{particle, at, place(part_.direction)};
-        return SlotCircle<Quad>{particle, at, part_.radius_m ? *part_.radius_m : by_name_.apart(particle, at)};
+        return SlotCircle<Quad>{particle, at, part_.radius_m ? *part_.radius_m : by_name_.distance(particle, at)};
     }
     Force<Quad> force() const {
         const auto constant = part_.constant_m3_per_kg_s2.value_or(newton_constant<Quad>());
@@ -210,7 +210,7 @@ private:
         return {std::get<std::size_t>(from), to};
     }
     Quad length(const End<Quad>& a, const End<Quad>& b) const {
-        return part_.length_m ? *part_.length_m : by_name_.apart(a, b);
+        return part_.length_m ? *part_.length_m : by_name_.distance(a, b);
     }
 
     const ParticleNames& by_name_;

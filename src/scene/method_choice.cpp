@@ -12,9 +12,9 @@
 namespace doppel {
 namespace {
 
-constexpr double margin = 0.8;   // allowed error at the samples, relative to the accuracy
-constexpr double enough = 0.5;   // rad; errors above this have no meaning
-constexpr double nearly = 0.97;  // of the longest horizon, if round-off limits all settings
+constexpr double accuracy_margin = 0.8;  // allowed error at the samples, relative to the accuracy
+constexpr double max_error = 0.5;        // rad; errors above this have no meaning
+constexpr double horizon_share = 0.97;   // of the longest horizon, if round-off limits all settings
 
 bool in_quad(const SideSpec& spec) {
     return spec.precision == Precision::in_quad;
@@ -32,7 +32,7 @@ double time_unit_of(const SideSpec& spec, double duration) {
 }
 
 /// The smallest error that can be measured, rad.
-double least_error(const SideSpec& spec) {
+double min_error(const SideSpec& spec) {
     return 2 * pi *
            (in_quad(spec) ? static_cast<double>(std::numeric_limits<Quad>::epsilon())
                           : std::numeric_limits<double>::epsilon());
@@ -44,10 +44,10 @@ std::string tolerance_at(int level) {
     return fmt::format("{}e{}", level % 2 == 0 ? 1 : 3, first_decade - (level + 1) / 2);
 }
 
-/// The loosest level with a tolerance of at most `most`.
-int level_of_tolerance(double most) {
+/// The loosest level with a tolerance of at most `maximum`.
+int level_of_tolerance(double maximum) {
     int level = 0;
-    while (static_cast<double>(parse_quad(tolerance_at(level))) > most * (1 + 1e-9)) ++level;
+    while (static_cast<double>(parse_quad(tolerance_at(level))) > maximum * (1 + 1e-9)) ++level;
     return level;
 }
 
@@ -56,12 +56,13 @@ long steps_at(int level) {
     return level == 0 ? 1 : level % 2 == 1 ? 1L << (level + 1) / 2 : 3L << (level / 2 - 1);
 }
 
-/// The smallest level with at least `least` steps per sample. Throws Error (exit 2) if there would be too many.
-int level_of_steps(double least) {
-    constexpr double most = 0x1p40;
-    if (!(least <= most)) throw bad_input("accuracy would need {:.2g} steps a sample; such a run never ends", least);
+/// The smallest level with at least `minimum` steps per sample. Throws Error (exit 2) if there would be too many.
+int level_of_steps(double minimum) {
+    constexpr double maximum = 0x1p40;
+    if (!(minimum <= maximum))
+        throw bad_input("accuracy would need {:.2g} steps a sample; such a run never ends", minimum);
     int level = 0;
-    while (static_cast<double>(steps_at(level)) < least) ++level;
+    while (static_cast<double>(steps_at(level)) < minimum) ++level;
     return level;
 }
 
@@ -152,12 +153,14 @@ MethodChooser::MethodChooser(const Preset& preset, const std::atomic<bool>& stop
         if (!group.sides.empty() && differing_keys(group.sides.front().spec, spec).empty())
             group.sides.front().names += name;
         else
-            group.sides.push_back(for_side(preset_, name, [&] { return asking(name, spec, group.methods, stop); }));
+            group.sides.push_back(
+                for_side(preset_, name, [&] { return requirement(name, spec, group.methods, stop); }));
     }
 }
 
-MethodChooser::Asking MethodChooser::asking(char name, const SideSpec& spec, std::vector<StepLevels>& methods,
-                                            const std::atomic<bool>& stop) const {
+MethodChooser::SideRequirement MethodChooser::requirement(char name, const SideSpec& spec,
+                                                          std::vector<StepLevels>& methods,
+                                                          const std::atomic<bool>& stop) const {
     const double time_unit = time_unit_of(spec, preset_.duration_s.value());
     const double swing = std::ceil(2 * pi * time_unit * preset_.sample_hz.value() * (1 - 1e-9));
     const auto levels = [&](std::string_view method) { return StepLevels(method, spec, preset_.sample_hz, time_unit); };
@@ -179,26 +182,26 @@ MethodChooser::Asking MethodChooser::asking(char name, const SideSpec& spec, std
             .accuracy = static_cast<double>(*spec.accuracy),
             .swing_samples = std::lround(std::min(swing, static_cast<double>(samples_))),
             .reference = std::make_shared<const ReferenceTrajectory>(
-                reference_trajectory(any.motion, samples_, any.reach, enough, stop)),
+                reference_trajectory(any.motion, samples_, any.reach, max_error, stop)),
             .tried = {}};
 }
 
-const ErrorHistory& MethodChooser::tried(Asking& side, const StepLevels& method, int level,
+const ErrorHistory& MethodChooser::tried(SideRequirement& side, const StepLevels& method, int level,
                                          const std::atomic<bool>& stop) const {
     const std::pair setting(method.method, level);
     const auto known = side.tried.find(setting);
     if (known != side.tried.end()) return known->second;
     const auto motion = method.side(side.spec, preset_.sample_hz, level).motion;
-    return side.tried.emplace(setting, error_history(motion, *side.reference, enough, stop)).first->second;
+    return side.tried.emplace(setting, error_history(motion, *side.reference, max_error, stop)).first->second;
 }
 
 Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, long horizon,
-                                  const Asking& side) const {
+                                  const SideRequirement& side) const {
     const auto seconds = [&](long sample) { return static_cast<double>(sample) / preset_.sample_hz.value(); };
     if (!history.failure.empty())
         return method_failed("the motion fails within {:.2g} s: {}", seconds(static_cast<long>(history.error.size())),
                              history.failure);
-    const auto within = [&](long sample) { return history.at(static_cast<std::size_t>(sample)) / margin; };
+    const auto within = [&](long sample) { return history.at(static_cast<std::size_t>(sample)) / accuracy_margin; };
     const double for_swing = within(side.swing_samples), to_end = within(samples_);
     const auto up = [](double value) {
         const double digit = std::pow(10, std::floor(std::log10(value)));
@@ -206,13 +209,15 @@ Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, 
     };
     const bool quad = in_quad(side.spec);
     return bad_input(
-        "accuracy = {:.3g} rad is beyond {} here: it would hold for {:.2g} s; possible: {} for {:.2g} s{}{}", accuracy,
-        quad ? "quad" : "double", std::max(0.0, seconds(horizon)), std::isfinite(for_swing) ? up(for_swing) : "none",
-        seconds(side.swing_samples), to_end < enough ? fmt::format(" and {} to the end", up(to_end)) : "",
+        "accuracy = {:.3g} rad is beyond {} here: it would be kept for {:.2g} s; possible: {} for {:.2g} s{}{}",
+        accuracy, quad ? "quad" : "double", std::max(0.0, seconds(horizon)),
+        std::isfinite(for_swing) ? up(for_swing) : "none", seconds(side.swing_samples),
+        to_end < max_error ? fmt::format(" and {} to the end", up(to_end)) : "",
         quad ? "" : "; precision = \"quad\" allows more");
 }
 
-double MethodChooser::work(Asking& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const {
+double MethodChooser::work(SideRequirement& side, const StepLevels& method, int level,
+                           const std::atomic<bool>& stop) const {
     const auto& history = tried(side, method, level, stop);
     const long samples = std::max(history.effort_samples, 1L);
     return work_of(method.side(side.spec, preset_.sample_hz, level).motion, history.effort, samples) *
@@ -224,18 +229,18 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
     for (auto& group : groups_) {
         auto& sides = group.sides;
         const auto& methods = group.methods;
-        const auto horizon = [&](Asking& side, const StepLevels& method, int level) {
-            return tried(side, method, level, stop).last_within(margin * factor * side.accuracy);
+        const auto horizon = [&](SideRequirement& side, const StepLevels& method, int level) {
+            return tried(side, method, level, stop).last_within(accuracy_margin * factor * side.accuracy);
         };
         std::vector<long> goals(sides.size(), samples_);
         const auto does = [&](const StepLevels& method, int level) {
             return std::equal(sides.begin(), sides.end(), goals.begin(),
-                              [&](Asking& side, long goal) { return horizon(side, method, level) >= goal; });
+                              [&](SideRequirement& side, long goal) { return horizon(side, method, level) >= goal; });
         };
         if (std::ranges::none_of(methods, [&](const auto& method) { return does(method, method.start); })) {
             // nearly as long as the method that remains accurate longest
             const auto& best = *std::ranges::max_element(methods, {}, [&](const StepLevels& method) {
-                return std::accumulate(sides.begin(), sides.end(), 0L, [&](long sum, Asking& side) {
+                return std::accumulate(sides.begin(), sides.end(), 0L, [&](long sum, SideRequirement& side) {
                     return sum + horizon(side, method, method.finest);
                 });
             });
@@ -247,12 +252,14 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
                                            furthest, sides[i]);
                     });
                 if (furthest < samples_)
-                    goals[i] = std::max(sides[i].swing_samples, std::lround(nearly * static_cast<double>(furthest)));
+                    goals[i] =
+                        std::max(sides[i].swing_samples, std::lround(horizon_share * static_cast<double>(furthest)));
             }
         }
         const auto work_at = [&](const StepLevels& method, int level) {
-            return std::accumulate(sides.begin(), sides.end(), 0.0,
-                                   [&](double sum, Asking& side) { return sum + work(side, method, level, stop); });
+            return std::accumulate(sides.begin(), sides.end(), 0.0, [&](double sum, SideRequirement& side) {
+                return sum + work(side, method, level, stop);
+            });
         };
         struct Found {
             const StepLevels* method;
@@ -267,28 +274,28 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
             if (level) found.push_back({&method, *level, work_at(method, *level)});
             std::ranges::stable_sort(found, {}, &Found::work);
         }
-        const auto& [method, level, least] = found.front();
+        const auto& [method, level, minimum] = found.front();
         auto why = fmt::format("; fastest method: {}", method->method);
         if (found.size() > 1)
-            why += fmt::format(", {:.2g} times the work of {}", least / found[1].work, found[1].method->method);
-        for (auto& asking : sides) {
-            auto side = method->side(asking.spec, preset_.sample_hz, level);
-            const auto& history = tried(asking, *method, level, stop);
-            const long last = horizon(asking, *method, level);
+            why += fmt::format(", {:.2g} times the work of {}", minimum / found[1].work, found[1].method->method);
+        for (auto& requirement : sides) {
+            auto side = method->side(requirement.spec, preset_.sample_hz, level);
+            const auto& history = tried(requirement, *method, level, stop);
+            const long last = horizon(requirement, *method, level);
             side.why += why;
             side.choice = MethodChoice{
-                .accuracy = factor * asking.accuracy,
-                .estimated_error = std::max(history.at(static_cast<std::size_t>(last)), least_error(asking.spec)),
+                .accuracy = factor * requirement.accuracy,
+                .estimated_error = std::max(history.at(static_cast<std::size_t>(last)), min_error(requirement.spec)),
                 .horizon = last,
-                .reference = asking.reference,
-                .work = work(asking, *method, level, stop)};
-            for (const char name : asking.names) chosen[name == 'a' ? 0 : 1] = side;
+                .reference = requirement.reference,
+                .work = work(requirement, *method, level, stop)};
+            for (const char name : requirement.names) chosen[name == 'a' ? 0 : 1] = side;
         }
     }
     return chosen;
 }
 
-void step_all_alike(Preset& pair, const Preset& first, const std::atomic<bool>& stop) {
+void use_common_method(Preset& pair, const Preset& first, const std::atomic<bool>& stop) {
     const std::array sides{&pair.a, &pair.b};
     const auto asks = [](const SideSpec* side) { return side->accuracy && side->track.is_none(); };
     if (std::ranges::none_of(sides, asks)) return;

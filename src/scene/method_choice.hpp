@@ -49,7 +49,7 @@ public:
 
 private:
     /// A side that requires an accuracy, or both sides if they are equal.
-    struct Asking {
+    struct SideRequirement {
         std::string names;  // "a", "b", "ab"
         SideSpec spec;
         double accuracy;     // rad
@@ -59,15 +59,16 @@ private:
     };
     /// Sides with a common choice.
     struct Group {
-        std::vector<Asking> sides;
+        std::vector<SideRequirement> sides;
         std::vector<StepLevels> methods;
     };
 
-    Asking asking(char name, const SideSpec& spec, std::vector<StepLevels>& methods,
-                  const std::atomic<bool>& stop) const;
-    const ErrorHistory& tried(Asking& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const;
-    double work(Asking& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const;
-    Error out_of_reach(double accuracy, const ErrorHistory& history, long horizon, const Asking& side) const;
+    SideRequirement requirement(char name, const SideSpec& spec, std::vector<StepLevels>& methods,
+                                const std::atomic<bool>& stop) const;
+    const ErrorHistory& tried(SideRequirement& side, const StepLevels& method, int level,
+                              const std::atomic<bool>& stop) const;
+    double work(SideRequirement& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const;
+    Error out_of_reach(double accuracy, const ErrorHistory& history, long horizon, const SideRequirement& side) const;
 
     Preset preset_;
     long samples_;
@@ -77,6 +78,6 @@ private:
 /// Instead of choosing for each pair of a sweep, integrates the sides that require an accuracy by one method, as
 /// accurately as the precision allows. This takes less time than finding the setting for each pair. Throws Error: exit
 /// 2 if the `first` pair of the sweep cannot keep its accuracy for one swing, exit 130 soon after `stop` is set.
-void step_all_alike(Preset& pair, const Preset& first, const std::atomic<bool>& stop);
+void use_common_method(Preset& pair, const Preset& first, const std::atomic<bool>& stop);
 
 }  // namespace doppel

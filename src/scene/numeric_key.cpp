@@ -100,12 +100,12 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
             into.inside = rest.substr(std::string_view(name).size());
         }
     if (into.inside.empty())  // not a key of a side
-        throw table.fault(key,
+        throw table.error(key,
                           "must be a numeric key such as \"system.gravity_m_per_s2\" or \"b.mass_kg[1]\", or "
                           "\"theta1_deg\", \"theta2_deg\", \"mass_ratio\" or \"length_ratio\"; it is \"{}\"",
                           into.path);
     if (!take_element(into.inside, into.element))
-        throw table.fault(key, "must end like \"mass_kg[1]\" where it is one of several; it is \"{}\"", into.path);
+        throw table.error(key, "must end like \"mass_kg[1]\" where it is one of several; it is \"{}\"", into.path);
 }
 
 /// Checks the number for one side, and copies the properties of its field.
@@ -113,10 +113,10 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     const Place place(number.inside);
     const auto found = find_number(side, place);
     if (!found.field) {
-        if (place.key == "accuracy") throw table.fault(key, "\"{}\" needs an accuracy in the preset", number.path);
+        if (place.key == "accuracy") throw table.error(key, "\"{}\" needs an accuracy in the preset", number.path);
         if (found.names.empty() && !place.table.empty())
-            throw table.fault(key, "\"{}\" names no particle, constraint or force of the preset", number.path);
-        throw table.fault(key, "\"{}\" is not a number of the preset; there are {}", number.path,
+            throw table.error(key, "\"{}\" names no particle, constraint or force of the preset", number.path);
+        throw table.error(key, "\"{}\" is not a number of the preset; there are {}", number.path,
                           fmt::join(found.names, ", "));
     }
     const auto& field = *found.field;
@@ -126,18 +126,19 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     const bool is_real = !found.is_whole && !found.step,
                is_array = is_real && (!field.each.empty() || values.size() > 1);
     const auto require_counting = [&] {
-        if (!field.only.holds && !field.only.fault.empty())
-            throw table.fault(key, "\"{}\" {}", number.path, field.only.fault);
+        if (!field.only.applies && !field.only.error.empty())
+            throw table.error(key, "\"{}\" {}", number.path, field.only.error);
     };
     if (is_real) require_counting();
-    if (!is_array && number.element) throw table.fault(key, "\"{}\" is a number, not an array", number.path);
+    if (!is_array && number.element) throw table.error(key, "\"{}\" is a number, not an array", number.path);
     require_counting();
     number.bounds = field.bounds;
     number.label = label_of(number, field);
     if (number.element && *number.element >= values.size())
-        throw table.fault(key, "\"{}\" is beyond the array, whose last is [{}]", number.path, values.size() - 1);
+        throw table.error(key, "\"{}\" is beyond the array, whose last element is [{}]", number.path,
+                          values.size() - 1);
     if (!number.element && field.each.empty() && values.size() > 1)
-        throw table.fault(key, "\"{}\" has two numbers; give {}[0] or {}[1]", number.path, number.path, number.path);
+        throw table.error(key, "\"{}\" has two numbers; give {}[0] or {}[1]", number.path, number.path, number.path);
 }
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {

@@ -22,14 +22,14 @@ void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
         return;
     }
     const auto advance_b = [&] { now.b = b_->advance_to(now.moment(), stop); };
-    std::exception_ptr fault;
+    std::exception_ptr error;
     std::vector<std::jthread> other;
     if (are_large_)
         other = start_threads(1, [&] {
             try {
                 advance_b();
             } catch (...) {
-                fault = std::current_exception();
+                error = std::current_exception();
             }
             other_cpu_s_ += seconds_of(CLOCK_THREAD_CPUTIME_ID);
         });
@@ -37,7 +37,7 @@ void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
     now.a = a_.advance_to(now.moment(), stop);
     if (is_alone) return advance_b();
     other.clear();
-    if (fault) std::rethrow_exception(fault);
+    if (error) std::rethrow_exception(error);
 }
 
 PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {

@@ -123,8 +123,7 @@ struct PhysicalSpec {
     bool has_coulomb() const;
 };
 
-/// Whether such chains only differ in numbers.
-bool are_alike(const PhysicalSpec& one, const PhysicalSpec& other);
+bool differ_in_numbers_only(const PhysicalSpec& one, const PhysicalSpec& other);
 
 /// [a.track]: a measured motion, shown instead of a simulation.
 struct TrackSpec {
@@ -161,7 +160,6 @@ struct SideSpec {
     std::vector<PartSpec> constraints, forces;
     std::optional<std::string> label, note;  // replace the automatic texts of the side
 
-    /// The step size, or the default.
     Rational step() const { return step_s.value_or(default_step); }
     Quad allowed_error() const {
         return tolerance.value_or(precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);

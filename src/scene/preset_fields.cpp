@@ -6,7 +6,7 @@ namespace doppel {
 namespace {
 
 constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL supports, which reports its own limit
-constexpr double most_hz = 1e6;                     // of a drive: far above the response of a pendulum
+constexpr double max_hz = 1e6;                      // of a drive: far above the response of a pendulum
 
 std::vector<std::string_view> theme_names() {
     std::vector<std::string_view> names;
@@ -86,14 +86,14 @@ void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
     const auto list = [&](std::string_view key, std::string_view caption, std::string_view unit, std::string_view help,
                           std::vector<Quad>& values) {
         auto field = of_links(key, help, unit, not_negative, "", caption);
-        field.only.holds = !is_zero(values);
+        field.only.applies = !is_zero(values);
         visit(field, values);
     };
     list("rod_mass_kg", "", "kg", "mass of each uniform rod, in addition to mass_kg", physical.rod_mass_kg);
     auto center = of_links("center_m", "makes mass_kg a rigid body: distance from its joint to the centre of mass", "m",
                            not_negative, "", "centre of mass");
     center.absent = "at the end";
-    center.only.holds = !physical.center_m.empty();
+    center.only.applies = !physical.center_m.empty();
     visit(center, physical.center_m);
     list("inertia_kg_m2", "", "kg m²", "moment of inertia of this body about its centre of mass",
          physical.inertia_kg_m2);
@@ -117,7 +117,7 @@ void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
               pivot.direction_deg);
         table({"amplitude_m", "amplitude of the prescribed motion; 0 = a fixed pivot", "m", not_negative},
               pivot.amplitude_m);
-        table({"frequency_hz", "frequency", "Hz", {.low = 0, .high = most_hz, .is_open = true}}, pivot.frequency_hz);
+        table({"frequency_hz", "frequency", "Hz", {.low = 0, .high = max_hz, .is_open = true}}, pivot.frequency_hz);
         table({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, pivot.phase_deg);
     });
 }
@@ -134,10 +134,10 @@ void gravity_field(KeyVisitor& visit, SideSpec& side) {
 void method_fields(KeyVisitor& visit, SideSpec& side) {
     visit({.key = "integrator", .help = "the method", .names = names_of_methods()}, side.integrator);
     const bool adaptive = find_method(side.integrator)->adaptive;
-    const auto only = [&](bool holds, const char* what) {
-        return Only{holds,
-                    fmt::format("is for {}; \"{}\" uses {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
-                    side.integrator_from_command_line, false, "integrator"};
+    const auto only = [&](bool applies, const char* what) {
+        return Condition{
+            applies, fmt::format("is for {}; \"{}\" uses {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
+            side.integrator_from_command_line, false, "integrator"};
     };
     visit({"step_s", "of methods with a fixed step", "s", positive, "1/30000",
            only(!adaptive, "methods with a fixed step")},
@@ -155,7 +155,7 @@ void precision_fields(KeyVisitor& visit, SideSpec& side) {
            "1/s",
            positive,
            "",
-           {.holds = side.stabilise == Stabilise::baumgarte}},
+           {.applies = side.stabilise == Stabilise::baumgarte}},
           side.stabilise_rate_per_s);
 }
 
@@ -185,7 +185,7 @@ void side_text_fields(KeyVisitor& visit, SideSpec& side) {
                        "the current folder, or a built-in name",
                .absent = "none"},
               track.file);
-        const Only of_file{.holds = !track.is_none()};
+        const Condition of_file{.applies = !track.is_none()};
         table({"start_s", "time in the file at which the motion begins", "s", {}, "the first sample", of_file},
               track.start_s);
         table({"offset_deg", "reading of the encoders at rest, which is subtracted", "deg", angle_bounds, "", of_file,
@@ -199,7 +199,7 @@ void part_fields(KeyVisitor& visit, TorqueSpec& torque) {
            from_to(1, 10'000)},
           torque.joint);
     visit({"amplitude_N_m", "torque", "N m"}, torque.amplitude_N_m);
-    visit({"frequency_hz", "frequency", "Hz", from_to(0, most_hz)}, torque.frequency_hz);
+    visit({"frequency_hz", "frequency", "Hz", from_to(0, max_hz)}, torque.frequency_hz);
     visit({"phase_deg", "of the cosine at t = 0", "deg", angle_bounds}, torque.phase_deg);
 }
 
@@ -245,16 +245,16 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
 void format_fields(KeyVisitor& visit, VideoSpec& video) {
     static const auto codecs = codecs_of(FilmFormat::webm);
     visit({"format", "file format; png: one picture a frame"}, video.format);
-    const auto only = [&](bool holds, const char* what) {
-        return Only{holds, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
-                    visit.from_command_line("format"), false, "format"};
+    const auto only = [&](bool applies, const char* what) {
+        return Condition{applies, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
+                         visit.from_command_line("format"), false, "format"};
     };
     const FormatRow& row = format_row(video.format, video.codec);
     const bool is_webm = video.format == FilmFormat::webm;
     const auto encoded = only(row.is_encoded(), "of mp4 and webm");
     visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
     visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
-    visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.holds = video.transparent}},
+    visit({"transparent", "no background; of png, apng and webm (VP9)", "", {}, "", {.applies = video.transparent}},
           video.transparent);
     constexpr std::string_view effort = "of mp4 and webm: preset of the encoder; \"doppel\": tuned for these pictures";
     visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
@@ -274,8 +274,9 @@ void time_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"fps", rates, "1/s", positive, all_samples}, video.fps);
     visit({"speed", "seconds of motion a second of film; in a list, each speed is reached at its time", "", positive},
           video.speed);
-    const Only of_changes{video.speed.changes_over_time(),
-                          "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, false, "speed"};
+    const Condition of_changes{video.speed.changes_over_time(),
+                               "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, false,
+                               "speed"};
     constexpr std::string_view ease =
         "time of motion before a change of speed, in which the speed changes by 3u² − 2u³";
     visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
@@ -291,9 +292,9 @@ void time_fields(KeyVisitor& visit, VideoSpec& video) {
 void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"layout", "how the pendulums are placed"}, video.layout);
     const auto only = [&](Arrangement layout) {
-        return Only{video.layout == layout,
-                    fmt::format("is for the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)),
-                    false, false, "layout"};
+        return Condition{video.layout == layout,
+                         fmt::format("is for the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)),
+                         false, false, "layout"};
     };
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
@@ -307,13 +308,14 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
     visit({.key = "panels", .help = "\"pendulums\" and strips, in their order"}, static_cast<Panels&>(video));
     visit({.key = "show",
-           .help = "what is shown besides trails; credit: by whom, on the end card; twin: the other side as a shadow",
+           .help =
+               "what is shown besides trails; credit: Doppel's name on the end card; twin: the other side as a shadow",
            .names = shown_parts},
           video.show);
     visit.table("view", [&](KeyVisitor& table) {
         table({"follow", "the mass that stays in the middle, from 1; 0 = none", "", from_to(0, 10'000)},
               video.view.follow);
-        const Only still{video.view.follow == 0, "is of a view that follows no mass", false, false, "follow"};
+        const Condition still{video.view.follow == 0, "is for a view that follows no mass", false, false, "follow"};
         table({"center_m",
                "the place in the middle of a panel, [x, y]",
                "m",
@@ -350,7 +352,11 @@ void style_fields(KeyVisitor& visit, VideoSpec& video) {
         table({"bob", "radius of the heaviest bob", "px", from_to(0, 200, "nothing"), fitted}, video.widths.bob);
     });
     visit.table("fonts", [&](KeyVisitor& table) {
-        table({"text", "font file (TrueType, OpenType), beside the preset or from here", "", {}, "built in"},
+        table({"text",
+               "font file (TrueType, OpenType); path from the preset or from the current folder",
+               "",
+               {},
+               "built in"},
               video.text_font);
     });
     visit.table("fonts_px", [&](KeyVisitor& table) {

@@ -52,7 +52,6 @@ void part_fields(KeyVisitor& visit, PartSpec& part);
 
 // Keys of [video].
 
-/// The output format.
 void format_fields(KeyVisitor& visit, VideoSpec& video);
 /// Times and speeds.
 void time_fields(KeyVisitor& visit, VideoSpec& video);

@@ -20,7 +20,7 @@ constexpr std::string_view ending = ".toml";
 /// Folders of presets: films, then figures.
 constexpr std::array<std::string_view, 2> folders{"presets/", "presets/figures/"};
 
-constexpr std::size_t most_bytes = std::size_t{8} << 20;  // 10 000 links with every number to 34 digits take 4 MB
+constexpr std::size_t max_bytes = std::size_t{8} << 20;  // 10 000 links with every number to 34 digits take 4 MB
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void check_preset_name(const std::string& path, const std::string& name) {
     if (!is_utf8(name)) refuse("is not UTF-8");
     for (std::string_view rest = name; !rest.empty();)
         if (const auto character = next_character(rest); is_control(character))
-            refuse(fmt::format("holds the control character U+{:04X}", static_cast<unsigned>(character)));
+            refuse(fmt::format("contains the control character U+{:04X}", static_cast<unsigned>(character)));
     if (name.size() > longest_preset_name)
         refuse(fmt::format("has {} bytes; at most {} are possible", name.size(), longest_preset_name));
 }
@@ -42,7 +42,7 @@ namespace {
 
 PresetText read_file(const fs::path& path, const std::string& call, const std::atomic<bool>* stop) {
     PresetText preset{.name = path.stem().string(), .path = path.string(), .text = {}, .call = call};
-    constexpr WantedFile wanted{"a preset is a TOML file", most_bytes, "there is no such preset"};
+    constexpr WantedFile wanted{"a preset is a TOML file", max_bytes, "there is no such preset"};
     preset.text = read_whole_file(path, wanted, stop);
     check_preset_name(preset.path, preset.name);
     return preset;

@@ -28,12 +28,12 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
 void check_single(const Preset& preset, TomlReader& top, const TomlReader& video) {
     if (preset.video.layout != Arrangement::single) return;
     if (top.has("b"))
-        throw video.fault("layout",
+        throw video.error("layout",
                           "\"single\" shows side a alone, but the preset has a table [b]; leave [b] out, or take "
                           "\"side-by-side\"");
     for (const auto strip : preset.video.strips)
         if (strip == StripKind::distance || strip == StripKind::exponent || strip == StripKind::energies_b)
-            throw video.fault("panels", "must be of side a for the layout \"single\"; \"{}\" is of a pair",
+            throw video.error("panels", "must be about side a for the layout \"single\"; \"{}\" is about a pair",
                               name_of(strip));
 }
 
@@ -42,16 +42,16 @@ void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene
     const auto masses = [](const SideSpec& side) {
         return side.particles.empty() ? side.links() : side.particles.size();
     };
-    const auto most = std::min(masses(preset.a), masses(preset.b));
-    if (const auto follow = preset.video.view.follow; follow > static_cast<int>(most))
+    const auto maximum = std::min(masses(preset.a), masses(preset.b));
+    if (const auto follow = preset.video.view.follow; follow > static_cast<int>(maximum))
         throw video.inner(video.read_table("view"), "[video.view]")
-            .fault("follow", "must be from 0 to {}, as there are masses; it is {}", most, follow);
+            .error("follow", "must be from 0 to {}, as there are masses; it is {}", maximum, follow);
     const auto& view = preset.video.view;
     if (!preset.video.pendulums && (view.follow > 0 || view.center_m || view.height_m))
-        throw video.fault("view",
-                          "is of the pendulums, but panels does not hold \"pendulums\"; leave [video.view] out");
+        throw video.error("view",
+                          "is about the pendulums, but panels does not contain \"pendulums\"; leave [video.view] out");
     if (preset.member_columns && preset.video.layout != Arrangement::ensemble)
-        throw scene.fault("member_columns", "is for the layout \"ensemble\"; it is \"{}\"",
+        throw scene.error("member_columns", "is for the layout \"ensemble\"; it is \"{}\"",
                           name_of(preset.video.layout));
 }
 
@@ -61,34 +61,34 @@ void check_layout(const Preset& preset, const TomlReader& video) {
     const auto name = name_of(layout);
     const bool chains = preset.a.particles.empty() && preset.b.particles.empty();
     if (!chains && (layout == Arrangement::ensemble || layout == Arrangement::phase))
-        throw video.fault("layout", "\"{}\" is for chains; the sides are mechanisms", name);
+        throw video.error("layout", "\"{}\" is for chains; the sides are mechanisms", name);
     for (const auto strip : preset.video.strips)
         if ((strip == StripKind::angles || strip == StripKind::rates) && !chains)
-            throw video.fault("panels", "\"{}\" is for chains; the sides are mechanisms", name_of(strip));
+            throw video.error("panels", "\"{}\" is for chains; the sides are mechanisms", name_of(strip));
     if (layout == Arrangement::ensemble && differ_in_kind(preset.a, preset.b))
-        throw video.fault(
+        throw video.error(
             "layout",
             "\"ensemble\" interpolates between the sides, so both need the same number of links; they have {} and {}",
             preset.a.links(), preset.b.links());
     if (layout == Arrangement::phase) {
         const long links = static_cast<long>(std::min(preset.a.links(), preset.b.links()));
         if (preset.video.phase_link > links)
-            throw video.fault("phase_link", "must be from 1 to {}, as there are links; it is {}", links,
+            throw video.error("phase_link", "must be from 1 to {}, as there are links; it is {}", links,
                               preset.video.phase_link);
     }
     if (layout != Arrangement::ensemble) return;
     const auto &a = preset.a, &b = preset.b;
     if (!a.track.is_none() || !b.track.is_none())
-        throw video.fault("layout", "\"{}\" needs two simulations; a side shows a track", name);
-    if (!are_alike(a.physical, b.physical))
-        throw video.fault(
+        throw video.error("layout", "\"{}\" needs two simulations; a side shows a track", name);
+    if (!differ_in_numbers_only(a.physical, b.physical))
+        throw video.error(
             "layout", "\"{}\" needs sides with the same kinds of torques, and center_m on both or on neither", name);
     if (a.is_mechanism() || b.is_mechanism())
-        throw video.fault("layout", "\"{}\" is for chains without further constraints and forces", name);
+        throw video.error("layout", "\"{}\" is for chains without further constraints and forces", name);
     if (a.model != b.model || a.integrator != b.integrator || a.step() != b.step() ||
         a.allowed_error() != b.allowed_error() || a.accuracy != b.accuracy || a.precision != b.precision ||
         a.stabilise != b.stabilise)
-        throw video.fault("layout", "\"{}\" needs sides that differ only in numbers, not in model or method", name);
+        throw video.error("layout", "\"{}\" needs sides that differ only in numbers, not in model or method", name);
 }
 
 /// Samples are compared particle by particle, so that a particle of one side must exist on the other.
@@ -98,7 +98,7 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
     for (const auto& particle : other.particles) others.push_back(particle.name);
     if (names.empty() || names == others) return;
     if (others.empty())
-        throw table.fault("particle", "must be on both sides, so that they can be compared; the other is a chain");
+        throw table.error("particle", "must be on both sides, so that they can be compared; the other is a chain");
     const auto tables = table.read_tables("particle");
     for (std::size_t i = 0; i < tables.size(); ++i) {
         auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
@@ -106,26 +106,26 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
         entry({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
         const auto meant = nearest(name, others);
-        throw entry.fault("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
+        throw entry.error("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
                           meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
     }
     if (names.size() == others.size())
-        throw table.fault("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
+        throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
 }
 
 /// Reports what the format does not allow; the frame rate is checked once it is known.
-void check_format(const TomlReader& table, const std::optional<FormatFault>& fault) {
-    if (fault) throw table.fault(fault->key, "{}", fault->words);
+void check_format(const TomlReader& table, const std::optional<FormatError>& error) {
+    if (error) throw table.error(error->key, "{}", error->words);
 }
 
 void check_layout(const TomlReader& table, const VideoSpec& video) {
     const bool is_portrait = video.layout == Arrangement::portrait;
     if (is_portrait && video.size.height < video.size.width)
-        throw table.fault("size", "must be higher than wide for the layout \"portrait\"; it is [{}, {}]",
+        throw table.error("size", "must be higher than wide for the layout \"portrait\"; it is [{}, {}]",
                           video.size.width, video.size.height);
     if (!video.pendulums && video.layout != Arrangement::side_by_side && !is_portrait &&
         video.layout != Arrangement::single)
-        throw table.fault("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
+        throw table.error("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
 /// By default, members of an ensemble have short trails without glow.
@@ -137,7 +137,7 @@ void read_style(TomlReader& table, VideoSpec& video) {
 
 void check_style(const TomlReader& table, const VideoSpec& video) {
     if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
-        throw table.fault("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
+        throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
                           *video.glow_px);
 }
 
@@ -163,7 +163,7 @@ void read_video(TomlReader& table, VideoSpec& video) {
     table.finish();
     table.check_together([&] {
         check_layout(table, video);
-        check_format(table, format_fault(video.options({1, 1})));
+        check_format(table, format_error(video.options({1, 1})));
         check_style(table, video);
     });
     if (is_preview) make_preview(table, video);
@@ -183,9 +183,9 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     try {
         video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
     } catch (const Error& error) {
-        const auto fault = fonts.fault(key, "{}", error.what());
-        if (error.code() != ExitCode::bad_input) throw Error(error.code(), fault.what());
-        fonts.refuse(fault, key);
+        const auto key_error = fonts.error(key, "{}", error.what());
+        if (error.code() != ExitCode::bad_input) throw Error(error.code(), error.what());
+        fonts.refuse(key_error, key);
         return false;
     }
     return true;
@@ -199,7 +199,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
     for (std::size_t k = 0; k < members.size(); ++k)
         for (const auto& list : Release::lists)
             if (const auto count = (members[k].*list.member).size(); count > 0 && count != preset.a.links())
-                throw video.fault("members", "must have {} numbers each, one a link; {} of [{}] has {}",
+                throw video.error("members", "must have {} numbers each, one a link; {} of [{}] has {}",
                                   preset.a.links(), list.key, k, count);
     const auto place = [&](const Release::List& list, std::vector<Quad> SideSpec::*of_side) {
         const auto &first = members.front().*list.member, &last = members.back().*list.member;
@@ -208,7 +208,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
             if (member.empty() || video.from_command_line("members") || !document.table(top, table).has(list.key) ||
                 given == member)
                 return;
-            throw video.fault("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
+            throw video.error("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
                               table, list.key, toml_value(given), toml_value(member));
         };
         check_side("a", preset.a.*of_side, first);
@@ -244,7 +244,7 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
         load_track(document, b, preset.b);
         b.check_together([&] {
             if (!is_film && preset.a.links() != preset.b.links())
-                throw b.fault("links",
+                throw b.error("links",
                               "must be that of the other side, so that the two can be compared; they are {} and {}",
                               preset.a.links(), preset.b.links());
             if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) return;
@@ -255,45 +255,45 @@ void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& le
 }
 
 void check_clock(const Preset& preset, const TomlReader& scene) {
-    constexpr long most_digits = 1'000'000'000;
-    if (preset.sample_hz.numerator > most_digits || preset.sample_hz.denominator > most_digits)
-        throw scene.fault("sample_hz", "must be a fraction of whole numbers up to {}; it is {}", most_digits,
+    constexpr long max_digits = 1'000'000'000;
+    if (preset.sample_hz.numerator > max_digits || preset.sample_hz.denominator > max_digits)
+        throw scene.error("sample_hz", "must be a fraction of whole numbers up to {}; it is {}", max_digits,
                           preset.sample_hz.text());
     for (const auto* side : {&preset.a, &preset.b}) {
         if (!side->track.is_none() || side->accuracy || find_method(side->integrator)->adaptive) continue;
         const auto rate = quotient({1, 1}, side->step());
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())
-            throw scene.fault("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; use {}",
+            throw scene.error("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; use {}",
                               rate ? rate->text() : "?", side == &preset.a ? "a" : "b", preset.sample_hz.text(),
                               rate ? rates_that_divide(*rate, preset.sample_hz.value()) : "another");
     }
     const auto samples = product(preset.duration_s, preset.sample_hz);
     if (!samples || !samples->is_whole())
-        throw scene.fault("duration_s", "must be a whole number of samples at {} Hz; {} s are {}",
+        throw scene.error("duration_s", "must be a whole number of samples at {} Hz; {} s are {}",
                           preset.sample_hz.text(), preset.duration_s.value(),
                           samples ? fmt::format("{}", samples->value()) : "too many");
-    constexpr long most_samples = 100'000'000;
-    if (samples->numerator > most_samples)
-        throw scene.fault("duration_s", "must be at most {} samples; it is {}", most_samples, samples->numerator);
+    constexpr long max_samples = 100'000'000;
+    if (samples->numerator > max_samples)
+        throw scene.error("duration_s", "must be at most {} samples; it is {}", max_samples, samples->numerator);
 }
 
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     const auto document = parse_document(source, overrides);
-    Faults faults(overrides);
+    KeyErrors errors(overrides);
     Preset preset;
     preset.name = preset.title = source.name;
-    auto first = document.top(&faults);
+    auto first = document.top(&errors);
     const bool knows_font = read_font(first, document, preset.video);
     const auto font = preset.video.text_font;
-    auto top = document.top(&faults, knows_font ? &preset.video.typeface : nullptr);
+    auto top = document.top(&errors, knows_font ? &preset.video.typeface : nullptr);
     top.require_title(preset.name);
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
 
     auto scene = document.table(top, "scene");
     const auto kind = read_kind(scene);
-    if (faults.concern("scene")) faults.throw_if_any();  // without the kind it is unknown which tables are allowed
+    if (errors.concern("scene")) errors.throw_if_any();  // without the kind it is unknown which tables are allowed
     if (kind != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     clock_fields(scene, preset);
@@ -304,12 +304,12 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     read_video(video, preset.video);
     preset.video.text_font = font;  // path as found
     top.finish();
-    faults.throw_if_any();
+    errors.throw_if_any();
     place_members(document, top, video, preset);
     check_clock(preset, scene);
     check_frames(preset, video);
     const auto rate = preset.video.fps ? preset.video.fps : product(preset.sample_hz, preset.video.speed.constant);
-    check_format(video, rate_fault(preset.video.options(*rate)));
+    check_format(video, rate_error(preset.video.options(*rate)));
     check_single(preset, top, video);
     check_view(preset, video, scene);
     check_layout(preset, video);

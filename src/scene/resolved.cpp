@@ -90,7 +90,7 @@ std::string toml_value(const KeyMember& member) {
 }
 
 void TomlWriter::key(const Field& field, const KeyMember& member) {
-    const auto value = field.only.holds ? toml_value(member) : "";
+    const auto value = field.only.applies ? toml_value(member) : "";
     const auto* text = std::get_if<std::string*>(&member);
     if (!value.empty() && !(text && (*text)->empty())) add(field.key, value);
 }

@@ -14,7 +14,6 @@ namespace doppel {
 
 // Values as TOML.
 
-/// A basic string, quoted.
 std::string toml_text(const std::string& text);
 /// A whole number, or "a/b" in quotes.
 std::string toml_ratio(const Rational& value);

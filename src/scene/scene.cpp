@@ -31,9 +31,9 @@ void check_tracks(const Scene& scene) {
     const auto& preset = scene.preset;
     for (const auto* side : {&scene.a, &scene.b}) {
         if (!side->replay) continue;
-        const auto most = longest_duration(*side->replay, preset.sample_hz);
-        const double seconds = most.value();  // as a decimal, if that is exact
-        const auto text = rational_from_decimal(seconds) == most ? fmt::format("{}", seconds) : toml_ratio(most);
+        const auto maximum = longest_duration(*side->replay, preset.sample_hz);
+        const double seconds = maximum.value();  // as a decimal, if that is exact
+        const auto text = rational_from_decimal(seconds) == maximum ? fmt::format("{}", seconds) : toml_ratio(maximum);
         if (preset.duration_s.value() > seconds)
             throw bad_input(
                 "{}: [scene] duration_s must be at most {}, as long as the track of side {} lasts; it is {}",
@@ -46,16 +46,16 @@ void check_tracks(const Scene& scene) {
 void check_steps(const Scene& scene) {
     const auto& speed = scene.preset.video.speed;
     const double between_frames = speed.slowest().value() / scene.fps.value();  // s of motion
-    constexpr double least_steps = 8;
+    constexpr double min_steps = 8;
     for (const auto* side : {&scene.a, &scene.b}) {
-        if (side->replay || side->method.adaptive || between_frames >= least_steps * side->step.value()) continue;
+        if (side->replay || side->method.adaptive || between_frames >= min_steps * side->step.value()) continue;
         const auto steps = product(scene.frames.stride, {side->motion.steps_per_sample, 1});
         if (!speed.changes_over_time() && steps && steps->is_whole()) continue;
         throw bad_input(
             "{}: [video] frames are {:.3g} s of the motion apart and not all at steps, which are {:.3g} s long on side "
             "{}: they must be at most {:.3g} s, by a smaller step_s or accuracy",
             scene.preset.name, between_frames, side->step.value(), side == &scene.a ? "a" : "b",
-            between_frames / least_steps);
+            between_frames / min_steps);
     }
 }
 
@@ -64,13 +64,14 @@ void check_steps(const Scene& scene) {
 std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto &first = scene.preset.a, &last = scene.preset.b;
     std::vector<MotionSpec> members;
-    const auto& asked = scene.preset.video.members;
-    for (std::size_t k = 0; k < asked.size(); ++k) {
-        auto member = between(first, last, Quad(k) / Quad(asked.size() - 1));
+    const auto& requested = scene.preset.video.members;
+    for (std::size_t k = 0; k < requested.size(); ++k) {
+        auto member = between(first, last, Quad(k) / Quad(requested.size() - 1));
         for (const auto& [given, into] : {std::pair{&Release::angle_deg, &SideSpec::angle_deg},
                                           {&Release::mass_kg, &SideSpec::mass_kg},
                                           {&Release::length_m, &SideSpec::length_m}})
-            if (!asked.releases.empty() && !(asked.releases[k].*given).empty()) member.*into = asked.releases[k].*given;
+            if (!requested.releases.empty() && !(requested.releases[k].*given).empty())
+                member.*into = requested.releases[k].*given;
         members.push_back(scene.a.motion);
         members.back().chain = chain_of(member);
         if (!member.physical.is_none()) members.back().physical = physical_of(member);
@@ -171,7 +172,7 @@ RunFailure SideRun::broken(const std::string& what) const {
 }
 
 void SideRun::watch(const Observation& seen) {
-    if (const auto fault = not_finite(seen, side_.has_angles)) throw broken(*fault);
+    if (const auto error = not_finite(seen, side_.has_angles)) throw broken(*error);
     if (seen.energy_change > proportion_.gain)
         throw broken(fmt::format("the energy has grown by {:.3g} J, more than tenfold", seen.energy_change));
     if (seen.length_error > proportion_.reach)
@@ -192,9 +193,9 @@ Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& s
             motion_->advance_within(moment.share, stop);
         else if (!is_released)
             motion_->advance(stop);
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::method_failed) throw;
-        throw broken(fault.what());
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed) throw;
+        throw broken(error.what());
     }
     auto seen = motion_->observe();
     watch(seen);

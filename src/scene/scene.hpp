@@ -24,7 +24,8 @@ struct Moment {
     long sample = 0;
     double share = 0;
 
-    friend auto operator<=>(const Moment&, const Moment&) = default;  // NOLINT(modernize-use-nullptr): as in faults.hpp
+    friend auto operator<=>(const Moment&,
+                            const Moment&) = default;  // NOLINT(modernize-use-nullptr): as in key_errors.hpp
 };
 /// The moment so many samples after the start, rounded to a sample if it is within 1e-6 of one.
 Moment moment_at(double samples);
@@ -42,7 +43,6 @@ struct FrameTimes {
     long first_from(const Moment& moment) const;
 };
 
-/// The frames for a motion of `samples`.
 FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples);
 
 /// The film time at which the motion reaches `time`, s, if the speed changes. During a change, the slowness (film
@@ -123,9 +123,9 @@ template <class Make>
 auto for_side(const Preset& preset, char name, const Make& make) {
     try {
         return make();
-    } catch (const Error& fault) {
-        if (fault.code() == ExitCode::interrupted) throw;
-        throw Error(fault.code(), fmt::format("{}: side {}: {}", preset.name, name, fault.what()));
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::interrupted) throw;
+        throw Error(error.code(), fmt::format("{}: side {}: {}", preset.name, name, error.what()));
     }
 }
 
@@ -145,7 +145,6 @@ struct Scene {
     double time(long sample) const { return time(Moment{sample}); }
     /// Whether there is only side a; then side b is not simulated.
     bool is_single() const { return preset.video.layout == Arrangement::single; }
-    /// The letters of its sides.
     std::string_view letters() const { return is_single() ? "a" : "ab"; }
     const Side& side(char letter) const { return letter == 'a' ? a : b; }
     /// The time at which a side first loses its required accuracy, s; nothing if all keep it to the end.
@@ -188,7 +187,6 @@ std::optional<double> drive_period(const SideSpec& spec);
 /// The mean of a quantity over the last period, from its values at samples, interpolated linearly.
 class PeriodMean {
 public:
-    /// `period`, s.
     explicit PeriodMean(double period) : period_(period) {}
     void add(double time, double value);
     /// The mean up to a time at or after the last sample; nothing before one period is over.
@@ -211,9 +209,8 @@ public:
     /// `name` = 'a' or 'b', for errors.
     SideRun(const Scene& scene, const Side& side, char name);
 
-    /// Returns sample 0, then 1, 2, … Throws RunFailure with time and quantity if a number is not finite, the energy
-    /// error is far too large, the length error of a rod reaches its length, or a step fails; exit 130 soon after
-    /// `stop` is set.
+    /// Returns sample 0, then 1, 2, … Throws RunFailure with time and quantity if a number is not finite, errors of
+    /// energy or rods are far too large, or a step fails; exit 130 soon after `stop` is set.
     Observation next(const std::atomic<bool>& stop);
     /// Advances to a moment up to the next sample. With a fixed step, Motion::advance_within() says what that gives.
     /// Throws as next().
@@ -264,7 +261,6 @@ public:
 
     Effort effort_a() const { return a_.effort(); }
     Effort effort_b() const { return b_ ? b_->effort() : Effort{}; }
-    /// CPU time of other threads than the caller's, s.
     double other_cpu_s() const { return other_cpu_s_; }
 
 private:

@@ -31,12 +31,12 @@ std::vector<SideKey> keys_of(SideSpec side) {
                                        : fmt::format("{} \"{}\"", owner.kind, owner.name);
             all.push_back({.place = place, .key = "", .unit = "", .is_of_part = is_part});
         }
-        if (!field.only.holds && !field.only.fault.empty()) return;
+        if (!field.only.applies && !field.only.error.empty()) return;
         SideKey key{.place = place,
                     .key = field.key,
                     .unit = field.unit,
                     .caption = caption_of(field),
-                    .counts = field.only.holds,
+                    .counts = field.only.applies,
                     .is_of_links = !field.each.empty() && field.symbol.empty() && place.empty(),
                     .is_of_part = is_part};
         if (const auto numbers = numbers_of(member)) key.numbers.assign(numbers->begin(), numbers->end());
@@ -46,7 +46,7 @@ std::vector<SideKey> keys_of(SideSpec side) {
     return all;
 }
 
-bool hold_the_same(const SideKey& one, const SideKey& other) {
+bool have_equal_values(const SideKey& one, const SideKey& other) {
     return one.numbers == other.numbers && one.text == other.text;
 }
 
@@ -108,16 +108,16 @@ std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b) 
     const auto in_a = index_of(of_a), in_b = index_of(of_b);
     std::vector<KeyDifference> all;
     const auto counterpart_of = [](const SideKey& key, const Index& others) -> std::optional<SideKey> {
-        const auto twin = others.find(Name(key.place, key.key));
-        return twin == others.end() ? std::nullopt : std::optional(*twin->second);
+        const auto other = others.find(Name(key.place, key.key));
+        return other == others.end() ? std::nullopt : std::optional(*other->second);
     };
     // if the other side lacks the entry, its keys are not listed one by one
     const auto is_of_entry = [](const SideKey& key, const Index& others) {
         return !key.place.empty() && !key.key.empty() && !others.contains(Name(key.place, ""));
     };
     for (const auto& key : of_a) {
-        const auto twin = counterpart_of(key, in_b);
-        if (twin ? !hold_the_same(key, *twin) : !is_of_entry(key, in_b)) all.push_back({key, twin});
+        const auto other = counterpart_of(key, in_b);
+        if (other ? !have_equal_values(key, *other) : !is_of_entry(key, in_b)) all.push_back({key, other});
     }
     for (const auto& key : of_b)
         if (!counterpart_of(key, in_a) && !is_of_entry(key, in_a)) all.push_back({std::nullopt, key});
@@ -133,9 +133,9 @@ std::string KeyDifference::words(bool of_b) const {
     if (self->numbers.empty()) return fmt::format("{} {}", name, self->text);
     const auto unit = fmt::format("{}{}", known.unit.empty() ? "" : " ", known.unit);
     // in longer lists, only the first number in which the sides differ is shown
-    constexpr std::size_t most_listed = 3;
+    constexpr std::size_t max_listed = 3;
     const auto& numbers = self->numbers;
-    if (numbers.size() > most_listed && other && other->numbers.size() == numbers.size()) {
+    if (numbers.size() > max_listed && other && other->numbers.size() == numbers.size()) {
         const auto at = std::mismatch(numbers.begin(), numbers.end(), other->numbers.begin()).first;
         const auto number = at - numbers.begin();
         const auto which = known.is_of_links ? fmt::format(" of link {}", number + 1) : fmt::format("[{}]", number);
@@ -143,8 +143,8 @@ std::string KeyDifference::words(bool of_b) const {
     }
     std::vector<std::string> texts;
     for (const auto& number : numbers) texts.push_back(text_of(number));
-    if (texts.size() > most_listed) {
-        texts.resize(most_listed);
+    if (texts.size() > max_listed) {
+        texts.resize(max_listed);
         texts.emplace_back("…");
     }
     return fmt::format("{} {}{}", name, fmt::join(texts, "/"), unit);

@@ -10,7 +10,6 @@
 
 namespace doppel {
 
-/// One key of a side and its value.
 struct SideKey {
     std::string place;               // its entry, "spring 1", or "pivot"; empty: the side itself
     std::string_view key, unit;      // an empty `key` stands for the existence of the entry

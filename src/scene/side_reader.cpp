@@ -15,15 +15,15 @@ namespace {
 /// Whether an accuracy replaces integrator, step size and tolerance. An accuracy from the command line replaces those
 /// of the preset, and vice versa. Both in the same place are an error.
 bool read_accuracy(TomlReader& table, SideSpec& side) {
-    constexpr std::array<std::string_view, 3> rivals{"integrator", "step_s", "tolerance"};
-    const std::string_view* rival = nullptr;
-    for (const auto& key : rivals)
-        if (table.has(key) && !rival) rival = &key;
+    constexpr std::array<std::string_view, 3> conflicts{"integrator", "step_s", "tolerance"};
+    const std::string_view* conflict = nullptr;
+    for (const auto& key : conflicts)
+        if (table.has(key) && !conflict) conflict = &key;
     if (table.has("accuracy")) {
-        const bool ours = table.from_command_line("accuracy"), theirs = rival && table.from_command_line(*rival);
-        if (rival && ours == theirs)
-            table.refuse(table.fault("accuracy", "chooses integrator, step and tolerance; remove it, or {}", *rival)
-                             .with(table.beside(*rival)),
+        const bool ours = table.from_command_line("accuracy"), theirs = conflict && table.from_command_line(*conflict);
+        if (conflict && ours == theirs)
+            table.refuse(table.error("accuracy", "chooses integrator, step and tolerance; remove it, or {}", *conflict)
+                             .with(table.beside(*conflict)),
                          "accuracy");
         if (theirs) {
             side.accuracy.reset();
@@ -31,7 +31,7 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
         }
         table(accuracy_field, side.accuracy);
         side.accuracy_from_command_line = ours;
-    } else if (rival && !(side.accuracy_from_command_line && !table.from_command_line(*rival))) {
+    } else if (conflict && !(side.accuracy_from_command_line && !table.from_command_line(*conflict))) {
         side.accuracy.reset();
     }
     if (!side.accuracy) return false;
@@ -40,7 +40,7 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
     return true;
 }
 
-std::string served(const MethodEntry& method) {
+std::string supported_models(const MethodEntry& method) {
     return fmt::format("{}", fmt::join(models_of(method), " and "));
 }
 
@@ -58,7 +58,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
         std::string name;
         entry({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
-            entry.refuse(entry.fault("name", "must be unique; \"{}\" is used already", name), "name");
+            entry.refuse(entry.error("name", "must be unique; \"{}\" is used already", name), "name");
         const auto same = indices.find(name);
         const bool is_new = same == indices.end();
         if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new))
@@ -69,7 +69,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
 bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     entry.check_together([&] {
         if (particle.name.empty())
-            throw entry.fault("name", "is missing; constraints and forces refer to a particle by it");
+            throw entry.error("name", "is missing; constraints and forces refer to a particle by it");
         entry.require_drawable("name", particle.name);
     });
     part_fields(entry, particle);
@@ -80,7 +80,7 @@ bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
 bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const std::string_view> kinds) {
     const bool has_kind = entry.has("kind");
     if (is_new && !has_kind) {
-        entry.refuse(entry.fault("kind", "is missing; there is \"{}\"", fmt::join(kinds, "\", \"")).with({}), "kind");
+        entry.refuse(entry.error("kind", "is missing; there is \"{}\"", fmt::join(kinds, "\", \"")).with({}), "kind");
         return false;
     }
     std::string name(has_kind ? "" : name_of(part.kind));
@@ -105,7 +105,7 @@ void read_physical_chain(TomlReader& table, SideSpec& side) {
         part_fields(entry, torque);
         entry.check_together([&] {
             if (static_cast<std::size_t>(torque.joint) > side.links())
-                throw entry.fault("joint", "must be 1 to {}, the number of links; it is {}", side.links(),
+                throw entry.error("joint", "must be 1 to {}, the number of links; it is {}", side.links(),
                                   torque.joint);
         });
         return true;
@@ -125,7 +125,7 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
         if (table.has(key))
             table.refuse(
                 table
-                    .fault(key,
+                    .error(key,
                            "describes a chain, but [[system.particle]] describes another system; remove one of them")
                     .with(table.beside("particle")),
                 key);
@@ -134,7 +134,7 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
 void check_masses(TomlReader& table, const SideSpec& side) {
     for (std::size_t i = 0; i < side.links(); ++i)
         if (side.mass_kg[i] + side.physical.rod_mass_kg[i] == 0)
-            throw table.fault("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
+            throw table.error("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
 }
 
 /// What excludes a rigid-body chain, and what it requires.
@@ -142,19 +142,19 @@ void check_physical(TomlReader& table, const SideSpec& side) {
     const auto& physical = side.physical;
     if (physical.is_none()) return;
     if (side.is_mechanism())
-        throw table.fault(!side.forces.empty()        ? "force"
+        throw table.error(!side.forces.empty()        ? "force"
                           : !side.constraints.empty() ? "constraint"
                                                       : "particle",
                           "cannot be combined with links with mass, friction or a drive, which need a plain chain");
     constexpr std::string_view why = "links with mass, friction or a drive need angles";
     if (side.model == ModelChoice::mechanism || side.model == ModelChoice::constraints)
-        throw table.fault("model", "\"{}\" does not support this chain: {}", name_of(side.model), why);
-    if (side.stabilise != Stabilise::none) throw table.fault("stabilise", "is for constraints; {}", why);
+        throw table.error("model", "\"{}\" does not support this chain: {}", name_of(side.model), why);
+    if (side.stabilise != Stabilise::none) throw table.error("stabilise", "is for constraints; {}", why);
     const auto& method = *find_method(side.integrator);
     if (!side.accuracy && !method.angles)
-        throw table.fault("integrator", "\"{}\" needs model = \"constraints\"; {}", side.integrator, why);
+        throw table.error("integrator", "\"{}\" needs model = \"constraints\"; {}", side.integrator, why);
     if (!side.accuracy && physical.has_coulomb() && !method.stabilised)
-        throw table.fault("integrator", "\"{}\" does not support Coulomb friction (joint_coulomb_N_m)",
+        throw table.error("integrator", "\"{}\" does not support Coulomb friction (joint_coulomb_N_m)",
                           side.integrator);
     check_masses(table, side);
 }
@@ -163,21 +163,22 @@ void check_physical(TomlReader& table, const SideSpec& side) {
 void check_choices(TomlReader& table, const SideSpec& side) {
     check_physical(table, side);
     if (side.is_mechanism() && side.model != ModelChoice::automatic && side.model != ModelChoice::mechanism)
-        throw table.fault("model",
+        throw table.error("model",
                           "must be \"mechanism\" or \"auto\" with particles, constraints or forces; it is \"{}\"",
                           name_of(side.model));
     if (side.stabilise != Stabilise::none && side.model == ModelChoice::angles)
-        throw table.fault("stabilise", "is for constraints; in angles rods have constant length");
+        throw table.error("stabilise", "is for constraints; with angles as coordinates rods have constant length");
     if (side.accuracy) return;
     const auto& method = *find_method(side.integrator);
     if (side.is_mechanism() && !method.mechanism)
-        throw table.fault("integrator", "\"{}\" supports {}, not a mechanism", side.integrator, served(method));
+        throw table.error("integrator", "\"{}\" supports {}, not a mechanism", side.integrator,
+                          supported_models(method));
     const auto models = models_of(method);
     if (side.model != ModelChoice::automatic && std::ranges::find(models, name_of(side.model)) == models.end())
-        throw table.fault(table.has("integrator") ? "integrator" : "model", "\"{}\" supports {}, not model = \"{}\"",
-                          side.integrator, served(method), name_of(side.model));
+        throw table.error(table.has("integrator") ? "integrator" : "model", "\"{}\" supports {}, not model = \"{}\"",
+                          side.integrator, supported_models(method), name_of(side.model));
     if (side.stabilise != Stabilise::none && !method.angles)
-        throw table.fault("stabilise", "is not needed with \"{}\", which keeps the constraints itself",
+        throw table.error("stabilise", "is not needed with \"{}\", which keeps the constraints itself",
                           side.integrator);
 }
 

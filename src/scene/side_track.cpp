@@ -39,9 +39,9 @@ void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& 
         key = "start_s";
         replay_of(side.track);
     } catch (const Error& error) {
-        const auto fault = table.fault(key, "{}", error.what());
-        if (error.code() != ExitCode::bad_input) throw Error(error.code(), fault.what());
-        table.refuse(fault, key);
+        const auto key_error = table.error(key, "{}", error.what());
+        if (error.code() != ExitCode::bad_input) throw Error(error.code(), error.what());
+        table.refuse(key_error, key);
     }
 }
 

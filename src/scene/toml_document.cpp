@@ -17,7 +17,7 @@
 namespace doppel {
 namespace {
 
-constexpr int most_parts = 8;  // of a key; Doppel's keys have at most three
+constexpr int max_parts = 8;  // of a key; Doppel's keys have at most three
 
 /// The position after the string that begins at `at`, or where it is broken off.
 std::size_t past_string(std::string_view text, std::size_t at) {
@@ -62,10 +62,10 @@ void bound_keys(std::string_view text, const std::string& path) {
             ++dots;
         else if (!in_key(c))
             dots = 0;
-        if (dots == most_parts) {
+        if (dots == max_parts) {
             const auto before = text.substr(0, at);
             throw bad_input("{}:{}:{}: a key can have at most {} parts; this one has more", path,
-                            1 + std::count(before.begin(), before.end(), '\n'), at - before.rfind('\n'), most_parts);
+                            1 + std::count(before.begin(), before.end(), '\n'), at - before.rfind('\n'), max_parts);
         }
         ++at;
     }
@@ -76,9 +76,9 @@ toml::table parse(const std::string& text, const std::string& path, TomlTexts& t
         texts.insert_or_assign(path, TomlText(text));
         bound_keys(text, path);
         return toml::parse(text, path);
-    } catch (const toml::parse_error& fault) {
-        const auto at = fault.source().begin;
-        throw bad_input("{}:{}:{}: {}", path, at.line, at.column, fault.description());
+    } catch (const toml::parse_error& error) {
+        const auto at = error.source().begin;
+        throw bad_input("{}:{}:{}: {}", path, at.line, at.column, error.description());
     }
 }
 
@@ -113,13 +113,13 @@ bool is_bare_text(std::string_view value) {
 toml::table given_by(const Override& change, TomlTexts& texts) {
     try {
         return parsed_value(change, change.value, texts);
-    } catch (const toml::parse_error& fault) {
+    } catch (const toml::parse_error& error) {
         if (const auto quoted = toml_text(change.value);
             is_bare_text(change.value) && is_toml(quoted))  // also checks UTF-8
             return parsed_value(change, quoted, texts);
         const auto list = fmt::format("[{}]", change.value);
         const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
-        throw bad_input("{}: \"{}\" is not a TOML value ({}); {}", change.origin, change.value, fault.description(),
+        throw bad_input("{}: \"{}\" is not a TOML value ({}); {}", change.origin, change.value, error.description(),
                         lacks_brackets ? fmt::format("a list needs brackets: '{}={}'", change.key, list)
                                        : fmt::format("a string needs quotes: '{}=\"{}\"'", change.key, change.value));
     }
@@ -228,8 +228,8 @@ bool take_element(std::string& key, std::optional<std::size_t>& element) {
     const auto bracket = key.find('[');
     if (bracket == std::string::npos) return true;
     const char *first = key.data() + bracket + 1, *end = key.data() + key.size();
-    const auto [after, fault] = std::from_chars(first, end, element.emplace());
-    const bool is_one = fault == std::errc() && after + 1 == end && *after == ']';
+    const auto [after, error] = std::from_chars(first, end, element.emplace());
+    const bool is_one = error == std::errc() && after + 1 == end && *after == ']';
     key.resize(bracket);
     return is_one;
 }
@@ -240,8 +240,8 @@ Override parse_set(const std::string& argument) {
     if (equals == std::string::npos || key.empty() || key.starts_with('.') || key.ends_with('.') ||
         key.find("..") != std::string::npos)
         throw bad_input("--set must be table.key=VALUE; it is \"{}\"", argument);
-    if (const auto parts = 1 + std::count(key.begin(), key.end(), '.'); parts > most_parts)
-        throw bad_input("--set needs a key of at most {} parts; this one has {}", most_parts, parts);
+    if (const auto parts = 1 + std::count(key.begin(), key.end(), '.'); parts > max_parts)
+        throw bad_input("--set needs a key of at most {} parts; this one has {}", max_parts, parts);
     return {key, argument.substr(equals + 1), "--set " + key};
 }
 
@@ -292,8 +292,8 @@ std::string kind_of(const toml::node& node) {
 std::string shown(const toml::node& node) {
     auto text = written(node);
     std::replace(text.begin(), text.end(), '\n', ' ');
-    constexpr std::size_t most = 60;
-    return text.size() > most ? shortened(text, most - 1) : text;
+    constexpr std::size_t maximum = 60;
+    return text.size() > maximum ? shortened(text, maximum - 1) : text;
 }
 
 std::string found(const toml::node& node) {

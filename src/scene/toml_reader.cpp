@@ -15,18 +15,19 @@ constexpr std::string_view command_line = "--";
 /// Why a text cannot be drawn; nothing if its fonts contain all letters.
 std::optional<std::string> not_drawable(std::string_view text, const Typeface& typeface) {
     std::vector<std::string> letters;
-    constexpr std::size_t most = 8;  // named in the message
-    for (auto lacking = typeface.missing_character(text); !lacking.empty() && letters.size() <= most;
+    constexpr std::size_t maximum = 8;  // named in the message
+    for (auto lacking = typeface.missing_character(text); !lacking.empty() && letters.size() <= maximum;
          lacking = typeface.missing_character(text)) {
         auto after = lacking;
         const auto character = next_character(after);
         const auto number = fmt::format("U+{:04X}", static_cast<unsigned>(character));
-        if (is_control(character)) return fmt::format("holds the control character {}, which cannot be drawn", number);
+        if (is_control(character))
+            return fmt::format("contains the control character {}, which cannot be drawn", number);
         if (needs_shaping(character))
             return fmt::format(
-                "holds \"{}\" ({}) of a script that Doppel cannot draw (joined or right-to-left letters)", lacking,
+                "contains \"{}\" ({}) of a script that Doppel cannot draw (joined or right-to-left letters)", lacking,
                 number);
-        auto letter = letters.size() == most ? "…" : fmt::format("\"{}\" ({})", lacking, number);
+        auto letter = letters.size() == maximum ? "…" : fmt::format("\"{}\" ({})", lacking, number);
         if (std::find(letters.begin(), letters.end(), letter) == letters.end()) letters.push_back(std::move(letter));
         text.remove_prefix(static_cast<std::size_t>(lacking.data() + lacking.size() - text.data()));
     }
@@ -34,7 +35,7 @@ std::optional<std::string> not_drawable(std::string_view text, const Typeface& t
     const auto rest =
         typeface.uses_system_fonts() ? "; no font of this system has them; give a font file in [video.fonts] text" : "";
     return fmt::format(
-        "holds {}, which the built-in font lacks; it has Latin and Greek letters and signs of mathematics{}",
+        "contains {}, which the built-in font lacks; it has Latin and Greek letters and signs of mathematics{}",
         fmt::join(letters, ", "), rest);
 }
 
@@ -49,14 +50,14 @@ std::string group_of(std::string_view name) {
 }  // namespace
 
 TomlReader::TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts,
-                       const Typeface* typeface, Faults* faults)
+                       const Typeface* typeface, KeyErrors* errors)
     : table_(table),
       name_(std::move(name)),
       path_(std::move(path)),
       group_(group_of(name_)),
       texts_(&texts),
       typeface_(typeface),
-      faults_(faults) {}
+      errors_(errors) {}
 
 /// The source of the key's name, with the command line option that gave it; nothing if the key is absent.
 std::optional<toml::source_region> TomlReader::source_of(std::string_view key) const {
@@ -73,25 +74,25 @@ std::string TomlReader::place(std::string_view key) const {
     return fmt::format("{}:{}:{}", path_, source->begin.line, source->begin.column);
 }
 
-FaultPlace TomlReader::fault_place(std::string_view key) const {
+ErrorPlace TomlReader::error_place(std::string_view key) const {
     const auto source = source_of(key);
     if (source && source->path && source->path->starts_with(command_line))
-        return faults_ ? faults_->of_option(*source->path) : FaultPlace{};
+        return errors_ ? errors_->of_option(*source->path) : ErrorPlace{};
     if (!table_ || (!source && name_.empty())) return {};
     const auto& at = (source ? *source : table_->source()).begin;
-    return at.line > 0 ? FaultPlace{at.line, at.column} : FaultPlace{};
+    return at.line > 0 ? ErrorPlace{at.line, at.column} : ErrorPlace{};
 }
 
-void TomlReader::note(std::string_view key, const Error& fault) const {
-    const auto* known = dynamic_cast<const TomlFault*>(&fault);
+void TomlReader::note(std::string_view key, const Error& error) const {
+    const auto* known = dynamic_cast<const KeyError*>(&error);
     // errors in a title are independent of the tables
-    faults_->add({fault.what(), fault_place(key), name_.empty() ? std::string(key) : group_, std::string(key),
+    errors_->add({error.what(), error_place(key), name_.empty() ? std::string(key) : group_, std::string(key),
                   known ? known->beside() : std::nullopt});
 }
 
-void TomlReader::refuse(const TomlFault& fault, std::string_view key) const {
-    if (!faults_) throw TomlFault(fault);
-    faults_->add({fault.what(), fault.place(), group_, std::string(key), fault.beside()});
+void TomlReader::refuse(const KeyError& error, std::string_view key) const {
+    if (!errors_) throw KeyError(error);
+    errors_->add({error.what(), error.place(), group_, std::string(key), error.beside()});
 }
 
 std::string TomlReader::subject(std::string_view key) const {
@@ -127,20 +128,20 @@ bool TomlReader::from_command_line(std::string_view key) {
 void TomlReader::require_drawable(std::string_view key, std::string_view text) const {
     const auto letters = static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xc0) != 0x80; }));
-    if (letters > most_letters) throw fault(key, "must have at most {} letters; it has {}", most_letters, letters);
+    if (letters > max_letters) throw error(key, "must have at most {} letters; it has {}", max_letters, letters);
     if (!typeface_) return;
-    if (const auto lacking = not_drawable(text, *typeface_)) throw fault(key, "{}", *lacking);
+    if (const auto lacking = not_drawable(text, *typeface_)) throw error(key, "{}", *lacking);
 }
 
 void TomlReader::require_title(const std::string& name) {
     if (has("title") || !typeface_) return;
-    if (const auto fault = not_drawable(name, *typeface_))
-        refuse({fmt::format("{}: title is missing, and the preset's name {}", path_, *fault), {}, ""}, "title");
+    if (const auto error = not_drawable(name, *typeface_))
+        refuse({fmt::format("{}: title is missing, and the preset's name {}", path_, *error), {}, ""}, "title");
 }
 
 const toml::table* TomlReader::read_table(std::string_view key) {
     const auto* node = find(key);
-    if (node && !node->is_table()) refuse(fault(key, "must be a table; {}", found(*node)), key);
+    if (node && !node->is_table()) refuse(error(key, "must be a table; {}", found(*node)), key);
     return node ? node->as_table() : nullptr;
 }
 
@@ -150,7 +151,7 @@ std::vector<const toml::table*> TomlReader::read_tables(std::string_view key) {
     if (!node) return tables;
     const auto* array = node->as_array();
     if (!array || !array->is_array_of_tables()) {
-        refuse(fault(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
+        refuse(error(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
                      found(*node)),
                key);
         return tables;
@@ -169,7 +170,7 @@ void TomlReader::finish() const {
             "{}: {} no \"{}\"; {}", place(name.str()), name_.empty() ? "a preset has" : name_ + " has", name.str(),
             meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("it has {}", fmt::join(keys, ", ")));
         const auto hidden = hidden_.find(name.str());
-        refuse({message, fault_place(name.str()),
+        refuse({message, error_place(name.str()),
                 hidden == hidden_.end() ? std::nullopt : std::optional(beside(hidden->second))},
                name.str());
     }
@@ -182,12 +183,12 @@ void TomlReader::table(std::string_view key, const std::function<void(KeyVisitor
 }
 
 void TomlReader::check_together(const std::function<void()>& check) const {
-    if (!faults_) return check();
-    if (faults_->concern(group_)) return;
+    if (!errors_) return check();
+    if (errors_->concern(group_)) return;
     try {
         check();
-    } catch (const TomlFault& fault) {
-        refuse(fault.with(""), "");
+    } catch (const KeyError& error) {
+        refuse(error.with(""), "");
     }
 }
 
@@ -201,19 +202,19 @@ bool TomlReader::is_ruled_out(const Field& field) const {
 
 bool TomlReader::counts(const Field& field) {
     const auto& only = field.only;
-    if (only.hides && !only.holds) {
+    if (only.hides && !only.applies) {
         hidden_.emplace(field.key, only.beside);
         if (is_ruled_out(field)) known_.emplace(field.key);
     }
-    if (only.hides || only.holds || only.fault.empty()) return !only.hides || only.holds;
+    if (only.hides || only.applies || only.error.empty()) return !only.hides || only.applies;
     if (has(field.key) && (!only.drops || from_command_line(field.key)))
-        throw fault(field.key, "{}", only.fault).with(beside(only.beside));
+        throw error(field.key, "{}", only.error).with(beside(only.beside));
     return false;
 }
 
 void TomlReader::require(const Field& field, bool given) const {
     if (!given && !field.needed_by.empty())
-        throw fault(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
+        throw error(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
 }
 
 }  // namespace doppel

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "render/typeface.hpp"
-#include "scene/faults.hpp"
+#include "scene/key_errors.hpp"
 #include "scene/member.hpp"
 
 #include <toml++/toml.h>
@@ -48,7 +48,6 @@ std::optional<std::string> literal_of(const toml::node& node, const TomlTexts& t
 /// The significant digits of a decimal: "9003" for "090.030e1".
 std::string significant_digits(std::string_view decimal);
 
-/// The typeface of figures.
 inline const Typeface built_in_typeface;
 
 // Texts for errors.
@@ -62,13 +61,13 @@ bool is_typed(const toml::node& node);
 
 /// Reads one table of a preset key by key: reader(field, member). An absent key leaves its member unchanged. A wrong
 /// one is an Error (exit 2) with place, value and what would be right. finish() reports keys that were not read. With
-/// `faults`, errors are collected there, and members are unchanged; without, the first error is thrown.
+/// `errors`, errors are collected there, and members are unchanged; without, the first error is thrown.
 class TomlReader : public KeyVisitor {
 public:
     /// `name` = name in errors, "[video]"; `table` may be null: then all keys are absent. `typeface` = fonts of drawn
-    /// texts; null: unknown, so that any text is allowed. It and `faults` must outlive the reader.
+    /// texts; null: unknown, so that any text is allowed. It and `errors` must outlive the reader.
     TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts,
-               const Typeface* typeface = &built_in_typeface, Faults* faults = nullptr);
+               const Typeface* typeface = &built_in_typeface, KeyErrors* errors = nullptr);
 
     bool has(std::string_view key);
     /// Elements of a list given on the command line: the keys "mass_kg[1]", 1.
@@ -78,13 +77,12 @@ public:
 
     /// Reads a field, and checks whether it applies or is required.
     void key(const Field& field, const KeyMember& member) override;
-    /// Reads the fields of [NAME.key].
     void table(std::string_view key, const std::function<void(KeyVisitor&)>& fields) override;
 
-    /// Runs a check of several keys, which throws TomlFault. Skipped if these tables already have errors.
+    /// Runs a check of several keys, which throws KeyError. Skipped if these tables already have errors.
     void check_together(const std::function<void()>& check) const;
     /// Records the error, or throws it.
-    void refuse(const TomlFault& fault, std::string_view key) const;
+    void refuse(const KeyError& error, std::string_view key) const;
     /// The other key of an error, if it is given in this table; otherwise empty: it may be given elsewhere, or
     /// misspelt.
     std::string beside(std::string_view key) const {
@@ -105,7 +103,7 @@ public:
     }
     /// A reader of an inner table, called `name` in errors.
     TomlReader inner(const toml::table* table, std::string name) const {
-        return {table, std::move(name), path_, *texts_, typeface_, faults_};
+        return {table, std::move(name), path_, *texts_, typeface_, errors_};
     }
 
     /// Throws Error if the table has keys that were not read, with the nearest known key.
@@ -113,21 +111,20 @@ public:
 
     /// The error "PATH:LINE:COLUMN: [table] KEY MESSAGE".
     template <class... Args>
-    [[nodiscard]] TomlFault fault(std::string_view key, fmt::format_string<Args...> format, Args&&... args) const {
+    [[nodiscard]] KeyError error(std::string_view key, fmt::format_string<Args...> format, Args&&... args) const {
         return {fmt::format("{}: {} {}", place(key), subject(key), fmt::format(format, std::forward<Args>(args)...)),
-                fault_place(key)};
+                error_place(key)};
     }
     /// "path:line:column" of a key, the command line option that gave it, or the path if it is absent.
     [[nodiscard]] std::string place(std::string_view key) const;
-    FaultPlace fault_place(std::string_view key) const;
-    /// "[table] KEY"
+    ErrorPlace error_place(std::string_view key) const;
     std::string subject(std::string_view key) const;
     const TomlTexts& texts() const { return *texts_; }
 
 private:
     const toml::node* find(std::string_view key);
     std::optional<toml::source_region> source_of(std::string_view key) const;
-    void note(std::string_view key, const Error& fault) const;
+    void note(std::string_view key, const Error& error) const;
     bool counts(const Field& field);
     void require(const Field& field, bool given) const;
     bool is_ruled_out(const Field& field) const;
@@ -136,7 +133,7 @@ private:
     std::string name_, path_, group_;
     const TomlTexts* texts_;
     const Typeface* typeface_;
-    Faults* faults_;
+    KeyErrors* errors_;
     std::set<std::string, std::less<>> known_;
     std::map<std::string, std::string_view, std::less<>> hidden_;  // keys that do not apply, and the key that decides
 };
@@ -148,8 +145,8 @@ struct TomlDocument {
     TomlTexts texts;
 
     /// A reader of the keys outside of tables.
-    TomlReader top(Faults* faults = nullptr, const Typeface* typeface = &built_in_typeface) const {
-        return {&root, "", path, texts, typeface, faults};
+    TomlReader top(KeyErrors* errors = nullptr, const Typeface* typeface = &built_in_typeface) const {
+        return {&root, "", path, texts, typeface, errors};
     }
     /// A reader of the table [key]; it may be absent.
     TomlReader table(TomlReader& above, std::string_view key) const {

@@ -33,27 +33,28 @@ public:
     ValueReader(const TomlReader& table, const Field& field) : table_(table), field_(field) {}
 
     void read(const toml::node& node, std::string& into) const {
-        if (!node.is_string()) throw fault("must be a string; {}", found(node));
+        if (!node.is_string()) throw error("must be a string; {}", found(node));
         into = node.as_string()->get();
         if (field_.is_drawn) table_.require_drawable(field_.key, into);
         const auto& names = field_.names;
         if (names.empty() || std::find(names.begin(), names.end(), into) != names.end()) return;
         const auto meant = nearest(into, names);
-        throw fault("must be {}; it is \"{}\"{}", listed(names), into,
+        throw error("must be {}; it is \"{}\"{}", listed(names), into,
                     meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
     }
 
     void read(const toml::node& node, int& into) const {
-        if (!node.is_integer()) throw fault("must be a whole number; {}", found(node));
+        if (!node.is_integer()) throw error("must be a whole number; {}", found(node));
         const auto value = node.as_integer()->get();
         const auto& [low, high] = std::pair(field_.bounds.low, field_.bounds.high);
         if (static_cast<double>(value) < low || static_cast<double>(value) > high)
-            throw faulty_number(static_cast<double>(value), fault("must be from {} to {}; it is {}", low, high, value));
+            throw invalid_number(static_cast<double>(value),
+                                 error("must be from {} to {}; it is {}", low, high, value));
         into = static_cast<int>(value);
     }
 
     void read(const toml::node& node, bool& into) const {
-        if (!node.is_boolean()) throw fault("must be true or false; {}", found(node));
+        if (!node.is_boolean()) throw error("must be true or false; {}", found(node));
         into = node.as_boolean()->get();
     }
 
@@ -69,7 +70,7 @@ public:
         std::optional<Rational> value;
         if (const auto* text = node.as_string()) {
             value = parse_rational(text->get());
-            if (!value) throw fault("must be a number or a fraction such as \"1/30000\"; it is {}", shown(node));
+            if (!value) throw error("must be a number or a fraction such as \"1/30000\"; it is {}", shown(node));
         } else if (const auto* whole = node.as_integer()) {
             value = reduced(whole->get(), 1);
         } else {
@@ -79,15 +80,15 @@ public:
             const Quad rounding = parse_quad("1e-32") * abs(decimal);
             if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
         }
-        if (!value) throw fault("has too many digits; it is {}", shown(node));
+        if (!value) throw error("has too many digits; it is {}", shown(node));
         const bool is_open = field_.bounds.is_open;
         if (value->numerator < (is_open ? 1 : 0))
-            throw fault("must be {} 0; it is {}", is_open ? ">" : "≥", shown(node));
+            throw error("must be {} 0; it is {}", is_open ? ">" : "≥", shown(node));
         check(value->value());
         into = *value;
     }
 
-    /// 1 to `most` numbers.
+    /// 1 to `maximum` numbers.
     void read(const toml::node& node, std::vector<double>& into) const {
         if (node.is_number() && is_typed(node)) {
             into.resize(1);
@@ -101,13 +102,13 @@ public:
     void read(const toml::node& node, std::vector<Quad>& into) const {
         if (node.is_array()) return read_array(node, std::span(into), "links");
         if (!node.is_number())
-            throw fault("must be a number, or an array of {} numbers, {}; {}", into.size(), field_.each, found(node));
+            throw error("must be a number, or an array of {} numbers, {}; {}", into.size(), field_.each, found(node));
         std::fill(into.begin(), into.end(), number(node, {}, Quad()));
         check(into[0], {0});
     }
 
     void read(const toml::node& node, QuadPair& into) const {
-        if (!node.is_array()) throw fault("must be two numbers, [x, y]; {}", found(node));
+        if (!node.is_array()) throw error("must be two numbers, [x, y]; {}", found(node));
         ValueReader(table_, {.key = field_.key, .each = "x and y"}).read_array(node, std::span<Quad>(into));
     }
 
@@ -129,8 +130,8 @@ public:
     void read(const toml::node& node, Range& into) const {
         const auto [low, high] = two_numbers(node);
         if (field_.bounds.is_open && (!(high >= 10 * low) || high / low > 1e60))
-            throw fault("must rise by 1 to 60 powers of ten; it is [{}, {}]", low, high);
-        if (!(high > low) || !std::isfinite(high - low)) throw fault("must rise; it is [{}, {}]", low, high);
+            throw error("must increase by 1 to 60 powers of ten; it is [{}, {}]", low, high);
+        if (!(high > low) || !std::isfinite(high - low)) throw error("must increase; it is [{}, {}]", low, high);
         into = {low, high};
     }
 
@@ -141,7 +142,7 @@ public:
             if (field_.is_drawn) table_.require_drawable(field_.key, text);
             if (!field_.names.empty() &&
                 std::find(field_.names.begin(), field_.names.end(), text) == field_.names.end())
-                throw fault("must be of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
+                throw error("must be of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
         }
         into = std::move(texts);
     }
@@ -150,11 +151,11 @@ public:
         into = {};
         if (node.is_boolean()) return read(node, into.shown);
         if (node.is_string()) return read(node, into.own.emplace().emplace_back());
-        if (!node.is_array()) throw fault("must be true, false, text or a list of text; {}", found(node));
+        if (!node.is_array()) throw error("must be true, false, text or a list of text; {}", found(node));
         read(node, into.own.emplace());
     }
 
-    /// 1 to `most` values.
+    /// 1 to `maximum` values.
     void read(const toml::node& node, TomlValues& into) const {
         into.texts.clear();
         for (const auto& element : some_of(node, "values")) into.texts.push_back(text_in(element));
@@ -165,8 +166,8 @@ public:
     void read_element(const toml::node& node, std::size_t element, T& into) const {
         const auto check_size = [&](std::size_t size) {
             if (element >= size)
-                throw size == 0 ? fault("is of a list that the preset has not; give all of it")
-                                : fault("is beyond the list, whose last is [{}]", size - 1);
+                throw size == 0 ? error("is an element of a list that the preset does not have; give the whole list")
+                                : error("is beyond the list, whose last element is [{}]", size - 1);
         };
         if constexpr (std::is_same_v<T, TomlValues>) {
             check_size(into.texts.size());
@@ -181,7 +182,7 @@ public:
             check_size(into.size());
             read(node, into[element]);
         } else {
-            throw fault("is of no list of numbers");
+            throw error("is not an element of a list of numbers");
         }
     }
 
@@ -190,10 +191,10 @@ public:
         const auto* releases = node.as_array();
         if (!releases) return read(node, into.count);
         const auto refuse = [&](const std::string& what) {
-            throw fault("must be a whole number, or 2 to {} lists of angles or tables; {}", Members::most_releases,
+            throw error("must be a whole number, or 2 to {} lists of angles or tables; {}", Members::max_releases,
                         what);
         };
-        if (releases->size() < 2 || releases->size() > Members::most_releases) refuse(found(node));
+        if (releases->size() < 2 || releases->size() > Members::max_releases) refuse(found(node));
         for (std::size_t k = 0; k < releases->size(); ++k) {
             const auto& release = *releases->get(k);
             auto& member = into.releases.emplace_back();
@@ -216,7 +217,7 @@ public:
             else if (key.str() == "color")
                 read(value, member.color.emplace());
             else
-                throw fault("[{}] may have angle_deg, mass_kg, length_m and color; \"{}\" is none of them", k,
+                throw error("[{}] may have angle_deg, mass_kg, length_m and color; \"{}\" is none of them", k,
                             key.str());
         }
     }
@@ -231,19 +232,18 @@ public:
             for (const auto& element : *list) add(element);
         else
             add(node);
-        if (into.empty()) throw fault("[{}] {} must have numbers, one a link; it is []", k, key);
+        if (into.empty()) throw error("[{}] {} must have numbers, one a link; it is []", k, key);
     }
 
-    /// Reads one speed, or times with speeds.
     void read(const toml::node& node, Speed& into) const {
         const auto* array = node.as_array();
         into.changes.clear();
         if (!array) return read(node, into.constant);
         constexpr std::string_view form = "must be a speed, or times, s, with speeds such as [[0, 1], [6.8, 0.25]]";
-        if (array->empty()) throw fault("{}; it is []", form);
+        if (array->empty()) throw error("{}; it is []", form);
         for (const auto& element : *array) {
             const auto* pair = element.as_array();
-            if (!pair || pair->size() != 2) throw fault("{}; {} is none", form, shown(element));
+            if (!pair || pair->size() != 2) throw error("{}; {} is none", form, shown(element));
             auto& [at_s, speed] = into.changes.emplace_back();
             ValueReader(table_, {.key = field_.key, .bounds = not_negative}).read(*pair->get(0), at_s);
             ValueReader(table_, {.key = field_.key, .bounds = changing_speeds}).read(*pair->get(1), speed);
@@ -254,16 +254,16 @@ public:
     void read(const toml::node& node, Color& into) const {
         const auto* text = node.as_string();
         const auto color = text ? parse_color(text->get()) : std::nullopt;
-        if (!color) throw fault("must be a colour such as \"#ff9f40\"; {}", found(node));
+        if (!color) throw error("must be a colour such as \"#ff9f40\"; {}", found(node));
         into = *color;
     }
 
     void read(const toml::node& node, std::array<Color, 2>& into) const {
         const auto colors = texts_in(node);
-        if (colors.size() != 2) throw fault("must have 2 colours, a and b; it has {}", colors.size());
+        if (colors.size() != 2) throw error("must have 2 colours, a and b; it has {}", colors.size());
         for (std::size_t i = 0; i < 2; ++i) {
             const auto color = parse_color(colors[i]);
-            if (!color) throw fault("must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
+            if (!color) throw error("must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
             into[i] = *color;
         }
     }
@@ -279,33 +279,33 @@ public:
                 continue;
             }
             if (std::find(names.begin(), names.end(), panel) == names.end())
-                throw fault("may contain \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
+                throw error("may contain \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
                             panel);
             const auto kind = value_named<StripKind>(panel);
             if (std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end())
                 into.strips.push_back(kind);
         }
         if (panels.empty())
-            throw fault("must contain at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
+            throw error("must contain at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
     }
 
 private:
     template <class... Args>
-    TomlFault fault(fmt::format_string<Args...> format, Args&&... args) const {
-        return table_.fault(field_.key, format, std::forward<Args>(args)...);
+    KeyError error(fmt::format_string<Args...> format, Args&&... args) const {
+        return table_.error(field_.key, format, std::forward<Args>(args)...);
     }
     /// An error of an element of the key's array.
     template <class... Args>
-    TomlFault fault_of(Element element, fmt::format_string<Args...> format, Args&&... args) const {
+    KeyError error_of(Element element, fmt::format_string<Args...> format, Args&&... args) const {
         return {fmt::format("{}: {}{} {}", table_.place(field_.key), table_.subject(field_.key), index_text(element),
                             fmt::format(format, std::forward<Args>(args)...)),
-                table_.fault_place(field_.key)};
+                table_.error_place(field_.key)};
     }
     /// The error together with other keys, if the key would accept the number without them.
-    TomlFault faulty_number(double value, const TomlFault& fault) const {
+    KeyError invalid_number(double value, const KeyError& error) const {
         const auto& widest = field_.otherwise;
         const bool is_possible = widest && value >= widest->low && value <= widest->high;
-        return is_possible ? fault.with(table_.beside(field_.only.beside)) : fault;
+        return is_possible ? error.with(table_.beside(field_.only.beside)) : error;
     }
 
     std::string text_in(const toml::node& value) const {
@@ -327,16 +327,15 @@ private:
                                ? fmt::format("{} {}", is_positive ? "at least" : "≥", low)
                                : fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero),
                                              high, unit, why.empty() ? "" : fmt::format(": {}", why));
-        throw faulty_number(static_cast<double>(value),
-                            fault_of(why.empty() ? element : Element{}, "must be {}; {} is {}", right,
-                                     why.empty() ? "it" : "one", toml_value(value)));
+        throw invalid_number(static_cast<double>(value),
+                             error_of(why.empty() ? element : Element{}, "must be {}; {} is {}", right,
+                                      why.empty() ? "it" : "one", toml_value(value)));
     }
 
-    /// A finite number.
     double number(const toml::node& node, Element element, double) const {
         const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-        if (!value) throw fault_of(element, "must be a number; {}", found(node));
-        if (!std::isfinite(*value)) throw fault_of(element, "must be finite; it is {}", *value);
+        if (!value) throw error_of(element, "must be a number; {}", found(node));
+        if (!std::isfinite(*value)) throw error_of(element, "must be finite; it is {}", *value);
         return *value + 0.0;  // turns −0 into 0
     }
     /// A number with all written digits.
@@ -347,15 +346,15 @@ private:
         if (!literal) return Quad(rounded);
         const Quad value = parse_quad(*literal) + 0;
         // the literal must equal the number that was read; otherwise its place is wrong
-        constexpr double rounding = 1e-15, least = 1e-322;
-        if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + least))
+        constexpr double rounding = 1e-15, minimum = 1e-322;
+        if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + minimum))
             throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", table_.place(field_.key),
                             table_.subject(field_.key), rounded);
         constexpr std::size_t always_held = 33;
         if (literal->size() <= always_held) return value;
         const auto digits = significant_digits(*literal);
         if (digits.size() > always_held && digits != significant_digits(text_of(value)))
-            throw fault_of(element, "must have at most 34 digits, the precision of quad; it has {}", digits.size());
+            throw error_of(element, "must have at most 34 digits, the precision of quad; it has {}", digits.size());
         return value;
     }
 
@@ -365,14 +364,14 @@ private:
         const auto& array = *node.as_array();
         if (array.size() != into.size()) {
             const auto length =
-                fault("must have {} numbers, {}; it has {}: {}", into.size(), field_.each, array.size(), shown(node));
+                error("must have {} numbers, {}; it has {}: {}", into.size(), field_.each, array.size(), shown(node));
             throw other.empty() ? length : length.with(table_.beside(other));
         }
         for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(*array.get(i), {i}, into[i]);
         for (std::size_t i = 0; i < into.size(); ++i) check(into[i], {i});
     }
     std::array<double, 2> two_numbers(const toml::node& node) const {
-        if (!node.is_array()) throw fault("must be an array of 2 numbers, {}; {}", field_.each, found(node));
+        if (!node.is_array()) throw error("must be an array of 2 numbers, {}; {}", field_.each, found(node));
         std::array<double, 2> pair{};
         read_array(node, std::span<double>(pair));
         return pair;
@@ -382,28 +381,28 @@ private:
         const auto& [low, high] = std::pair(field_.bounds.low, field_.bounds.high);
         for (const double number : pair)
             if (number != std::floor(number) || number < low || number > high)
-                throw fault("must be {} from {} to {}; it is [{}, {}]", what, low, high, pair[0], pair[1]);
+                throw error("must be {} from {} to {}; it is [{}, {}]", what, low, high, pair[0], pair[1]);
         first = static_cast<int>(pair[0]);
         second = static_cast<int>(pair[1]);
     }
     const toml::array& some_of(const toml::node& node, std::string_view what) const {
         const auto* array = node.as_array();
-        if (!array || array->empty() || array->size() > field_.most)
-            throw fault("must be an array of 1 to {} {}; {}", field_.most, what, found(node));
+        if (!array || array->empty() || array->size() > field_.maximum)
+            throw error("must be an array of 1 to {} {}; {}", field_.maximum, what, found(node));
         return *array;
     }
     std::vector<std::string> texts_in(const toml::node& node) const {
         if (const auto* text = node.as_string(); text && is_typed(node)) return {text->get()};
         const auto* array = node.as_array();
-        if (!array) throw fault("must be an array of strings; {}", found(node));
+        if (!array) throw error("must be an array of strings; {}", found(node));
         std::vector<std::string> texts;
         for (const auto& element : *array) {
             if (!element.is_string())
-                throw fault("must be an array of strings; {} is {}", shown(element), kind_of(element));
+                throw error("must be an array of strings; {} is {}", shown(element), kind_of(element));
             texts.push_back(element.as_string()->get());
         }
-        if (field_.is_drawn && texts.size() > most_texts)
-            throw fault("must be at most {} texts; they are {}", most_texts, texts.size());
+        if (field_.is_drawn && texts.size() > max_texts)
+            throw error("must be at most {} texts; they are {}", max_texts, texts.size());
         return texts;
     }
 
@@ -461,13 +460,13 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
                 if constexpr (!std::is_same_v<M, ChosenName>)
                     ValueReader(*this, one).read_element(*find(one.key), given.second, *into);
                 else
-                    throw fault(one.key, "is of no list of numbers");
+                    throw error(one.key, "is not an element of a list of numbers");
             };
             std::visit(put, member);
         }
-    } catch (const Error& fault) {
-        if (!faults_ || fault.code() != ExitCode::bad_input) throw;
-        note(field.key, fault);
+    } catch (const Error& error) {
+        if (!errors_ || error.code() != ExitCode::bad_input) throw;
+        note(field.key, error);
     }
 }
 

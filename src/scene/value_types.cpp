@@ -9,8 +9,8 @@ namespace {
 
 /// A JSON number, as an integer if it is whole.
 Json json_number(double number) {
-    constexpr double most = 1e15;
-    if (number == std::floor(number) && std::abs(number) < most) return std::llround(number);
+    constexpr double maximum = 1e15;
+    if (number == std::floor(number) && std::abs(number) < maximum) return std::llround(number);
     return number;
 }
 
@@ -39,7 +39,7 @@ Json text_schema(const ListedField& field) {
     Json schema{{"type", "string"}};
     if (!field.choices.empty()) schema["enum"] = field.choices;
     if (field.is_needed()) schema["minLength"] = 1;
-    if (field.is_drawn) schema["maxLength"] = most_letters;
+    if (field.is_drawn) schema["maxLength"] = max_letters;
     if (!field.pattern.empty()) schema["pattern"] = field.pattern;
     return schema;
 }
@@ -66,7 +66,7 @@ Json ratio_schema(L field) {
 
 Json numbers_schema(L field) {
     const auto number = within(field.bounds);
-    return field.most > 0 ? list_schema(number, 1, field.most) : any_of({number, list_schema(number, 1, 0)});
+    return field.maximum > 0 ? list_schema(number, 1, field.maximum) : any_of({number, list_schema(number, 1, 0)});
 }
 
 Json pair_schema(L field) {
@@ -79,9 +79,9 @@ Json whole_pair_schema(L field) {
     return list_schema(whole, 2, 2);
 }
 
-template <int least>
+template <int minimum>
 Json texts_schema(L field) {
-    return list_schema(text_schema(field), least, field.is_drawn ? most_texts : 0);
+    return list_schema(text_schema(field), minimum, field.is_drawn ? max_texts : 0);
 }
 
 Json color_schema(L) {
@@ -100,7 +100,7 @@ Json speed_schema(L field) {
 
 Json members_schema(L field) {
     return any_of({whole_schema(field), list_schema(any_of({list_schema(within({}), 1, 0), Json{{"type", "object"}}}),
-                                                    2, Members::most_releases)});
+                                                    2, Members::max_releases)});
 }
 
 template <class T>
@@ -127,7 +127,7 @@ constexpr ValueType type_of() {
     if constexpr (is_same_v<T, EndSpec>)
         return {"text or [x, y]", [](L field) { return any_of({text_schema(field), pair_schema(field)}); }, "\"\""};
     if constexpr (is_same_v<T, TomlValues>)
-        return {"values that the key takes", [](L field) { return list_schema(Json::object(), 1, field.most); },
+        return {"values that the key takes", [](L field) { return list_schema(Json::object(), 1, field.maximum); },
                 "[0, 90]"};
     if constexpr (is_same_v<T, Size> || is_same_v<T, std::array<int, 2>>)
         return {"two whole numbers", whole_pair_schema, "[4, 3]"};
@@ -141,10 +141,10 @@ constexpr ValueType type_of() {
 
 }  // namespace
 
-Json list_schema(Json items, std::size_t least, std::size_t most) {
+Json list_schema(Json items, std::size_t minimum, std::size_t maximum) {
     Json schema{{"type", "array"}, {"items", std::move(items)}};
-    if (least > 0) schema["minItems"] = least;
-    if (most > 0) schema["maxItems"] = most;
+    if (minimum > 0) schema["minItems"] = minimum;
+    if (maximum > 0) schema["maxItems"] = maximum;
     return schema;
 }
 

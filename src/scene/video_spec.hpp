@@ -19,7 +19,6 @@
 
 namespace doppel {
 
-/// The range of an axis from `low` to `high`.
 struct Range {
     double low, high;
 };
@@ -51,7 +50,6 @@ inline constexpr auto names_of<StripKind> = std::to_array<std::string_view>({"di
                                                                              "rod-error", "rod-force", "energies-a",
                                                                              "energies-b", "angles", "rates",
                                                                              "total-energy"});
-/// The keys of the strips' axes.
 inline constexpr std::array<std::string_view, strip_kinds> range_keys{
     "distance_range",   "exponent_range",   "energy_range", "rod_error_range", "rod_force_range",
     "energies_a_range", "energies_b_range", "angles_range", "rates_range",     "total_energy_range"};
@@ -169,9 +167,9 @@ inline constexpr std::array<Release::List, 3> Release::lists{{{"angle_deg", &Rel
 
 /// The members of an ensemble: a number of them from side a to side b, or a list.
 struct Members {
-    static constexpr std::size_t most_releases = 8;
+    static constexpr std::size_t max_releases = 8;
     int count = 100;                // including the pair
-    std::vector<Release> releases;  // empty, or 2 to most_releases
+    std::vector<Release> releases;  // empty, or 2 to max_releases
 
     std::size_t size() const { return releases.empty() ? static_cast<std::size_t>(count) : releases.size(); }
 };

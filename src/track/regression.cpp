@@ -12,20 +12,20 @@ namespace doppel {
 namespace {
 
 constexpr int degree = 5;
-constexpr std::size_t least_points = degree + 3;
+constexpr std::size_t min_points = degree + 3;
 
 /// The samples of a link in a window around a time, without outliers. The window is shifted to have its full width near
 /// the ends of the piece, and widened to contain enough samples.
-std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t arm, double time_s, double window) {
+std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t link, double time_s, double window) {
     const auto& times = piece.time_s;
     const double from = std::max(times.front(), std::min(time_s - window / 2, times.back() - window));
     auto first = static_cast<std::size_t>(std::ranges::lower_bound(times, from) - times.begin()), last = first;
     std::vector<std::size_t> samples;
     const auto take = [&](std::size_t i) {
-        if (!piece.is_outlier[arm][i]) samples.push_back(i);
+        if (!piece.is_outlier[link][i]) samples.push_back(i);
     };
     while (last < times.size() && times[last] <= from + window) take(last++);
-    while (samples.size() < least_points && (first > 0 || last < times.size())) {
+    while (samples.size() < min_points && (first > 0 || last < times.size())) {
         const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
         take(back ? --first : last++);
     }
@@ -53,10 +53,10 @@ struct Equations {
     }
 };
 
-LinkEstimate glimpse_of(const TrackPiece& piece, std::size_t arm, const std::vector<std::size_t>& samples,
-                        double center) {
+LinkEstimate link_estimate(const TrackPiece& piece, std::size_t link, const std::vector<std::size_t>& samples,
+                           double center) {
     const auto count = samples.size();
-    if (count < degree + 2) return {piece.angle[arm].front()};
+    if (count < degree + 2) return {piece.angle[link].front()};
     const double span = std::max(center - piece.time_s[samples.front()], piece.time_s[samples.back()] - center);
     const auto powers_at = [&](std::size_t sample) {
         Eigen::Matrix<double, degree + 1, 1> powers;
@@ -65,11 +65,11 @@ LinkEstimate glimpse_of(const TrackPiece& piece, std::size_t arm, const std::vec
         return powers;
     };
     Equations<degree + 1> equations;
-    for (const auto sample : samples) equations.add(powers_at(sample), piece.angle[arm][sample]);
+    for (const auto sample : samples) equations.add(powers_at(sample), piece.angle[link][sample]);
     const auto c = equations.solution();
-    if (!c.allFinite()) return {piece.angle[arm][samples.front()]};
+    if (!c.allFinite()) return {piece.angle[link][samples.front()]};
     double rest = 0;
-    for (const auto sample : samples) rest += std::pow(piece.angle[arm][sample] - powers_at(sample).dot(c), 2);
+    for (const auto sample : samples) rest += std::pow(piece.angle[link][sample] - powers_at(sample).dot(c), 2);
     return {c[0], c[1] / span, 2 * c[2] / (span * span), std::sqrt(rest / static_cast<double>(count))};
 }
 
@@ -86,21 +86,21 @@ double window_of(const Track& track) {
 
 }  // namespace
 
-Glimpse estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
+LinkEstimates estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
     // encoder errors are correlated over some samples, which the sample-to-sample noise does not show
     constexpr double noises = 3, shortest_s = 1e-6;
-    Glimpse glimpse{};
-    for (std::size_t arm = 0; arm < 2; ++arm)
+    LinkEstimates both{};
+    for (std::size_t link = 0; link < 2; ++link)
         for (double window = longer * window_of(track); window > shortest_s; window /= 2) {
-            const auto samples = samples_around(piece, arm, time_s, window);
-            glimpse[arm] = glimpse_of(piece, arm, samples, time_s);
-            if (glimpse[arm].rms <= noises * track.noise[arm] || samples.size() <= least_points) break;
+            const auto samples = samples_around(piece, link, time_s, window);
+            both[link] = link_estimate(piece, link, samples, time_s);
+            if (both[link].rms <= noises * track.noise[link] || samples.size() <= min_points) break;
         }
-    return glimpse;
+    return both;
 }
 
-std::vector<Glimpse> estimates_of(const Track& track, const std::atomic<bool>& stop, double longer) {
-    std::vector<Glimpse> all;
+std::vector<LinkEstimates> estimates_of(const Track& track, const std::atomic<bool>& stop, double longer) {
+    std::vector<LinkEstimates> all;
     const double half = longer * window_of(track) / 2;
     for (const auto& piece : track.pieces)
         for (double time = piece.time_s.front() + half; time < piece.time_s.back() - half; time += half) {
@@ -110,13 +110,13 @@ std::vector<Glimpse> estimates_of(const Track& track, const std::atomic<bool>& s
     return all;
 }
 
-Regression regress(const std::vector<Glimpse>& glimpses) {
+Regression regress(const std::vector<LinkEstimates>& estimates) {
     Regression result;
-    if (glimpses.size() < 8) return result;
+    if (estimates.size() < 8) return result;
     // the equation of the second link, whose own acceleration has no unknown factor: −θ2″ = C (cosδ θ1″ − sinδ ω1²) +
     // D2 sinθ2 + friction
     Equations<3> second, first;
-    for (const auto& [one, two] : glimpses) {
+    for (const auto& [one, two] : estimates) {
         const SinCos<double> between(one.angle - two.angle), turn1(one.angle), turn2(two.angle);
         second.add({between.cos * one.acceleration - between.sin * one.rate * one.rate, turn2.sin, two.rate - one.rate},
                    -two.acceleration);

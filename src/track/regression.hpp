@@ -11,14 +11,14 @@ struct LinkEstimate {
     double angle = 0, rate = 0, acceleration = 0;
     double rms = 0;  // deviation of the samples from it, rad
 };
-using Glimpse = std::array<LinkEstimate, 2>;
+using LinkEstimates = std::array<LinkEstimate, 2>;
 
 /// The estimates at a time on the piece's clock, from the longest window whose polynomial leaves only noise. The
 /// longest window tried depends on the noise, times `longer`.
-Glimpse estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer = 1);
+LinkEstimates estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer = 1);
 
 /// Estimates at times half a window apart.
-std::vector<Glimpse> estimates_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
+std::vector<LinkEstimates> estimates_of(const Track& track, const std::atomic<bool>& stop, double longer = 1);
 
 /// The equations of motion, which are linear in the parameters, fitted to local estimates. No initial values are
 /// needed, but accelerations are noisy, so the result is biased. The unexplained part shows how well the angles agree
@@ -28,6 +28,6 @@ struct Regression {
     double unexplained = 1;  // unexplained share of the squared forces of both equations: 0 for noiseless angles
     bool is_physical = false;
 };
-Regression regress(const std::vector<Glimpse>& glimpses);
+Regression regress(const std::vector<LinkEstimates>& estimates);
 
 }  // namespace doppel

@@ -65,10 +65,10 @@ double Replay::length() const {
 Replay replay_from(std::shared_ptr<const Track> track, std::optional<double> start_s, std::array<double, 2> offset) {
     const auto& pieces = track->pieces;
     const double start = start_s.value_or(pieces.front().time_s.front());
-    const auto holds = [&](const TrackPiece& piece) {
+    const auto contains = [&](const TrackPiece& piece) {
         return start >= piece.time_s.front() - whole_sample && start < piece.time_s.back();
     };
-    const auto found = std::find_if(pieces.begin(), pieces.end(), holds);
+    const auto found = std::find_if(pieces.begin(), pieces.end(), contains);
     if (found == pieces.end())
         throw bad_input("no sample at {} s: the track goes from {} to {} s{}", start, pieces.front().time_s.front(),
                         pieces.back().time_s.back(),

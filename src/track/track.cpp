@@ -21,7 +21,7 @@ namespace doppel {
 namespace {
 
 constexpr double long_gap_s = 0.2;
-constexpr std::size_t most_rows = 2'000'000;
+constexpr std::size_t max_rows = 2'000'000;
 
 std::string_view trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(" \t\r\"");
@@ -86,8 +86,8 @@ Heading heading_of(const std::string& file, std::string_view line) {
 
 double number_of(const std::string& place, std::string_view column, std::string_view cell) {
     double value = 0;
-    const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (fault != std::errc() || end != cell.data() + cell.size())
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error != std::errc() || end != cell.data() + cell.size())
         throw bad_input("{}: {} is not a number", place, column);
     if (!std::isfinite(value))
         throw bad_input("{}: {} is {}; leave out rows without a measurement", place, column,
@@ -97,17 +97,17 @@ double number_of(const std::string& place, std::string_view column, std::string_
 
 /// The angles of both links: given directly, or from the positions of pivot, joint and end, y down.
 std::array<double, 2> angles_of(const std::string& place, std::span<const double> values) {
-    constexpr double most = 1e6;  // rad: 160 000 turns
+    constexpr double maximum = 1e6;  // rad: 160 000 turns
     std::array<double, 2> angles{values[0], values[1]};
-    for (std::size_t arm = 0; arm < 2 && values.size() > 2; ++arm) {
-        const double dx = values[2 * arm + 2] - values[2 * arm], dy = values[2 * arm + 3] - values[2 * arm + 1];
+    for (std::size_t link = 0; link < 2 && values.size() > 2; ++link) {
+        const double dx = values[2 * link + 2] - values[2 * link], dy = values[2 * link + 3] - values[2 * link + 1];
         if (dx == 0 && dy == 0)
             throw bad_input("{}: two of pivot, joint and end are at the same place; a link needs a length", place);
-        angles[arm] = portable_atan2(dx, dy);
+        angles[link] = portable_atan2(dx, dy);
     }
-    for (std::size_t arm = 0; arm < 2; ++arm)
-        if (std::abs(angles[arm]) > most)
-            throw bad_input("{}: theta{}_rad is beyond {} rad; check its unit", place, arm + 1, most);
+    for (std::size_t link = 0; link < 2; ++link)
+        if (std::abs(angles[link]) > maximum)
+            throw bad_input("{}: theta{}_rad is beyond {} rad; check its unit", place, link + 1, maximum);
     return angles;
 }
 
@@ -161,9 +161,9 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
         const auto angles = angles_of(place, std::span(values).subspan(1));
         auto& piece = track.pieces.back();
         piece.time_s.push_back(time);
-        for (std::size_t arm = 0; arm < 2; ++arm) piece.angle[arm].push_back(angles[arm]);
-        if (++rows > most_rows)
-            throw bad_input("{}: there are more than {} rows; a minute at 1000 Hz is enough", name, most_rows);
+        for (std::size_t link = 0; link < 2; ++link) piece.angle[link].push_back(angles[link]);
+        if (++rows > max_rows)
+            throw bad_input("{}: there are more than {} rows; a minute at 1000 Hz is enough", name, max_rows);
     }
     if (!heading) throw bad_input("{}: the file is empty; it must begin with time_s,theta1_rad,theta2_rad", name);
     if (track.pieces.size() == first_piece) throw bad_input("{}: there are no rows below the header", name);
@@ -171,12 +171,12 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
 
 // Checks.
 
-constexpr std::size_t least_samples = 100, least_of_piece = 12;
-constexpr double least_s = 1.5, least_of_piece_s = 0.25;
+constexpr std::size_t min_samples = 100, min_of_piece = 12;
+constexpr double min_s = 1.5, min_of_piece_s = 0.25;
 
 /// The distance of each sample from the cubic through two neighbours on either side.
-std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t arm) {
-    const auto &t = piece.time_s, &x = piece.angle[arm];
+std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t link) {
+    const auto &t = piece.time_s, &x = piece.angle[link];
     std::vector<double> residuals(x.size(), 0);
     for (std::size_t i = 2; i + 2 < x.size(); ++i) {
         residuals[i] = x[i];
@@ -194,28 +194,28 @@ std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t arm
 void find_noise(Track& track, const std::atomic<bool>& stop) {
     constexpr double far = 12,
                      of_cubic = 1.39;  // the deviation from a cubic through values with noise 1, in units of that noise
-    for (std::size_t arm = 0; arm < 2; ++arm) {
+    for (std::size_t link = 0; link < 2; ++link) {
         std::vector<double> all;
         std::vector<std::vector<double>> of_pieces;
         for (const auto& piece : track.pieces) {
             throw_if_set(stop);
-            const auto& r = of_pieces.emplace_back(residuals_of_cubics(piece, arm));
+            const auto& r = of_pieces.emplace_back(residuals_of_cubics(piece, link));
             all.insert(all.end(), r.begin() + 2, r.end() - 2);
         }
         const double size = 1.4826 * median_size(std::move(all));
-        track.noise[arm] = size / of_cubic;
+        track.noise[link] = size / of_cubic;
         for (std::size_t k = 0; k < track.pieces.size(); ++k)
             for (std::size_t i = 2; i + 2 < of_pieces[k].size(); ++i) {
                 const double before = of_pieces[k][i - 1], r = of_pieces[k][i], after = of_pieces[k][i + 1];
                 const bool is_peak = std::abs(r) > std::max(std::abs(before), std::abs(after));
                 if (std::abs(r) > far * size && size > 0 && is_peak && r * before <= 0 && r * after <= 0)
-                    track.pieces[k].is_outlier[arm][i] = 1;
+                    track.pieces[k].is_outlier[link][i] = 1;
             }
     }
 }
 
 bool is_short(const TrackPiece& piece) {
-    return piece.size() < least_of_piece || piece.duration() < least_of_piece_s;
+    return piece.size() < min_of_piece || piece.duration() < min_of_piece_s;
 }
 
 /// Removes fragments between gaps; a file that is too short as a whole stays, and is refused later.
@@ -228,7 +228,7 @@ void drop_fragments(Track& track) {
     });
     if (dropped > 0)
         track.notes.push_back(fmt::format("{} fragments between gaps, shorter than {} samples or {} s, were left out",
-                                          dropped, least_of_piece, least_of_piece_s));
+                                          dropped, min_of_piece, min_of_piece_s));
 }
 
 /// Finds the start times of pieces on one clock, if their times never go back.
@@ -245,28 +245,28 @@ void require_length(const Track& track) {
         if (is_short(piece))
             throw bad_input(
                 "{}: the piece from {} s on is too short: {} samples in {:.3g} s; it needs at least {} in {} s",
-                piece.name, piece.time_s.front(), piece.size(), piece.duration(), least_of_piece, least_of_piece_s);
-    if (track.samples() < least_samples || track.duration() < least_s)
+                piece.name, piece.time_s.front(), piece.size(), piece.duration(), min_of_piece, min_of_piece_s);
+    if (track.samples() < min_samples || track.duration() < min_s)
         throw bad_input(
             "{}: the track is too short: {} samples in {:.3g} s; it needs at least {} in {} s, some swings of both "
             "links",
-            track.pieces.front().name, track.samples(), track.duration(), least_samples, least_s);
+            track.pieces.front().name, track.samples(), track.duration(), min_samples, min_s);
 }
 
 void require_motion(const Track& track) {
-    constexpr double least = 0.05;  // rad
+    constexpr double minimum = 0.05;  // rad
     const auto& name = track.pieces.front().name;
-    for (std::size_t arm = 0; arm < 2; ++arm) {
-        double most = 0;
+    for (std::size_t link = 0; link < 2; ++link) {
+        double maximum = 0;
         for (const auto& piece : track.pieces) {
-            const auto [low, high] = std::ranges::minmax(piece.angle[arm]);
-            most = std::max(most, high - low);
+            const auto [low, high] = std::ranges::minmax(piece.angle[link]);
+            maximum = std::max(maximum, high - low);
         }
-        if (most < std::max(least, 20 * track.noise[arm]))
+        if (maximum < std::max(minimum, 20 * track.noise[link]))
             throw bad_input(
                 "{}: theta{} {}: it moves by {:.2g} rad with a noise of {:.2g} rad, which is too little; it must be at "
                 "least {} rad and 20 times the noise",
-                name, arm + 1, most < least ? "is flat" : "is mostly noise", most, track.noise[arm], least);
+                name, link + 1, maximum < minimum ? "is flat" : "is mostly noise", maximum, track.noise[link], minimum);
     }
     if (std::ranges::all_of(track.pieces, [](const auto& piece) { return piece.angle[0] == piece.angle[1]; }))
         throw bad_input("{}: theta1_rad and theta2_rad have the same numbers; both links are needed", name);
@@ -288,8 +288,8 @@ struct Reading {
     }
 };
 
-double unexplained(const std::vector<Glimpse>& glimpses, const Reading& reading) {
-    auto taken = glimpses;
+double unexplained(const std::vector<LinkEstimates>& estimates, const Reading& reading) {
+    auto taken = estimates;
     for (auto& [one, two] : taken) {
         reading.take(one.angle, two.angle, true);
         reading.take(one.rate, two.rate, false);
@@ -303,9 +303,9 @@ void convert(Track& track, const Reading& reading) {
     std::vector<std::string> words;
     if (reading.mirrored) words.push_back("theta2 counted the other way round");
     if (reading.relative) words.push_back("theta2 counted from the first link");
-    for (std::size_t arm = 0; arm < 2; ++arm)
-        if (const int degrees = 90 * reading.quarters[arm]; degrees != 0)
-            words.push_back(fmt::format("theta{} counted from {}° off the downward vertical", arm + 1, degrees));
+    for (std::size_t link = 0; link < 2; ++link)
+        if (const int degrees = 90 * reading.quarters[link]; degrees != 0)
+            words.push_back(fmt::format("theta{} counted from {}° off the downward vertical", link + 1, degrees));
     track.notes.push_back(fmt::format("the angles fit a double pendulum only if read as follows, and are read so: {}",
                                       fmt::join(words, "; ")));
     for (auto& piece : track.pieces)
@@ -316,20 +316,20 @@ void convert(Track& track, const Reading& reading) {
 /// different convention, and refuses a mistake.
 void check_convention(Track& track, const std::atomic<bool>& stop) {
     constexpr double well = 0.003, obeys = 0.1, much_better = 0.3, degree = std::numbers::pi / 180;
-    const auto glimpses = estimates_of(track, stop);
-    const double as_it_is = unexplained(glimpses, {});
+    const auto estimates = estimates_of(track, stop);
+    const double as_it_is = unexplained(estimates, {});
     if (as_it_is < well) return;
     std::array<double, 2> low{track.pieces[0].angle[0][0], track.pieces[0].angle[1][0]}, high = low;
     for (const auto& piece : track.pieces)
-        for (std::size_t arm = 0; arm < 2; ++arm)
-            for (const double angle : piece.angle[arm])
-                low[arm] = std::min(low[arm], angle), high[arm] = std::max(high[arm], angle);
+        for (std::size_t link = 0; link < 2; ++link)
+            for (const double angle : piece.angle[link])
+                low[link] = std::min(low[link], angle), high[link] = std::max(high[link], angle);
     const double widest = std::max(high[0] - low[0], high[1] - low[1]);
     Reading best;
-    double least = as_it_is;
+    double minimum = as_it_is;
     const auto consider = [&](const Reading& reading) {
         throw_if_set(stop);
-        if (const double value = unexplained(glimpses, reading); value < least) least = value, best = reading;
+        if (const double value = unexplained(estimates, reading); value < minimum) minimum = value, best = reading;
     };
     constexpr double small =
         4;  // rad: motions that are this small in degrees are linear, and any linear motion would fit
@@ -337,15 +337,15 @@ void check_convention(Track& track, const std::atomic<bool>& stop) {
     for (int way = 0; way < 64; ++way)
         consider({.relative = way >= 32, .mirrored = way / 16 % 2 == 1, .quarters = {way / 4 % 4 - 1, way % 4 - 1}});
     const auto& name = track.pieces.front().name;
-    const bool is_better = least <= std::min(obeys, much_better * as_it_is);
+    const bool is_better = minimum <= std::min(obeys, much_better * as_it_is);
     if (is_better && best.unit == 1) return convert(track, best);
     if (is_better)
         throw bad_input(
             "{}: the angles are in degrees; they must be in radians (degrees × π/180): converted, {:.0f} % of the "
             "forces are unexplained, otherwise {:.0f} %",
-            name, 100 * least, 100 * as_it_is);
-    constexpr double most_turns = 60;             // rad: ten turns and a half
-    if (as_it_is > obeys && widest > most_turns)  // otherwise the fit will show it
+            name, 100 * minimum, 100 * as_it_is);
+    constexpr double max_turns = 60;             // rad: ten turns and a half
+    if (as_it_is > obeys && widest > max_turns)  // otherwise the fit will show it
         throw bad_input(
             "{}: the angles go from {:.3g} to {:.3g}, and do not fit a double pendulum; are they in degrees? They must "
             "be in radians (degrees × π/180)",
@@ -363,7 +363,8 @@ std::size_t Track::samples() const {
 std::size_t Track::outliers() const {
     std::size_t sum = 0;
     for (const auto& piece : pieces)
-        for (const auto& arm : piece.is_outlier) sum += static_cast<std::size_t>(std::count(arm.begin(), arm.end(), 1));
+        for (const auto& link : piece.is_outlier)
+            sum += static_cast<std::size_t>(std::count(link.begin(), link.end(), 1));
     return sum;
 }
 
@@ -378,9 +379,9 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
     Track track;
     for (std::size_t k = 0; k < texts.size(); ++k) read_text(names[k], texts[k], track, stop);
     for (auto& piece : track.pieces)
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            unwrap(piece.angle[arm]);
-            piece.is_outlier[arm].assign(piece.size(), 0);
+        for (std::size_t link = 0; link < 2; ++link) {
+            unwrap(piece.angle[link]);
+            piece.is_outlier[link].assign(piece.size(), 0);
         }
     check_track(track, stop);
     return track;

@@ -54,7 +54,6 @@ Track tracks_of_texts(const std::vector<std::string>& names, const std::vector<s
 /// determine a model.
 void check_track(Track& track, const std::atomic<bool>& stop);
 
-/// The median of absolute values.
 double median_size(std::vector<double> values);
 
 }  // namespace doppel

@@ -7,7 +7,7 @@
 namespace doppel {
 namespace drift_test {
 
-TEST(Growth, IsWhatThePowerSays) {
+TEST(Growth, IsClassifiedByItsExponent) {
     std::vector<double> times, errors;
     for (int i = 0; i <= 40; ++i) times.push_back(std::pow(10, 0.1 * i));
     using Kind = Growth::Kind;
@@ -24,7 +24,7 @@ TEST(Growth, IsWhatThePowerSays) {
     EXPECT_EQ(growth_of(times, std::vector(times.size(), 0.0), std::nan("")).kind, Kind::bounded);
 }
 
-TEST(Growth, DoublesUntilItBreaksDown) {
+TEST(Growth, DoublesUntilItFails) {
     std::vector<double> times, errors;
     for (int i = 0; i <= 20; ++i) times.push_back(std::pow(10, 0.1 * i));
     for (const double t : times) errors.push_back(t < 64 ? std::exp2(t / 5) : std::nan(""));

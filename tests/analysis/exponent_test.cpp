@@ -46,7 +46,7 @@ TEST(Exponent, OfEquilibriaInClosedForm) {
     rod.friction.viscous = {0.4};  // J = 1/3: γ = 0.6
     EXPECT_NEAR(exponent(rod), -0.6 + std::sqrt(0.36 + 9.8 * 1.5), 1e-14);
     rod.friction.viscous.clear();
-    rod.friction.arm_quadratic = {0.4};
+    rod.friction.link_quadratic = {0.4};
     EXPECT_NEAR(exponent(rod), std::sqrt(9.8 * 1.5), 1e-14);
     auto adrift = from_rest({70, -20});
     adrift.gravity = 0;
@@ -62,7 +62,7 @@ TEST(Exponent, OfEquilibriaInClosedForm) {
 
 TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
     // at the upright equilibrium but for a rate that starts the integration, and so briefly that it stays there
-    for (const auto& [links, most] :
+    for (const auto& [links, maximum] :
          {std::pair{1, 2e-11}, {2, 1e-5}, {3, 2e-5}, {5, 2e-5}}) {  // measured 2e-12, 1.2e-6, 2.2e-6, 3.7e-6
         auto p = uneven(static_cast<std::size_t>(links));
         std::fill(p.angle.begin(), p.angle.end(), pi);
@@ -70,11 +70,11 @@ TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
         const double exact = largest_exponent(p, {}, never).value;
         p.rate[0] = 1e-30;
         const ExponentSpec spec{.duration_s = 20 / exact, .transient_s = 15 / exact, .tolerance = 1e-10};
-        EXPECT_NEAR(largest_exponent(p, spec, never).value / exact, 1, most) << links;
+        EXPECT_NEAR(largest_exponent(p, spec, never).value / exact, 1, maximum) << links;
     }
 }
 
-TEST(Exponent, TellsRegularFromChaotic) {
+TEST(Exponent, DistinguishesRegularFromChaotic) {
     const auto exponent = [](const auto& p) { return largest_exponent(p, {.duration_s = 300}, never); };
     for (const double angle : {0.1, 10.0, 30.0, 45.0, 60.0})
         EXPECT_TRUE(is_regular(exponent(from_rest({angle, 0})))) << angle;
@@ -86,7 +86,8 @@ TEST(Exponent, TellsRegularFromChaotic) {
     EXPECT_FALSE(is_regular(exponent(driven(1.15))));
     EXPECT_FALSE(is_regular(exponent(rods(from_rest({140, 0})))));
     EXPECT_TRUE(is_regular(exponent(rods(from_rest({20, 0})))));
-    // a damped swing, and a driven one of one period, lose all that sets two apart: at the rate b/(2J) where they oscillate
+    // a damped swing, and a driven one of one period, lose all that sets two apart: at the rate b/(2J) where they
+    // oscillate
     const double gamma = 0.25 * std::sqrt(9.8 / 0.8);
     auto damped = driven(0);
     damped.torques.clear();
@@ -104,7 +105,8 @@ TEST(Exponent, OfRegularMotionIsThatOfLinearGrowth) {
     EXPECT_LT(e.uncertainty, 2 * linear);
 }
 
-/// The equation of driven() and its tangent's by hand, by Runge and Kutta's method in steps of 0.01; in units of √(g/l).
+/// The equation of driven() and its tangent's by hand, by Runge and Kutta's method in steps of 0.01; in units of
+/// √(g/l).
 double by_hand(double gamma, double quality, double transient, double duration) {
     using Numbers = Eigen::Array4d;  // θ, θ′, δθ, δθ′
     constexpr double h = 0.01;
@@ -161,7 +163,7 @@ std::pair<double, double> shares(const std::vector<Sea>& seas, int releases) {
 }
 
 // With DOPPEL_ALL_SEAS in the environment, of all the seas and twice as many releases, which takes some minutes.
-TEST(Exponent, UncertaintyHoldsForRunsFourTimesAsLong) {
+TEST(Exponent, UncertaintyCoversRunsFourTimesAsLong) {
     std::vector<Sea> chaotic{{{90, 90}, 1e-9}}, sticky{{{70, 0}, 1e-6}}, regular{{{30, 0}, 1e-9}};
     int releases = 20;
     if (std::getenv("DOPPEL_ALL_SEAS") != nullptr) {
@@ -175,13 +177,13 @@ TEST(Exponent, UncertaintyHoldsForRunsFourTimesAsLong) {
         }
     }
     // the libraries' last digits decide which runs these are: 2/3 and 9/10, less three times the binomial deviation
-    const auto least = [&](double part, const std::vector<Sea>& seas) {
+    const auto minimum = [&](double part, const std::vector<Sea>& seas) {
         return part - 3 * std::sqrt(part * (1 - part) / (static_cast<double>(seas.size()) * releases));
     };
     for (const auto& seas : {chaotic, sticky}) {
         const auto [once, twice] = shares(seas, releases);
-        EXPECT_GE(once, least(2.0 / 3, seas)) << seas[0].degrees[0];
-        EXPECT_GE(twice, least(0.9, seas)) << seas[0].degrees[0];
+        EXPECT_GE(once, minimum(2.0 / 3, seas)) << seas[0].degrees[0];
+        EXPECT_GE(twice, minimum(0.9, seas)) << seas[0].degrees[0];
     }
     EXPECT_EQ(shares(regular, 3), std::pair(1.0, 1.0));
 }
@@ -203,7 +205,7 @@ TEST(Exponent, UncertaintyIsNotMuchMoreThanTheScatter) {
     EXPECT_LT(scatter / uncertainty, 1.5);
 }
 
-TEST(Exponent, OfATransientSaysThatItsStretchesDiffer) {
+TEST(Exponent, OfATransientIsMarkedAsUnsettled) {
     // a weak drive: chaos for as long as the run, then a cycle; 38 % of such exponents are within their uncertainty
     auto driven = physical(from_rest({120}));
     driven.friction.viscous = {0.02};

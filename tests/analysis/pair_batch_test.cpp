@@ -106,7 +106,7 @@ TEST(PendulumPair, ShareThePendulumsTheyHaveInCommon) {
     EXPECT_GT(std::abs(averages[11] - averages[4]), 1e-3);
 }
 
-TEST(PendulumPair, ThatAreOneHaveNoAverage) {
+TEST(PendulumPair, OfEqualPendulumsHasNoAverage) {
     const auto run = both(Model::constraints);
     const PendulumPair one{released(90, 90), released(90, 90)}, two{released(90, 90), released(91, 90)};
     const auto averages = averages_of({one, two, one}, run);
@@ -115,7 +115,7 @@ TEST(PendulumPair, ThatAreOneHaveNoAverage) {
     EXPECT_TRUE(std::isnan(averages[2]));
 }
 
-TEST(PendulumPair, ThatBreakDownHaveNoAverageAndSpoilNoOther) {
+TEST(PendulumPair, ThatFailsHasNoAverageAndDoesNotAffectOthers) {
     // steps that tear the wild ones apart and suit the calm ones, which swing once in an hour
     auto calm = released(20, -10);
     calm.gravity = 1e-6;

@@ -34,7 +34,7 @@ Bobs<Quad> end_by(MotionSpec spec, const char* method, const char* tolerance, co
     return motion->observe().exact;
 }
 
-TEST(ErrorMeasure, SeesInQuadBelowTheRoundingOfWholeTurns) {
+TEST(ErrorMeasure, ResolvesErrorsBelowTheRoundingOfTurnsInQuad) {
     // a planted error, and as many turns between the two as one formulation counts and the other does not
     for (const int turns : {0, 1, -1, 7, 11, 13, 15, 1000})
         for (const double planted : {0.0, 3e-30, -1e-17, 2e-9}) {
@@ -72,7 +72,7 @@ TEST(ErrorMeasure, IsThatOfTheWorst) {
         EXPECT_TRUE(std::isnan(measure.distance(seen({0, 0}), seen({0, NAN}))));
 }
 
-TEST(Reference, CertifiesEveryAngleAndAfterWholeTurns) {
+TEST(Reference, ComparesEveryAngleModuloTurns) {
     // P3 ends with θ2 = 2.89 π; one link that turns eleven times
     auto turning = chain({0});
     turning.chain->rate[0] = 4000 * pi_of<Quad>() / 180;
@@ -131,9 +131,9 @@ TEST(Reference, RefusesWhereTheTwoDisagree) {
     try {
         reference_end(chain({170, 100}), {60, 1}, never);
         FAIL() << "it agrees to more digits than there are";
-    } catch (const Error& fault) {
-        EXPECT_EQ(fault.code(), ExitCode::method_failed);
-        EXPECT_NE(std::string(fault.what()).find("no reference"), std::string::npos) << fault.what();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        EXPECT_NE(std::string(error.what()).find("no reference"), std::string::npos) << error.what();
     }
 }
 

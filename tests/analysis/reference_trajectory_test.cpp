@@ -35,12 +35,12 @@ TEST(ReferenceTrajectory, OfAMotionInDoubleIsInQuadWhereThatCostsLittle) {
     const auto motion = make_motion(finer);
     for (std::size_t sample = 1; sample <= 50; ++sample) {
         motion->advance(never);
-        EXPECT_LT(wide.off_at(sample, motion->observe()), 1e-20);  // measured 3.4e-21
+        EXPECT_LT(wide.error_at(sample, motion->observe()), 1e-20);  // measured 3.4e-21
     }
     EXPECT_FALSE(reference_trajectory(spec, 50, 2, enough, never, 0).is_wider);
 }
 
-TEST(ReferenceTrajectory, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
+TEST(ReferenceTrajectory, EstimatesItsErrorInItsOwnPrecision) {
     struct Released {
         std::vector<double> degrees, mass;
     };
@@ -65,7 +65,7 @@ TEST(ReferenceTrajectory, KnowsInItsOwnPrecisionHowFarItMayBeOff) {
     }
 }
 
-TEST(ReferenceTrajectory, EndsSomewhatBeyondWhatDoubleCanTell) {
+TEST(ReferenceTrajectory, EndsShortlyAfterThePredictabilityLimit) {
     const auto wide = reference_trajectory(in_double({150, 90}), 1000, 2, enough, never);
     EXPECT_LT(wide.seen.size(), 600u);
     const auto history = error_history(in_double({150, 90}), wide, enough, never);
@@ -77,7 +77,7 @@ TEST(ReferenceTrajectory, EndsSomewhatBeyondWhatDoubleCanTell) {
     EXPECT_TRUE(history.failure.empty());
 }
 
-TEST(ErrorHistory, SaysWhyAMethodFailed) {
+TEST(ErrorHistory, GivesTheReasonOfAFailure) {
     const auto reference = reference_trajectory(in_double({150, 90}), 20, 2, enough, never);
     auto spec = in_double({150, 90});
     spec.method = "gauss4";

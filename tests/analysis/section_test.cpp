@@ -122,11 +122,11 @@ TEST(Section, CountsWholeTurnsInTheOrderOfTime) {
     p.angle = {0, 0};
     p.rate = {3, 3};
     // measured 1.3e-13; so coarse that the first step is of three turns and a half, 1.7e-4
-    for (const auto& [tolerance, crossings, most] : {std::tuple{1e-13, 10, 7e-13}, {1e-2, 3, 1e-3}}) {
+    for (const auto& [tolerance, crossings, maximum] : {std::tuple{1e-13, 10, 7e-13}, {1e-2, 3, 1e-3}}) {
         const auto points = poincare_section(p, {.crossings = crossings, .tolerance = tolerance}, never);
         ASSERT_EQ(points.size(), static_cast<std::size_t>(crossings));
         for (std::size_t i = 0; i < points.size(); ++i)
-            EXPECT_NEAR(points[i].time_s, static_cast<double>(i + 1) * 2 * pi / 3, most) << i;
+            EXPECT_NEAR(points[i].time_s, static_cast<double>(i + 1) * 2 * pi / 3, maximum) << i;
     }
     p.rate = {-3, -3};
     EXPECT_TRUE(poincare_section(p, {.crossings = 10, .longest_s = 50}, never).empty());
@@ -158,7 +158,7 @@ TEST(Section, ReleasesAreSpreadByMultiplesOfThePlasticNumber) {
     }
 }
 
-TEST(Section, NeedsEnergyAndStopsWhenTold) {
+TEST(Section, NeedsEnergyAndStopsOnRequest) {
     const std::atomic<bool> stop = true;
     EXPECT_THROW(poincare_section(uneven(2), {}, stop), Error);
     EXPECT_THROW(releases_of_energy(uneven(2), 0, 3), Error);

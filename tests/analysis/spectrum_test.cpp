@@ -44,7 +44,7 @@ TEST(Spectrum, OfTheUprightEquilibriumInClosedForm) {
     }
 }
 
-TEST(Spectrum, DoesNotDependOnHowOftenTheFrameIsSetUpright) {
+TEST(Spectrum, DoesNotDependOnTheIntervalOfOrthonormalisation) {
     // the factors R of a product of QRs multiply to the R of the whole
     const auto p = uneven(3);
     const auto rarely =
@@ -68,7 +68,7 @@ Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd
         Eigen::VectorXd joint = Eigen::VectorXd::Unit(n, i);
         if (i > 0) joint[i - 1] = -1;
         c += of(f.viscous, i) * joint * joint.transpose();
-        c(i, i) += of(f.arm_linear, i) + 2 * of(f.arm_quadratic, i) * std::abs(omega[i]);
+        c(i, i) += of(f.link_linear, i) + 2 * of(f.link_quadratic, i) * std::abs(omega[i]);
         way.col(i) =
             p.chain.length[static_cast<std::size_t>(i)] * Eigen::Vector2d(std::cos(theta[i]), std::sin(theta[i]));
         c += of(f.drag_linear, i) * way.transpose() * way;
@@ -109,12 +109,12 @@ TEST(Spectrum, SumsToWhatFrictionDoesToTheVolume) {
     EXPECT_LT(apart(two, 10, 20000), 1e-11);  // measured 5e-15
     auto three = rods({{1.2, 0.7, 0.9}, {0.9, 1.1, 0.6}, {2.2, -0.4, 1.0}, {0, 1, -0.5}});
     three.friction.viscous = {0.11, 0.05, 0.02};
-    three.friction.arm_linear = {0.02, 0, 0.03};
+    three.friction.link_linear = {0.02, 0, 0.03};
     three.friction.drag_linear = {0, 0.02, 0.03};
     EXPECT_LT(apart(three, 10, 20000), 1e-11);  // measured 4e-13
     // driven; the squares of rates have corners at 0
     auto arms = two;
-    arms.friction.arm_quadratic = {0.05, 0.08};
+    arms.friction.link_quadratic = {0.05, 0.08};
     arms.pivot = {0.2, 0.1, 5.5, 0.5};
     EXPECT_LT(apart(arms, 5, 20000), 4e-7);  // measured 7e-8
 }
@@ -158,7 +158,7 @@ std::vector<double> real_parts(const PhysicalPendulum<double>& p) {
 TEST(Spectrum, AtRestHasTheRealPartsOfTheEigenvalues) {
     // overdamped: four real ones; what the first frame makes of it decays like 1/t, so between two times
     auto p = rods({{1.2, 0.7}, {0.9, 1.1}, {0, 0}, {0, 0}});
-    p.friction.arm_linear = {12, 2.5};
+    p.friction.link_linear = {12, 2.5};
     const auto exact = real_parts(p);
     EXPECT_LT(exact[0] / exact[1], 0.5);  // −1.03, −2.11, −4.32 and −35.3 1/s
     const auto all = lyapunov_spectrum(p, {.duration_s = 60, .samples = 2, .tolerance = 1e-12}, never);

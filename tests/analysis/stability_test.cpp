@@ -55,22 +55,22 @@ TEST(EnergyGrowth, IsThatOfOneStepInClosedForm) {
 
 TEST(EnergyGrowth, IsThatOfTheSteppers) {
     // where nothing but the growing root is left; measured 7e-16, 1.3e-14, 9.1e-14
-    for (const auto& [method, z, steps, most] :
+    for (const auto& [method, z, steps, maximum] :
          {std::tuple{"euler", 0.3, 20L, 5e-15}, {"midpoint", 0.5, 20L, 7e-14}, {"rk4", 1.5, 20L, 5e-13}})
-        EXPECT_NEAR(energy_left(method, z, steps) / energy_growth(method, z, steps), 1, most) << method;
+        EXPECT_NEAR(energy_left(method, z, steps) / energy_growth(method, z, steps), 1, maximum) << method;
     // measured 6e-11, 3.1e-8, 7.5e-5, 1.1e-8
-    for (const auto& [method, z, steps, most] : {std::tuple{"semi-implicit-euler", 2.5, 8L, 3e-10},
-                                                 {"rattle", 2.5, 6L, 2e-7},
-                                                 {"rattle6", 2.7, 10L, 5e-4},
-                                                 {"rattle6", 3.6, 5L, 7e-8}}) {
+    for (const auto& [method, z, steps, maximum] : {std::tuple{"semi-implicit-euler", 2.5, 8L, 3e-10},
+                                                    {"rattle", 2.5, 6L, 2e-7},
+                                                    {"rattle6", 2.7, 10L, 5e-4},
+                                                    {"rattle6", 3.6, 5L, 7e-8}}) {
         const double ratio = energy_left(method, z, steps + 1) / energy_left(method, z, steps);
-        EXPECT_NEAR(ratio / energy_growth(method, z, 1), 1, most) << method << " " << z;
+        EXPECT_NEAR(ratio / energy_growth(method, z, 1), 1, maximum) << method << " " << z;
     }
     for (const auto& [method, z] : {std::pair{"rattle6", 2.5}, {"rattle6", 3.1}, {"gauss4", 1.5}, {"rattle", 1.9}})
         EXPECT_LT(energy_left(method, z, 200), 30) << method << " " << z;  // measured 11 at most
 }
 
-TEST(EnergyGrowth, OfAdamsBeginsWhereItsPageSays) {
+TEST(EnergyGrowth, OfAdamsBeginsAtTheDocumentedLimit) {
     double stable = 0.1, unstable = 1;
     while (unstable - stable > 1e-6) {
         const double middle = (stable + unstable) / 2;
@@ -134,7 +134,7 @@ TEST(StepLimit, OfEulerAndMidpointIsWhereTheyHaveGrown) {
                 1e-5);  // measured 1e-6
 }
 
-TEST(StepLimit, GoesByTheEnergyInEachMode) {
+TEST(StepLimit, DependsOnTheEnergyInEachMode) {
     const std::vector<Mode> half{{2.0, 0.5}, {5.0, 0.5}};
     const double limit = step_limit("euler", half, 100, 10).value();
     const double grown = 0.5 * std::pow(1 + 4 * limit * limit, std::lround(100 / limit)) +
@@ -162,7 +162,7 @@ TEST(ReleasedEnergy, IsThatAboveHanging) {
     EXPECT_NEAR(released_energy({.angle = {1e-7, 0}}) / (0.5 * 9.8 * 2e-14), 1, 5e-15);  // measured 1e-15
 }
 
-TEST(GreatestEnergyErrors, AreThoseOfTheSamplesAndNoneForABlowUp) {
+TEST(GreatestEnergyErrors, AreThoseOfTheSamplesAndNaNForAFailedRun) {
     const std::atomic<bool> never = false;
     std::vector<Pendulum<Quad>> releases;
     for (int i = 1; i <= 11; ++i) releases.push_back({.angle = {Quad(i) / 4, 0}});
@@ -171,27 +171,27 @@ TEST(GreatestEnergyErrors, AreThoseOfTheSamplesAndNoneForABlowUp) {
         for (const char* method : {"euler", "rk4", "adams"})
             for (const long steps : {1L, 32L}) {
                 MotionSpec spec{.model = model, .method = method, .sample_interval = {1, 2}, .steps_per_sample = steps};
-                const auto errors = greatest_energy_errors(spec, releases, 8, never);
+                const auto errors = max_energy_errors(spec, releases, 8, never);
                 ASSERT_EQ(errors.size(), releases.size());
                 for (std::size_t i = 0; i < releases.size(); ++i) {
                     spec.chain = releases[i];
                     const auto motion = make_motion(spec);
-                    double most = 0;
+                    double maximum = 0;
                     for (int n = 0; n < 8; ++n) {
                         motion->advance(never);
                         const double error = std::abs(motion->observe().energy_change);
-                        most = error <= most ? most : error;  // NaN stays
+                        maximum = error <= maximum ? maximum : error;  // NaN stays
                     }
-                    most /= released_energy(releases[i].cast<double>());
-                    EXPECT_TRUE(errors[i] == most || (std::isnan(errors[i]) && !(most <= failure_error)))
-                        << method << ' ' << steps << ' ' << i << ' ' << errors[i] << ' ' << most;
+                    maximum /= released_energy(releases[i].cast<double>());
+                    EXPECT_TRUE(errors[i] == maximum || (std::isnan(errors[i]) && !(maximum <= failure_error)))
+                        << method << ' ' << steps << ' ' << i << ' ' << errors[i] << ' ' << maximum;
                     blown += std::isnan(errors[i]);
                 }
             }
     EXPECT_GT(blown, 10);
     // a method that gives up
     const MotionSpec coarse{.method = "gauss4", .sample_interval = {3, 1}, .steps_per_sample = 1};
-    EXPECT_TRUE(std::isnan(greatest_energy_errors(coarse, releases, 8, never).back()));
+    EXPECT_TRUE(std::isnan(max_energy_errors(coarse, releases, 8, never).back()));
 }
 
 }  // namespace stability_test

@@ -7,7 +7,7 @@
 namespace doppel {
 namespace error_test {
 
-TEST(Error, IsOneWholeLineWhateverItQuotes) {
+TEST(Error, IsOneLineWhateverItQuotes) {
     const std::string quoted("a\0b\nc", 5);
     EXPECT_STREQ(bad_input("there is no \"{}\"", quoted).what(), "there is no \"a b c\"");
     EXPECT_STREQ(Error(ExitCode::io_failed, quoted).what(), "a b c");

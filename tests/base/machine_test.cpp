@@ -77,7 +77,7 @@ TEST(Machine, HasWhatTheAffinityMaskLeaves) {
     EXPECT_GT(this_machine().memory, std::uintmax_t{64} << 20);
 }
 
-TEST(Machine, HoldsNoMoreThanItsMemory) {
+TEST(Machine, LimitsObjectsByItsMemory) {
     constexpr std::size_t megabyte = 1 << 20;
     EXPECT_EQ(affordable(5 * 33 * megabyte, 64, bare), 12u);                    // 4K in five copies: 2 GiB
     EXPECT_EQ(affordable(5 * 33 * megabyte, 4, bare), 4u);                      // no more than wanted

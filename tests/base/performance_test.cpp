@@ -41,7 +41,7 @@ TEST(Performance, OfRoundsIsTheMedianAndTheirMiddleHalf) {
     EXPECT_EQ(summary({{10, 1}, {20, 2}}).ns, 15);
 }
 
-TEST(Performance, TellsWhatFellByMoreThanSoMuch) {
+TEST(Performance, ReportsLossesAboveALimit) {
     Performance kept, now;
     for (const auto& [name, before, after] :
          {std::tuple("same", 2.0, 2.0), {"quicker", 2.0, 1.0}, {"nearly", 0.85, 0.999}, {"slower", 0.85, 1.001}})

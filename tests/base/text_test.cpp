@@ -30,7 +30,7 @@ TEST(Text, IsUtf8OrNot) {
     for (const char* text : {"\xff", "a\x80", "\xc3", "\xed\xa0\x80", "\xc0\xaf"}) EXPECT_FALSE(is_utf8(text)) << text;
 }
 
-TEST(Text, OnOneLineIsShownAndNotObeyed) {
+TEST(Text, OnOneLineIsSanitised) {
     EXPECT_EQ(on_one_line("plain, 90° · λ"), "plain, 90° · λ");
     EXPECT_EQ(on_one_line("a\nb\r\tc\x1b[31md\x7f"), "a b  c [31md ");
     EXPECT_EQ(on_one_line("\xc2\x9b"

@@ -13,7 +13,7 @@
 namespace doppel {
 namespace threads_test {
 
-TEST(Threads, AreAsManyAsWereWanted) {
+TEST(Threads, AreAsManyAsRequested) {
     std::atomic<int> ran = 0;
     {
         const auto threads = start_threads(5, [&] { ++ran; });
@@ -32,8 +32,8 @@ TEST(Threads, NameTheLimitThatKeepsThemFromStarting) {
         std::ifstream sizes("/proc/self/statm");
         rlim_t pages = 0;
         sizes >> pages;
-        const rlim_t most = limited == RLIMIT_NPROC ? 0 : pages * 4096 + (rlim_t{4} << 20);
-        const rlimit limit{most, most};
+        const rlim_t maximum = limited == RLIMIT_NPROC ? 0 : pages * 4096 + (rlim_t{4} << 20);
+        const rlimit limit{maximum, maximum};
         setrlimit(limited, &limit);
         std::fputs(no_thread().what(), stderr);
         std::_Exit(0);

@@ -25,10 +25,10 @@ constexpr double most_fall = 0.15;
 /// Those whose names have `part` in them; the others stay as they were.
 void keep(const std::string& path, const std::string& part) {
     const auto names = benchmark_names();
-    std::vector<std::string> asked;
-    std::copy_if(names.begin(), names.end(), std::back_inserter(asked),
+    std::vector<std::string> requested;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(requested),
                  [&](const std::string& name) { return name.find(part) != std::string::npos; });
-    auto all = measure(asked, 5);
+    auto all = measure(requested, 5);
     if (std::filesystem::exists(path))
         for (const auto& [name, one] : read_performance(path).benchmarks)
             if (!part.empty() || name.starts_with("building/")) all.benchmarks.try_emplace(name, one);

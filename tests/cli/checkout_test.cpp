@@ -23,7 +23,7 @@ void expect_refused(const Outcome& result, const std::string& reason) {
     EXPECT_NE(result.err.find("/build/release cannot be written: " + reason + "; "), std::string::npos) << result.err;
 }
 
-TEST(Checkout, ThatCannotBeWrittenIsToldInALine) {
+TEST(Checkout, ThatCannotBeWrittenIsReportedInOneLine) {
     const auto top = checkout();
     write_bytes(top / "build", "");
     for (const char* line : {"./doppel compare a b", "./doppel list"})

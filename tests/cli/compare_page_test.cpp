@@ -40,7 +40,7 @@ std::vector<Picture> pictures_of(const Element& page, const std::string& kind, c
     return pictures;
 }
 
-TEST(ComparePage, HoldsTheVeryPixelsAndNothingFromElsewhere) {
+TEST(ComparePage, ContainsThePixelsAndNeedsNoOtherFile) {
     const auto folder = fresh_folder();
     for (const char* side : {"one", "two"}) fs::create_directories(folder / side);
     const Size size{300, 200};  // 180 kB of noise: several blocks of base64

@@ -47,7 +47,7 @@ const Element* case_of(const Element& root, const std::string& name) {
     return found == cases.end() ? nullptr : *found;
 }
 
-TEST(CompareJunit, TellsEveryPictureOnce) {
+TEST(CompareJunit, ReportsEveryPictureOnce) {
     const auto folder = fresh_folder();
     make_folders(folder);
     const auto result = doppel(folder, {"compare", "one", "two", "--junit", "new/folder/report.xml"});

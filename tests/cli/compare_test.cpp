@@ -60,7 +60,7 @@ TEST(Compare, CountsEveryPictureOnce) {
     EXPECT_EQ(result.out, "two/2.png: missing\none/3.png: missing\n2 of 3 pictures differ\n");
 }
 
-TEST(Compare, OnePictureThatCannotBeReadEndsNothing) {
+TEST(Compare, ContinuesAfterAnUnreadablePicture) {
     const auto folder = fresh_folder();
     make_pictures(folder / "one", {{"1.png", 10}, {"2.png", 10}, {"3.png", 10}});
     make_pictures(folder / "two", {{"1.png", 10}, {"2.png", 10}, {"3.png", 90}});
@@ -74,7 +74,7 @@ TEST(Compare, OnePictureThatCannotBeReadEndsNothing) {
         << result.err;
 }
 
-TEST(Compare, ADifferenceOfBeforeGoesWhenThePicturePasses) {
+TEST(Compare, RemovesAnOldDifferenceWhenThePicturePasses) {
     const auto folder = fresh_folder();
     make_pictures(folder / "one", {{"1.png", 10}, {"2.png", 10}});
     make_pictures(folder / "two", {{"1.png", 90}, {"2.png", 90}});
@@ -104,7 +104,7 @@ TEST(Compare, ReplacesDifferencePicturesAlone) {
     EXPECT_EQ(test::bytes_of(folder / "out/compare/1.diff.png"), mine);
 }
 
-TEST(Compare, WhatCannotBeReadIsSaidPlainly) {
+TEST(Compare, ReportsUnreadablePictures) {
     const auto folder = fresh_folder();
     make_pictures(folder, {{"1.png", 10}});
     const std::string name(300, 'n');  // more than a file system has
@@ -113,7 +113,7 @@ TEST(Compare, WhatCannotBeReadIsSaidPlainly) {
     EXPECT_EQ(refused.err, "doppel: " + name + ": cannot be read: File name too long\n");
 }
 
-TEST(Compare, SeesOpacity) {
+TEST(Compare, ComparesOpacity) {
     const auto folder = fresh_folder();
     Picture picture({8, 8});
     std::fill(picture.rgba.begin(), picture.rgba.end(), std::uint8_t{200});

@@ -96,7 +96,7 @@ TEST(Contracts, CheckIsJson) {
     EXPECT_EQ(exact["a"]["other_accuracies"].size(), 2u);
 }
 
-TEST(Contracts, TheOutputsThatAreListedAreThoseThatAreWritten) {
+TEST(Contracts, ListedOutputsAreTheWrittenOnes) {
     const auto folder = fresh_folder();
     write_bytes(folder / "sheet.toml", "[scene]\nduration_s = 0.1\n[video]\nposter_s = 0.1\ncontact_sheet = [2, 1]\n");
     write_bytes(folder / "map.toml",
@@ -195,7 +195,7 @@ TEST(Contracts, APresetsFileNeedsNoEnding) {
     EXPECT_TRUE(doppel(folder, {"check", "notes.txt"}).err.starts_with("doppel: notes.txt:1:6: "));
 }
 
-TEST(Contracts, RunsSayFromWhenOnTheyAreOffAsCheckDoes) {
+TEST(Contracts, RunsReportWhenTheyDivergeAsCheckDoes) {
     const auto folder = fresh_folder();
     const auto run = doppel(folder, {"simulate", "butterfly", "--progress", "none"});
     EXPECT_EQ(run.err,
@@ -206,7 +206,7 @@ TEST(Contracts, RunsSayFromWhenOnTheyAreOffAsCheckDoes) {
     const auto brief = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "scene.duration_s=10"});
     EXPECT_EQ(brief.err, "");
     const auto lost = doppel(folder, {"simulate", "butterfly", "--progress", "none", "--set", "system.accuracy=1e-3"});
-    EXPECT_NE(lost.err.find("side a: the accuracy holds up to 2"), std::string::npos) << lost.err;
+    EXPECT_NE(lost.err.find("side a: the accuracy is kept up to 2"), std::string::npos) << lost.err;
 }
 
 }  // namespace contracts_test

@@ -35,14 +35,14 @@ void on_every(const char* pattern, const Run& run) {
 
 const std::string doppel_is_this_one = "set -e; doppel() { \"$DOPPEL\" \"$@\"; }; ";
 
-TEST(Docs, NumbersWithACommandAreWhatItTells) {
+TEST(Docs, NumbersEqualTheOutputOfTheirCommand) {
     on_every("<!-- \\$ ([^\\n]*) -->", [](const std::string& page, const std::smatch& found) {
         const auto result = shell(fresh_folder(), doppel_is_this_one + found.str(1));
         EXPECT_EQ(result.code, 0) << page << ": " << found.str(1) << '\n' << result.out << result.err;
     });
 }
 
-TEST(Docs, ExamplesPrintWhatTheySay) {
+TEST(Docs, ExamplesPrintTheShownLines) {
     on_every("\\n```\\n\\$ ./(doppel [^\\n]*)\\n([^`]*)```", [](const std::string& page, const std::smatch& found) {
         const auto result = shell(fresh_folder(), doppel_is_this_one + found.str(1));
         EXPECT_NE(result.out.find(found.str(2)), std::string::npos) << page << ": " << found.str(1) << '\n'
@@ -50,9 +50,9 @@ TEST(Docs, ExamplesPrintWhatTheySay) {
     });
 }
 
-/// The commands of a page, as a reader types them one after another into one folder. So that they take seconds, films that are
-/// not cut are two frames long and pictures without a size small; figures that take minutes only list their files. What takes
-/// other programs (GNU parallel, Slurm) has its own tests (Recipe).
+/// The commands of a page, as a reader types them one after another into one folder. So that they take seconds, films
+/// that are not cut are two frames long and pictures without a size small; figures that take minutes only list their
+/// files. What takes other programs (GNU parallel, Slurm) has its own tests (Recipe).
 class PageOfCommands : public testing::TestWithParam<fs::path> {
 protected:
     static std::string commands_of(const fs::path& page) {

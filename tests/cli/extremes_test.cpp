@@ -26,8 +26,8 @@ struct Request {
 };
 
 /// The answer must be as said, soon, and nothing half done.
-void expect_answer(const std::string& command, const Request& asked) {
-    const auto& request = asked.line;
+void expect_answer(const std::string& command, const Request& requested) {
+    const auto& request = requested.line;
     const auto folder = fresh_folder();
     const auto what = fmt::format("{}", fmt::join(request, " "));
     auto line = with({command, "butterfly", "--progress", "none"}, request);
@@ -40,7 +40,7 @@ void expect_answer(const std::string& command, const Request& asked) {
     const int code = wait_at_most(start(folder, line, patience), 120);
     const auto message = bytes_of(folder / "stderr");
     const auto made = listing(folder / "out");
-    EXPECT_EQ(code, asked.code) << what << "\n" << message;
+    EXPECT_EQ(code, requested.code) << what << "\n" << message;
     for (const auto& name : made) EXPECT_FALSE(name.ends_with(".part") || name.ends_with(".lock")) << what << name;
     if (code == 0) {
         std::istringstream warnings(message);  // at most that a step is too coarse
@@ -59,7 +59,7 @@ void expect_answer(const std::string& command, const Request& asked) {
     EXPECT_TRUE(says("the samples before are in") || made.empty()) << what << message;
 }
 
-TEST(Extremes, StrangePicturesAreServedOrRefusedWithAPlace) {
+TEST(Extremes, UnusualPicturesAreDrawnOrRefusedWithAPlace) {
     const std::vector<Request> requests{
         {0, {"--size", "64x64"}},
         {2, {"--size", "16384x2"}},
@@ -95,7 +95,7 @@ TEST(Extremes, StrangePicturesAreServedOrRefusedWithAPlace) {
     for (const auto& request : requests) expect_answer("render", request);
 }
 
-TEST(Extremes, PhysicsIsServedOrRefusedWithAPlace) {
+TEST(Extremes, ExtremePhysicsIsSimulatedOrRefusedWithAPlace) {
     const std::vector<Request> requests{
         {0, set({"system.mass_kg=[1e300, 1e300]"})},
         {3, set({"system.mass_kg=[1e-300, 1e300]"})},
@@ -126,7 +126,7 @@ TEST(Extremes, PhysicsIsServedOrRefusedWithAPlace) {
     for (const auto& request : requests) expect_answer("simulate", request);
 }
 
-TEST(Extremes, WhatWouldTakeForEverEndsWhenAsked) {
+TEST(Extremes, EndlessRunsStopOnRequest) {
     for (const auto& request : {set({"system.integrator=\"taylor\"", "system.omega_deg_per_s=1e12"}),
                                 set({"scene.sample_hz=\"1/100000\"", "scene.duration_s=100000"}),
                                 set({"system.accuracy=1e-9", "system.omega_deg_per_s=1e9"})}) {

@@ -57,21 +57,21 @@ pid_t start_endless(const fs::path& folder, const std::string& format) {
     return child;
 }
 
-TEST(Faults, AFullDiskIsToldAndLeavesNothingButFinishedPartsItNames) {
+TEST(FailedRuns, AFullDiskIsReportedAndKeepsOnlyNamedFinishedFiles) {
     const auto folder = fresh_folder();
     if (!can_mount(folder))
         GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDiskAndLeavesNothing stands in";
     // a disk of so many pages, or so few files, that the run stops at another place each time; then one where it fits
     const std::string script = R"sh(set -u; mkdir -p out
-        for room in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
-            mount -t tmpfs -o $room none out || exit 77
+        for limit in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
+            mount -t tmpfs -o $limit none out || exit 77
             "$DOPPEL" $COMMAND 2>message >/dev/null; code=$?
             for file in $(find out -type f ! -name .lock); do
                 case $file in */.doppel-run/*) grep -qF "$file" message || echo "$file";; *) echo "$file";; esac
             done >unnamed
             kept=$(grep -c "what is finished stays until the next run: out/" message)
             [ "$kept" = 0 ] && find out -mindepth 1 >>unnamed
-            echo "$room $code $kept $(wc -l <unnamed) $(wc -l <message) $(cut -c1-16 message)"
+            echo "$limit $code $kept $(wc -l <unnamed) $(wc -l <message) $(cut -c1-16 message)"
             umount out
         done)sh";
     for (const std::string command :
@@ -86,22 +86,22 @@ TEST(Faults, AFullDiskIsToldAndLeavesNothingButFinishedPartsItNames) {
         ASSERT_EQ(result.code, 0) << result.err << result.out;
         std::istringstream lines(result.out);
         int refused = 0;
-        std::string room, code, kept, unnamed, messages, message;
-        while (lines >> room >> code >> kept >> unnamed >> messages && std::getline(lines, message)) {
+        std::string limit, code, kept, unnamed, messages, message;
+        while (lines >> limit >> code >> kept >> unnamed >> messages && std::getline(lines, message)) {
             if (code == "0") continue;
             ++refused;
-            EXPECT_EQ(code, "75") << command << ", " << room;
-            EXPECT_EQ(unnamed, "0") << command << ", " << room;
-            EXPECT_EQ(messages, "1") << command << ", " << room;
-            EXPECT_EQ(message.rfind(" doppel: out/", 0), 0u) << command << ", " << room << ": " << message;
+            EXPECT_EQ(code, "75") << command << ", " << limit;
+            EXPECT_EQ(unnamed, "0") << command << ", " << limit;
+            EXPECT_EQ(messages, "1") << command << ", " << limit;
+            EXPECT_EQ(message.rfind(" doppel: out/", 0), 0u) << command << ", " << limit << ": " << message;
         }
-        EXPECT_EQ(room + code, "size=16m0") << command;
+        EXPECT_EQ(limit + code, "size=16m0") << command;
         EXPECT_EQ(kept, "0") << command;
         EXPECT_GE(refused, 3) << command;
     }
 }
 
-TEST(Faults, AReadOnlyTargetIsTold) {
+TEST(FailedRuns, AReadOnlyTargetIsReported) {
     const auto folder = fresh_folder();
     if (!can_mount(folder))
         GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4WhereNothingCanBeWritten stands in";
@@ -111,7 +111,7 @@ TEST(Faults, AReadOnlyTargetIsTold) {
     EXPECT_EQ(result.err, "doppel: out/butterfly: cannot be written to: Read-only file system\n");
 }
 
-TEST(Faults, AfterKill9TheNextRunIsWhole) {
+TEST(FailedRuns, AfterKill9TheNextRunIsComplete) {
     for (const std::string format : {"mp4", "png"})
         for (const std::string next : {"mp4", "png"}) {
             const auto folder = fresh_folder();
@@ -125,21 +125,21 @@ TEST(Faults, AfterKill9TheNextRunIsWhole) {
         }
 }
 
-TEST(Faults, EndsSoonAndCleanWhenAsked) {
+TEST(FailedRuns, StopsSoonAndCleanly) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         for (const std::string format : {"mp4", "png"}) {
             const auto folder = fresh_folder();
             const auto child = start_endless(folder, format);
-            const auto asked = std::chrono::steady_clock::now();
+            const auto requested = std::chrono::steady_clock::now();
             kill(child, signal);
             EXPECT_EQ(wait_for(child), signal == SIGTERM ? 143 : 130);
-            EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(2));  // measured 0.1 s
+            EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(2));  // measured 0.1 s
             EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
             EXPECT_EQ(listing(folder / "out"), Names{});
         }
 }
 
-TEST(Faults, GoesOnWhereNobodyReadsItsProgress) {
+TEST(FailedRuns, ContinuesIfNobodyReadsItsProgress) {
     const auto folder = fresh_folder();
     const std::string run = R"sh(("$DOPPEL" render butterfly --size 64x64 --set 'system.integrator="taylor"' \
         --set scene.duration_s=0.1; echo $? >code) )sh";
@@ -151,7 +151,7 @@ TEST(Faults, GoesOnWhereNobodyReadsItsProgress) {
     }
 }
 
-TEST(Faults, OldFramesNeverMixWithNew) {
+TEST(FailedRuns, OldFramesNeverMixWithNew) {
     const auto folder = fresh_folder();
     ASSERT_EQ(doppel(folder, film("png", {"--set", "scene.duration_s=0.5"})).code, 0);  // 61 frames
     write_bytes(folder / "out/butterfly/frames/000007.png", "no picture");
@@ -160,7 +160,7 @@ TEST(Faults, OldFramesNeverMixWithNew) {
     expect_whole(folder / "out", "png");
 }
 
-TEST(Faults, OldFramesStayWhereTheNewRunFails) {
+TEST(FailedRuns, OldFramesStayWhereTheNewRunFails) {
     const auto folder = fresh_folder();
     ASSERT_EQ(doppel(folder, film("png", quick)).code, 0);
     std::map<std::string, std::string> before;
@@ -188,7 +188,7 @@ TEST(Faults, OldFramesStayWhereTheNewRunFails) {
     expect_whole(folder / "out", "png");
 }
 
-TEST(Faults, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
+TEST(FailedRuns, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
     struct Case {
         std::string made, named, format;
     };
@@ -213,7 +213,7 @@ TEST(Faults, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
     }
 }
 
-TEST(Faults, FilesOfAnotherFormatStayDoppelsOwn) {
+TEST(FailedRuns, FilesOfAnotherFormatStayDoppelsOwn) {
     const auto folder = fresh_folder();
     for (const std::string format : {"png", "mp4", "png"}) {
         const auto result = doppel(folder, film(format, quick));
@@ -229,7 +229,7 @@ TEST(Faults, FilesOfAnotherFormatStayDoppelsOwn) {
     EXPECT_EQ(listing(folder / "out"), expected);
 }
 
-TEST(Faults, ASecondRunIsRefusedWhileTheFirstIsWriting) {
+TEST(FailedRuns, ASecondRunIsRefusedWhileTheFirstIsWriting) {
     const auto folder = fresh_folder();
     const auto first = start_endless(folder, "mp4");
     const auto second = doppel(folder, film("png", quick));
@@ -245,7 +245,7 @@ TEST(Faults, ASecondRunIsRefusedWhileTheFirstIsWriting) {
     expect_whole(folder / "out", "png");
 }
 
-TEST(Faults, OfRunsThatStartAtOnceOneIsWhole) {
+TEST(FailedRuns, OneOfSimultaneousRunsCompletes) {
     for (int round = 0; round < 3; ++round) {
         const auto folder = fresh_folder();
         std::vector<pid_t> runs;
@@ -261,7 +261,7 @@ TEST(Faults, OfRunsThatStartAtOnceOneIsWhole) {
     }
 }
 
-TEST(Faults, APresetIsReadOnce) {
+TEST(FailedRuns, APresetIsReadOnce) {
     const auto text = bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml");
     const auto run = [&](const fs::path& folder, const std::function<void()>& meanwhile) {
         write_bytes(folder / "butterfly.toml", text);
@@ -298,7 +298,7 @@ long peak_memory(const fs::path& folder, const std::vector<std::string>& argumen
     return usage.ru_maxrss;
 }
 
-TEST(Faults, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
+TEST(FailedRuns, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
     const auto folder = fresh_folder();
     for (const std::string command : {"render", "simulate"}) {
         const auto peak = [&](int seconds) {
@@ -309,10 +309,10 @@ TEST(Faults, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
         };
         // Frames in flight differ from run to run, by 1 MB, with sanitizers on a busy machine by more than 3: what
         // stays too large in four pairs of runs is kept. Measured 0.1 MB of simulate, 8.6 of render: 0.7 kB a sample.
-        const long most = command == "render" ? 3000 + 12'000 : 3000;  // kB
+        const long maximum = command == "render" ? 3000 + 12'000 : 3000;  // kB
         long growth = peak(120) - peak(20);
-        for (int again = 0; again < 3 && growth >= most; ++again) growth = std::min(growth, peak(120) - peak(20));
-        EXPECT_LT(growth, most) << command;
+        for (int again = 0; again < 3 && growth >= maximum; ++again) growth = std::min(growth, peak(120) - peak(20));
+        EXPECT_LT(growth, maximum) << command;
     }
 }
 

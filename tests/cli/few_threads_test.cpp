@@ -19,7 +19,7 @@ int code_with_threads(int count, const std::filesystem::path& folder, const std:
                         60);  // s; measured 0.3, and for ever where a thread is waited for
 }
 
-TEST(FewThreads, AreEnoughOrItSaysSoAndLeavesNothing) {
+TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
     const auto film = [](const std::vector<std::string>& more) {
         return with({"render", "butterfly", "--size", "128x72", "--frames", "0:5", "--progress", "none"}, more);
     };

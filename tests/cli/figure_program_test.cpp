@@ -86,10 +86,10 @@ TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
     const auto folder = fresh_folder();
     const auto child = start(folder, {"figure", "fig6", "droplet", "--progress", "none"});
     EXPECT_TRUE(appears(folder / "out/fig6/fig6.json"));
-    const auto asked = std::chrono::steady_clock::now();
+    const auto requested = std::chrono::steady_clock::now();
     kill(child, SIGINT);
     EXPECT_EQ(wait_for(child), 130);
-    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1));  // measured 0.05 s
+    EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1));  // measured 0.05 s
     EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
     // nothing of what was not complete, but what the same command resuming from where that took long
     for (const auto& name : test::listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
@@ -137,7 +137,7 @@ protected:
     pid_t child_ = -1;
 };
 
-TEST_F(LongFigure, GoesOnAfterItWasKilled) {
+TEST_F(LongFigure, ResumesAfterItWasKilled) {
     kill(child_, SIGKILL);
     EXPECT_EQ(wait_for(child_), -SIGKILL);
     expect_record_alone();
@@ -152,7 +152,7 @@ TEST_F(LongFigure, GoesOnAfterItWasKilled) {
         EXPECT_TRUE(bytes_of(folder_ / "out/flip-map" / file) == bytes_of(folder_ / "whole/flip-map" / file)) << file;
 }
 
-TEST_F(LongFigure, SaysAfterCtrlCWhereItGoesOn) {
+TEST_F(LongFigure, ReportsItsRecordAfterCtrlC) {
     kill(child_, SIGINT);
     EXPECT_EQ(wait_for(child_), 130);
     const auto said = bytes_of(folder_ / "stderr");

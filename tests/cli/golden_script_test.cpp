@@ -84,7 +84,7 @@ TEST(GoldenScript, TheExampleOfTheDocumentationPasses) {
     EXPECT_TRUE(fs::exists(folder / "doppel-golden/fig6.html") && fs::exists(folder / "doppel-golden/mine.html"));
 }
 
-TEST(GoldenScript, SaysWhatItCannotDrawAndSkipsNothing) {
+TEST(GoldenScript, ReportsWhatItCannotDraw) {
     const auto folder = test::fresh_folder();
     // in place of the program, one that draws nothing, says what it would and reads its input
     test::write_bytes(folder / "draws", "#!/bin/sh\ncat\necho \"ran $1 $2\"\n");

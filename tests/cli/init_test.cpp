@@ -56,7 +56,7 @@ std::set<std::string> refused_keys(const std::string& whole, const std::function
     return refused;
 }
 
-TEST(Init, EachKeyCanBeTakenIntoUse) {
+TEST(Init, EachKeyCanBeUncommented) {
     const auto folder = fresh_folder();
     ASSERT_EQ(doppel(folder, {"init", "mine.toml"}).code, 0);
     std::size_t keys = 0;
@@ -90,7 +90,7 @@ TEST(Init, WritesAPresetOfEveryKindOfFigure) {
     }
 }
 
-TEST(Init, EachKeyOfAFigureCanBeTakenIntoUse) {
+TEST(Init, EachKeyOfAFigureCanBeUncommented) {
     const auto folder = fresh_folder();
     // those that are for other values of other keys, and what the figure gives itself
     std::map<std::string_view, std::set<std::string>> beside{
@@ -152,7 +152,7 @@ TEST(Init, WritesAFigureThatIsDrawn) {
               "doppel: mine.toml: exists already; give a new name\n");
 }
 
-TEST(Init, LeavesWhatIsThere) {
+TEST(Init, NeverReplacesAFile) {
     const auto folder = fresh_folder();
     write_bytes(folder / "mine.toml", "title = \"mine\"\n");
     fs::create_symlink("nowhere", folder / "link.toml");
@@ -172,7 +172,7 @@ TEST(Init, LeavesWhatIsThere) {
     EXPECT_FALSE(fs::exists(folder / "no"));
 }
 
-TEST(Init, LeavesNothingElseThere) {
+TEST(Init, WritesNoOtherFile) {
     const auto folder = fresh_folder();
     write_bytes(folder / "mine.toml.part", "mine");
     fs::create_directory(folder / "elsewhere");

@@ -70,8 +70,8 @@ TEST(Program, ListsShowsAndChecks) {
 
 TEST(Program, AnAccuracyIsChosenByExplainedAndRecorded) {
     const auto folder = fresh_folder();
-    const std::vector<std::string> asked{"calm", "--set", "system.accuracy=1e-6", "--set", "scene.duration_s=10"};
-    auto arguments = asked;
+    const std::vector<std::string> requested{"calm", "--set", "system.accuracy=1e-6", "--set", "scene.duration_s=10"};
+    auto arguments = requested;
     arguments.insert(arguments.begin(), "check");
     const auto check = doppel(folder, arguments);
     EXPECT_EQ(check.code, 0) << check.err;
@@ -329,10 +329,10 @@ TEST(Program, ExitsWith130WithinASecondOfCtrlC) {
         const auto child =
             start(folder, {command, "butterfly", "--set", "scene.duration_s=3600", "--progress", "none"});
         std::this_thread::sleep_for(std::chrono::milliseconds(700));
-        const auto asked = std::chrono::steady_clock::now();
+        const auto requested = std::chrono::steady_clock::now();
         kill(child, SIGINT);
         EXPECT_EQ(wait_for(child), 130);
-        EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(1)) << command;  // measured 0.1 s
+        EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1)) << command;  // measured 0.1 s
         EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
         EXPECT_TRUE(left_nothing(folder)) << command;
     }

@@ -16,7 +16,7 @@ using namespace test;
 
 const std::string quick = " --set 'system.integrator=\"taylor\"' --set scene.duration_s=0.1 ";
 
-TEST(Streams, WhatCannotBePrintedIsExit4) {
+TEST(Streams, UnwritableStandardOutputIsExit4) {
     const auto folder = fresh_folder();
     ASSERT_EQ(
         shell(folder, "\"$DOPPEL\" render calm --format png --size 64x64 --frames 0:2 -o one --progress none").code, 0);
@@ -36,7 +36,7 @@ TEST(Streams, WhatCannotBePrintedIsExit4) {
     }
 }
 
-TEST(Streams, NamesOfFilesThatCannotBePrintedAreExit75) {
+TEST(Streams, UnprintableNamesOfFilesAreExit75) {
     const auto folder = fresh_folder();
     write_bytes(folder / "map.toml",
                 "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"flip_time\"\n[grid.x]\npoints = 8\n"
@@ -70,7 +70,7 @@ TEST(Streams, NamesOfFilesThatCannotBePrintedAreExit75) {
         }
 }
 
-TEST(Streams, JsonThatCannotBeWrittenIsToldWhenTheWorkIsDone) {
+TEST(Streams, UnwritableJsonIsReportedAtTheEnd) {
     const auto folder = fresh_folder();
     for (const auto& command : {"simulate butterfly" + quick, std::string("figure fig6 --size 160x90")}) {
         const bool is_figure = command.starts_with("figure");
@@ -97,7 +97,7 @@ TEST(Streams, JsonSaysAnyPath) {
               "b/butterfly/butterfly.csv");
 }
 
-TEST(Streams, ClosedOnesAreNotTakenForTheFilm) {
+TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     const auto folder = fresh_folder();
     const auto run = [&](const std::string& streams) {
         // a progress line every 5 s of a run that would not end before
@@ -154,7 +154,7 @@ TEST(Streams, AnEmptyArgumentIsNotTakenForNone) {
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(Streams, APresetsWordsAreShownAndNotObeyed) {
+TEST(Streams, ControlCharactersOfAPresetAreSanitised) {
     const auto folder = fresh_folder();
     const auto clean = [](const std::string& text) {
         for (const char c : text)
@@ -234,7 +234,7 @@ TEST(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
     EXPECT_EQ(doppel(folder, {"check", "work.toml"}).code, 2);
 }
 
-TEST(Streams, TellAllFaultsOfAPresetALineEach) {
+TEST(Streams, ShowAllErrorsOfAPresetOnePerLine) {
     const auto folder = fresh_folder();
     write_bytes(folder / "film.toml", "[video]\nfps = -2\nsise = 3\n[scene]\nduration_s = []\n[b]\nlinks = 0\n");
     const auto film = doppel(folder, {"render", "film.toml", "--size", "7x7", "--set", "a.foo=1"});

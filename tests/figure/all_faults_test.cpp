@@ -16,10 +16,10 @@ Lines faults_of(const std::string& kind, const std::string& text, const std::vec
                 std::size_t letters = 24) {
     try {
         read_figure({"x", "x.toml", "[scene]\nkind = \"" + kind + "\"\n" + text, "x.toml"}, sets(arguments));
-    } catch (const Error& fault) {
-        EXPECT_EQ(fault.code(), ExitCode::bad_input);
-        Lines lines{fault.what()};
-        lines.insert(lines.end(), fault.further().begin(), fault.further().end());
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::bad_input);
+        Lines lines{error.what()};
+        lines.insert(lines.end(), error.further().begin(), error.further().end());
         for (auto& line : lines) {
             if (line.starts_with("x.toml:")) line.erase(0, 7);
             line = line.substr(0, letters);
@@ -29,7 +29,7 @@ Lines faults_of(const std::string& kind, const std::string& text, const std::vec
     return {};
 }
 
-TEST(AllFaultsOfAFigure, StandInTheOrderOfTheFileAndThenOfTheCommandLine) {
+TEST(AllFaultsOfAFigure, AreInTheOrderOfFileAndThenCommandLine) {
     EXPECT_EQ(
         faults_of("grid",
                   "duration_s = \"long\"\n[chart]\nscale = 9\nsice = 1\n[grid.x]\nto = inf\nstep = 0\n[b]\nlabel = "
@@ -46,14 +46,14 @@ TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
         std::string table = kind;
         for (auto& letter : table)
             if (letter == '-') letter = '_';
-        const auto faults = faults_of(kind, "[" + table + "]\nfoo = 1\n[chart]\nscale = 9\nbar = 2\n");
-        EXPECT_EQ(faults.size(), 3u) << kind << testing::PrintToString(faults);
+        const auto errors = faults_of(kind, "[" + table + "]\nfoo = 1\n[chart]\nscale = 9\nbar = 2\n");
+        EXPECT_EQ(errors.size(), 3u) << kind << testing::PrintToString(errors);
     }
     EXPECT_EQ(faults_of("series", "[[curve]]\ncolumn = 3\n[curve.a]\nlinks = 0\n[[curve]]\nfoo = 1\n", {}, 18),
               (Lines{"4:1: [[curve]] 1 c", "6:1: [a] links mus", "8:1: [[curve]] 2 h"}));
 }
 
-TEST(AllFaultsOfAFigure, LeaveOutWhatMayFollowFromAnother) {
+TEST(AllFaultsOfAFigure, OmitErrorsThatAnotherMayCause) {
     EXPECT_EQ(faults_of("grid", "[grid]\nquantity = 1\nexponent_duration_s = 3\n"),
               (Lines{"4:1: [grid] quantity mus"}));
     EXPECT_EQ(faults_of("grid", "[grid.x]\nfrom = 10\nto = 5\nstep = \"x\"\n"), (Lines{"6:1: [grid.x] step must "}));

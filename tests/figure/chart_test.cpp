@@ -23,7 +23,7 @@ std::string file_of(const FigurePreset& figure, const std::string& ending) {
     return bytes_of(result.files.at(0));
 }
 
-TEST(Chart, APdfIsAsWideAsThePaperAsksFor) {
+TEST(Chart, APdfHasTheRequestedWidth) {
     const auto pdf = file_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6", "chart.height_cm=6"}), ".pdf");
     EXPECT_TRUE(pdf.starts_with("%PDF-"));
     const auto layout = layout_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6"}).chart);
@@ -38,7 +38,7 @@ TEST(Chart, AnSvgIsWrittenWithoutOpenGl) {
     EXPECT_NE(svg.find("width=\"240pt\" height=\"135pt\""), std::string::npos);  // 320 × 180 px of 3/4 pt
 }
 
-TEST(Chart, APngOnPaperHasItsDotsAnInch) {
+TEST(Chart, APngOnPaperHasItsResolution) {
     const auto figure = small_sweep({"chart.width_cm=8.6", "chart.dpi=600"});
     const auto png = file_of(figure, ".png");
     const auto at = png.find("pHYs");
@@ -64,7 +64,7 @@ std::vector<std::string> labels_of(const FigurePreset& figure) {
     return labels;
 }
 
-TEST(Chart, WordsMayGoOrBeOnesOwn) {
+TEST(Chart, TextsCanBeRemovedOrReplaced) {
     const auto has = [](const std::vector<std::string>& all, std::string_view start) {
         return std::any_of(all.begin(), all.end(), [&](const auto& text) { return text.starts_with(start); });
     };
@@ -97,7 +97,7 @@ TEST(Chart, AnotherQuantityFromTheCommandLineDropsTheKeysOfTheFiles) {
 TEST(Chart, KeysOfPaperNeedItsWidth) {
     for (const auto* key : {"height_cm=5", "font_pt=9", "dpi=600"})
         expect_error(ExitCode::bad_input, {"it needs width_cm"}, [&] { small_sweep({fmt::format("chart.{}", key)}); });
-    expect_error(ExitCode::bad_input, {"with width_cm dpi says it"}, [] {
+    expect_error(ExitCode::bad_input, {"with width_cm, dpi sets it"}, [] {
         small_sweep({"chart.width_cm=8.6", "chart.scale=2"});
     });
     expect_error(ExitCode::bad_input, {"is too large for a chart of 3×1.69 cm; at most 4.8 pt is possible; it is 40"},
@@ -112,14 +112,14 @@ TEST(Chart, KeysOfPaperNeedItsWidth) {
     expect_error(ExitCode::bad_input, {"\"png\", \"pdf\" or \"svg\""}, [] { small_sweep({"chart.format=\"eps\""}); });
 }
 
-TEST(Chart, WhatWasUnderstoodIsReadBackTheSame) {
+TEST(Chart, ResolvedReadsBackToTheSame) {
     const auto figure = small_sweep({"chart.width_cm=8.6", "chart.height_cm=5", "chart.font_pt=7", "chart.dpi=200",
                                      "chart.title=false", "chart.captions=[\"One\"]", "chart.format=\"svg\""});
     const PresetText source{"fig2-right", "again.toml", figure.resolved(), "again.toml"};
     EXPECT_EQ(read_figure(source).resolved(), figure.resolved());
 }
 
-TEST(Chart, OfChaosAloneSaysThatNothingIsRegular) {
+TEST(Chart, WithOnlyChaoticOrbitsSaysThatNoneIsRegular) {
     std::string words;
     for (const auto& label : labels_of(figure_of("links", {"grid.x.to=3", "grid.exponent_duration_s=100"})))
         words += label + " ";

@@ -100,7 +100,7 @@ std::vector<double> averages(const std::vector<SidePair>& sides, const MotionSpe
     return found;
 }
 
-double greatest(const std::vector<double>& values) {
+double largest(const std::vector<double>& values) {
     return *std::max_element(values.begin(), values.end());
 }
 
@@ -114,7 +114,7 @@ Found equations() {
         Verdict::misprinted,
         fmt::format("cross terms ω₁ω₂ cancel and a denominator has the wrong unit in print; the program's equations "
                     "agree with particles on rods within {} after 2 s in quad",
-                    scientific(greatest(distances(exactly(start), exactly(rods), 240))))};
+                    scientific(largest(distances(exactly(start), exactly(rods), 240))))};
 }
 
 Found order_of_update() {
@@ -197,7 +197,7 @@ Found figure3_release() {
 
 Found figure6_release() {
     const auto parted = [&](int angle) {
-        return greatest(distances(side({angle, 0}), side({angle, 0}, ModelChoice::constraints), 4500));
+        return largest(distances(side({angle, 0}), side({angle, 0}, ModelChoice::constraints), 4500));
     };
     const double from_30 = parted(30), from_45 = parted(45);
     return {std::abs(from_30 - 0.633) < 0.01 ? Verdict::holds : Verdict::misprinted,
@@ -208,7 +208,7 @@ Found floating_point() {
     const auto parted = [&](const Rational& step) {
         auto a = side({50, 0}), b = side({50, 0}, ModelChoice::constraints);
         a.step_s = b.step_s = step;
-        return greatest(distances(a, b, 4500));
+        return largest(distances(a, b, 4500));
     };
     const auto a = side({50, 0}), b = side({50, 0}, ModelChoice::constraints);
     const double coarse = parted({1, 30000}), fine = parted({1, 120000});
@@ -216,7 +216,7 @@ Found floating_point() {
         holds_if(fine > coarse / 2),
         fmt::format("a quarter of the step leaves a quarter of the distance, {:.3f} → {:.3f}: Euler's truncation; by "
                     "Taylor series in quad they stay within {} for 5 s",
-                    coarse, fine, scientific(greatest(distances(exactly(a), exactly(b), 600))))};
+                    coarse, fine, scientific(largest(distances(exactly(a), exactly(b), 600))))};
 }
 
 Found energy_gain() {
@@ -240,7 +240,7 @@ std::pair<double, double> parted_by_droplet(int angle_deg) {
     const auto start = exactly(side({angle_deg, angle_deg}));
     const auto d = distances(with_droplet(start, true), with_droplet(start, false), 9000);
     const auto seen = std::find_if(d.begin(), d.end(), [](double x) { return x > 1; });
-    return {greatest(d), seen == d.end() ? 0 : static_cast<double>(seen - d.begin()) / 120};
+    return {largest(d), seen == d.end() ? 0 : static_cast<double>(seen - d.begin()) / 120};
 }
 
 Found droplet_79() {

@@ -55,7 +55,7 @@ TEST(Computation, ComputesOnlyWhatARecordDoesNotHave) {
         EXPECT_EQ(resumed.trials[i], known[i].empty() ? expected[i] : known[i]) << i;
 }
 
-TEST(Computation, NeedsNothingWhereARecordHasAll) {
+TEST(Computation, ComputesNothingForACompleteRecord) {
     const auto folder = fresh_folder();
     const auto figure = small_sweep();
     const auto record = folder / resume_name(header_of(figure));
@@ -66,7 +66,7 @@ TEST(Computation, NeedsNothingWhereARecordHasAll) {
     EXPECT_EQ(resumed.computed_units, 0);
 }
 
-TEST(Computation, LeavesARecordOfSomethingElseAlone) {
+TEST(Computation, KeepsARecordOfAnotherRun) {
     const auto folder = fresh_folder();
     const auto figure = small_sweep();
     const auto record = folder / resume_name(header_of(figure));
@@ -94,7 +94,7 @@ TEST(Computation, LeavesARecordOfSomethingElseAlone) {
 }
 
 /// A kill at any moment, and a line that rotted: what is whole before is kept, all else is computed anew.
-TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
+TEST(Computation, ResumesFromARecordTruncatedOrDamagedAtAnyByte) {
     const auto folder = fresh_folder();
     const auto figure = figure_of("fig2-right", {"grid.x.to=3", "scene.duration_s=0.05"});
     const auto record = folder / resume_name(header_of(figure));
@@ -119,7 +119,7 @@ TEST(Computation, GoesOnFromARecordCutOrDamagedAtAnyByte) {
 }
 
 /// Checksums tell what rots; numbers that cannot be are told by their kind.
-TEST(Computation, BelievesNoNumbersThatCannotBe) {
+TEST(Computation, RejectsImpossibleNumbers) {
     const auto folder = fresh_folder();
     const auto figure = small_sweep();
     const auto record = folder / resume_name(header_of(figure));
@@ -139,7 +139,7 @@ TEST(Computation, BelievesNoNumbersThatCannotBe) {
     EXPECT_EQ(Resumed(figure, header, folder).computed_units, 5);
 }
 
-TEST(Computation, KeepsToItsPart) {
+TEST(Computation, ComputesOnlyItsPart) {
     const auto figure = small_sweep();
     const auto expected = computed(figure);
     const auto header = header_of(figure, 2, 3);

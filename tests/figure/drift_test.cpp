@@ -73,7 +73,7 @@ TEST(Drift, EveryMethodTakesItsEvaluations) {
     EXPECT_EQ(found.number("adams_angles_setting"), 1 / 250.0);
 }
 
-TEST(Drift, TellsWhatGrowsHow) {
+TEST(Drift, FindsTheLawOfGrowth) {
     const Found found(
         short_drift(200, {"series.methods=[\"euler\", \"rk4\", \"dopri5\", \"gauss6\", \"rattle\", \"rattle6\"]"}));
     for (const char* name : {"gauss6_angles", "rattle_constraints", "rattle6_constraints"})
@@ -90,7 +90,7 @@ TEST(Drift, TellsWhatGrowsHow) {
     EXPECT_NEAR(found.number("euler_angles_broken_at_s"), 87, 1);  // measured 87.25
 }
 
-TEST(Drift, KeepsTheRodsThatAreKept) {
+TEST(Drift, HasNoRodErrorForMethodsThatPreserveRods) {
     const auto table =
         table_of(short_drift(200, {"series.methods=[\"semi-implicit-euler\", \"rattle\", \"rattle6\"]"}));
     ASSERT_EQ(table.rows.size(), 5u * 13);
@@ -106,7 +106,7 @@ TEST(Drift, KeepsTheRodsThatAreKept) {
               (std::vector<std::string>{"method", "model", "setting", "time_s", "energy_error", "length_error_m"}));
 }
 
-TEST(Drift, SaysInALineWhatIsSeen) {
+TEST(Drift, SummarisesTheResultInOneLine) {
     const auto caption = [](const std::string& methods) {
         const auto figure = short_drift(100, {"series.projected=[]", "series.methods=" + methods});
         Figure page;
@@ -120,7 +120,7 @@ TEST(Drift, SaysInALineWhatIsSeen) {
     EXPECT_EQ(caption("[\"rk4\"]"), "No method keeps the error of the energy bounded; ∝ tells how the others grow.");
 }
 
-TEST(Drift, SaysWhatCannotBe) {
+TEST(Drift, RefusesImpossibleSettings) {
     const auto expect_fault = [](const std::string& argument, const std::string& words) {
         const auto [code, message] = error_of([&] { figure_of("drift", {argument}); });
         EXPECT_EQ(code, ExitCode::bad_input) << argument;

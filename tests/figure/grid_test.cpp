@@ -89,7 +89,7 @@ TEST(Grid, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
     EXPECT_NEAR(slope, 4, 0.1);  // measured 3.98
 }
 
-TEST(Grid, SaysOfItselfByWhatItIsFound) {
+TEST(Grid, NamesTheMethodInItsSubtitle) {
     const auto subtitle = [](const std::string& quantity, const std::vector<std::string>& sets = {}) {
         auto all = sets;
         all.insert(all.end(),
@@ -238,9 +238,9 @@ TEST(Grid, GreatestDistancesAreThoseOfAFilm) {
     const auto table = table_of(figure_from(twins, {"grid.quantity=\"greatest_distance\"", "scene.duration_s=6"}));
     const auto scene = film(table.rows[1][0]);
     PairRun run(scene);
-    double most = 0;
-    for (long n = 0; n <= scene.samples / 2; ++n) most = std::max(most, run.next(false).distance);
-    EXPECT_EQ(table.rows[1][1], most);
+    double maximum = 0;
+    for (long n = 0; n <= scene.samples / 2; ++n) maximum = std::max(maximum, run.next(false).distance);
+    EXPECT_EQ(table.rows[1][1], maximum);
 }
 
 TEST(Grid, PeriodsAreThoseOfTheEllipticIntegral) {
@@ -308,7 +308,7 @@ TEST(Grid, LeavesEquilibriaOutOfTheCurveNotOutOfTheTable) {
     EXPECT_TRUE(page_of(figure_of("fig2-right", {"grid.x.step=90", "scene.duration_s=1"})).captions.empty());
 }
 
-TEST(Grid, DrawsTheConvergedCurveOverTheStudys) {
+TEST(Grid, DrawsTheConvergedCurveOverKaos) {
     const auto figure = figure_of("true-fig2-right", {"grid.x.from=90", "grid.x.to=91", "scene.duration_s=2"});
     const auto table = table_of(figure);
     EXPECT_EQ(table.columns, (std::vector<std::string>{"system", "theta1_deg", "average_log_ratio"}));
@@ -323,9 +323,9 @@ TEST(Grid, DrawsTheConvergedCurveOverTheStudys) {
 TEST(Grid, NamesDriveAndDamping) {
     EXPECT_EQ(figure_of("bifurcation").subtitle,
               "one link in angles, torque of 0.5 Hz, joint friction 0.459 N m s, 10°; Dormand–Prince 8(5,3), tolerance "
-              "1e-10");
+              "10⁻¹⁰");
     EXPECT_EQ(figure_of("kapitza-map").subtitle,
-              "one link in angles, a moving pivot, 177°; Dormand–Prince 8(5,3), tolerance 1e-06");
+              "one link in angles, a moving pivot, 177°; Dormand–Prince 8(5,3), tolerance 10⁻⁶");
 }
 
 TEST(Grid, TwoToneMapsNameBothBranches) {
@@ -342,7 +342,7 @@ TEST(Grid, SaysWhatIsDashed) {
     EXPECT_EQ(page.captions, std::vector<std::string>{"Dashed: distance after 2 s."});
 }
 
-TEST(Grid, TheChoiceOfItsMethodHeedsAnInterruption) {
+TEST(Grid, TheChoiceOfItsMethodCanBeInterrupted) {
     const std::atomic<bool> stop = true;
     const PresetText preset{"x", "presets/x.toml",
                             "[scene]\nkind = \"grid\"\n[system]\nlinks = 6\naccuracy = 1e-6\n"

@@ -79,8 +79,8 @@ private:
         return true;
     }
 
-    static bool at_least(const Json& value, const Json& least, const Json& schema) {
-        const double number = value.get<double>(), low = least.get<double>();
+    static bool at_least(const Json& value, const Json& minimum, const Json& schema) {
+        const double number = value.get<double>(), low = minimum.get<double>();
         return schema.value("exclusiveMinimum", false) ? number > low : number >= low;
     }
 

@@ -25,7 +25,7 @@ TEST(Convergence, FallsByThePowerOfTheOrder) {
         EXPECT_NEAR(found.at(std::string("slope_quad_") + method), order, 0.01) << method;  // measured 0.0015
 }
 
-TEST(Convergence, ListsEveryRung) {
+TEST(Convergence, ListsEverySetting) {
     const auto table =
         table_of(figure_of("why-they-part", {"scene.duration_s=0.1", "grid.color.values=[\"euler\", \"dop853\"]",
                                              "grid.x.points=4", "grid.x.to=0.00104166666666666666",
@@ -111,7 +111,7 @@ TEST(Bifurcation, PeriodsDoubleWhereTheTextbookSays) {
     }
 }
 
-TEST(Map, TheShakenPivotHoldsWhereItsEdgeSays) {
+TEST(Map, TheVibratingPivotIsStableUpToItsTheoreticalEdge) {
     // a row of amplitudes on both sides of Mathieu's edge at 4 Hz, 0.177 m
     const auto found =
         table_of(figure_of("kapitza-map", {"grid.x.from=3.99", "grid.x.to=4.01", "grid.x.points=2", "grid.y.from=0.167",
@@ -150,7 +150,7 @@ SectionPage section_page(const std::string& energy_J, int orbits, const std::str
     return made;
 }
 
-TEST(Section, TellsRegularOrbitsFromChaoticOnes) {
+TEST(Section, DistinguishesRegularFromChaoticOrbits) {
     using Numbers = std::vector<std::size_t>;
     // all but without gravity a double pendulum keeps its angular momentum, too: every orbit is regular, but for the
     // first, which rounding drives along its separatrix
@@ -162,7 +162,8 @@ TEST(Section, TellsRegularOrbitsFromChaoticOnes) {
     const auto wild = section_page("39.2", 4);
     EXPECT_EQ(wild.grey, (Numbers{0, 1, 2, 3}));
     EXPECT_NE(wild.caption.find("(a colour each)"), std::string::npos);
-    // between, both: these are chaotic, at 0.12 … 0.15 1/s, the others below 0.0005 1/s; one stays near an island for 1000 s
+    // between, both: these are chaotic, at 0.12 … 0.15 1/s, the others below 0.0005 1/s; one stays near an island for
+    // 1000 s
     const auto mixed = section_page("14.7", 12, "9.8", "10000");
     EXPECT_EQ(mixed.grey, (Numbers{1, 2, 6, 9, 10, 11}));
     EXPECT_EQ(mixed.hues, (std::vector<int>{0, 1, 2, 3, 4, 5}));
@@ -221,7 +222,7 @@ TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
     EXPECT_DOUBLE_EQ(found.at("share_without"), 1 - flipped / 1600.0);
 }
 
-TEST(FlipMap, LeavesCellsEmptyThatBreakDown) {
+TEST(FlipMap, LeavesFailedCellsEmpty) {
     // gravity so strong that some swings take steps below 1e-9 s
     const auto figure =
         figure_of("flip-map", {"system.gravity_m_per_s2=3e15", "grid.x.points=16", "grid.y.points=16",
@@ -278,7 +279,7 @@ film_column = "b_kinetic_J"
                        [&] { figure_from(text, {"series.film_column=\"a_theta3_rad\""}); });
 }
 
-TEST(Curves, CheckToleranceTellsUntilWhenTheyStand) {
+TEST(Curves, CheckToleranceShowsUntilWhenTheyAgree) {
     const auto found = findings_of(figure_of("fig2-left", {"scene.duration_s=2", "system.integrator=\"dop853\"",
                                                            "system.tolerance=1e-10", "series.check_tolerance=1e-12"}));
     EXPECT_EQ(found.at("agrees_until_s_log_ratio"), 2);

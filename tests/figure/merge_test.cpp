@@ -72,7 +72,7 @@ TEST_F(Merge, NamesThePartsThatAreMissing) {
     fs::remove(part(3));
     expect_refused(ExitCode::try_again, {"missing", "2/3, 3/3"}, small_sweep());
     fs::remove(part(1));
-    expect_refused(ExitCode::bad_input, {"holds no part of fig2-right", "--shard"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {"contains no part of fig2-right", "--shard"}, small_sweep());
 }
 
 TEST_F(Merge, NamesTheFirstOfManyMissing) {
@@ -94,7 +94,7 @@ TEST_F(Merge, RefusesAPartThatIsThereTwice) {
     expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both part 1/3"}, small_sweep());
 }
 
-TEST_F(Merge, BelievesNoChangedDigit) {
+TEST_F(Merge, RejectsAChangedDigit) {
     const auto bytes = bytes_of(part(2));
     const auto expect_damaged = [&](const std::string& why) {
         expect_refused(ExitCode::io_failed, {part(2).string(), why, "--shard 2/3"}, small_sweep());
@@ -155,7 +155,7 @@ TEST(MergeOfNothing, SaysHowToMakeParts) {
 }
 
 /// An orbit may never come back to the section; it has no points, and is computed nonetheless.
-TEST(MergeOfNothing, KnowsTrialsWithoutNumbers) {
+TEST(MergeOfNothing, ReportsUnknownTrials) {
     const auto out = fresh_folder();
     const auto figure = figure_from(
         "[scene]\nkind = \"section\"\n[system]\ngravity_m_per_s2 = 1e-9\n[section]\nenergy_J = [1e-6]\n"

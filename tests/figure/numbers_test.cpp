@@ -23,7 +23,7 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 class Numbers : public testing::TestWithParam<Case> {};
 
-TEST_P(Numbers, FitWhereTheyWereComputedAndNoneElse) {
+TEST_P(Numbers, AreValidOnlyForTheirTrial) {
     const auto figure = figure_of(GetParam().name, GetParam().sets);
     const auto& work = *figure.experiment;
     const auto trials = computed(figure);
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-TEST(NumbersOfWork, AreThoseOfWholeRungs) {
+TEST(NumbersOfWork, AreThoseOfWholeSettings) {
     const auto figure = figure_of(
         "speed-accuracy",
         {"work_precision.problems=[\"P1\"]", "work_precision.models=[\"angles\"]", "work_precision.methods=[\"rk4\"]"});

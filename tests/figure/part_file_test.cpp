@@ -86,7 +86,7 @@ TEST(PartFile, BeginsWithWhatIsKnownAndReplacesAnOlderOne) {
     expect_same_bits(trials_in(path)[1], {7});
 }
 
-TEST(PartFile, StopsAtALineThatIsNone) {
+TEST(PartFile, StopsAtAnInvalidLine) {
     const auto path = fresh_folder() / "some.resume";
     PartWriter(path, some_header(9), {{1}, {2}}).close();
     const auto good = bytes_of(path);
@@ -106,7 +106,7 @@ TEST(PartFile, StopsAtALineThatIsNone) {
     }
 }
 
-TEST(PartFile, BelievesNoChangedByte) {
+TEST(PartFile, RejectsAChangedByte) {
     const auto path = fresh_folder() / "some.resume";
     const KnownTrials trials{{1.25, -2e-300}, {none, 12345}, {infinite, 3}};
     PartWriter(path, some_header(3), trials).close();
@@ -125,15 +125,15 @@ TEST(PartFile, BelievesNoChangedByte) {
                 EXPECT_EQ(part.damaged_line, last_end ? 0 : std::max<std::size_t>(line, 1) + 1) << at;
                 EXPECT_EQ(part.trials.size(), std::max<std::size_t>(line, 1) - 1) << at;
                 for (const auto& trial : part.trials) expect_same_bits(trial.numbers, trials[trial.number]);
-            } catch (const Error& fault) {
-                EXPECT_EQ(fault.code(), ExitCode::io_failed);
-                EXPECT_LT(at, header) << fault.what();
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ExitCode::io_failed);
+                EXPECT_LT(at, header) << error.what();
             }
         }
 }
 
 /// As editors and file systems do it.
-TEST(PartFile, BelievesNoOtherLineEnds) {
+TEST(PartFile, RejectsOtherLineEnds) {
     const auto path = fresh_folder() / "some.resume";
     PartWriter(path, some_header(2), {{1}, {2}}).close();
     auto bytes = bytes_of(path);
@@ -215,7 +215,7 @@ TEST(PartFile, RefusesWhatIsSomethingElse) {
     expect_error(ExitCode::io_failed, {path.string()}, [&] { read_part_file(path); });
 }
 
-TEST(PartFile, RefusesPartsThatCannotBe) {
+TEST(PartFile, RefusesImpossibleParts) {
     const auto path = fresh_folder() / "some.shard";
     for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"of", "0"},
                                                                                      {"of", "-2"},
@@ -253,18 +253,18 @@ TEST(PartFile, ReportsWhereItCannotBeWritten) {
 TEST(PartHeader, PartsAreAllOfItAndDiffByATrialAtMost) {
     for (const std::size_t trials : {1u, 5u, 181u, 1000u})
         for (const int of : {1, 2, 3, 7, 181, 400}) {
-            std::size_t next = 0, least = trials, most = 0;
+            std::size_t next = 0, minimum = trials, maximum = 0;
             for (int i = 1; i <= of; ++i) {
                 auto header = some_header(trials);
                 header.shard = i;
                 header.of = of;
                 EXPECT_EQ(header.first(), next);
-                least = std::min(least, header.last() - header.first());
-                most = std::max(most, header.last() - header.first());
+                minimum = std::min(minimum, header.last() - header.first());
+                maximum = std::max(maximum, header.last() - header.first());
                 next = header.last();
             }
             EXPECT_EQ(next, trials);
-            EXPECT_LE(most - least, 1u);
+            EXPECT_LE(maximum - minimum, 1u);
         }
 }
 

@@ -43,10 +43,10 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
               0u)
         << spectrum.second;
     for (const std::string y : {"", "[grid.y]\nkey = \"system.length_m\"\nfrom = 1\nto = 2\npoints = 2\n"}) {
-        const auto fault =
+        const auto error =
             error_of([&] { figure_from(system + "[scene]\nkind = \"grid\"\n[grid]\nquantity = \"exponent\"\n" + y); });
-        EXPECT_EQ(fault.first, ExitCode::bad_input);
-        EXPECT_NE(fault.second.find("quantity needs a smooth motion"), std::string::npos) << fault.second;
+        EXPECT_EQ(error.first, ExitCode::bad_input);
+        EXPECT_NE(error.second.find("quantity needs a smooth motion"), std::string::npos) << error.second;
     }
     // no mass at all
     const auto massless = error_of([&] {
@@ -61,7 +61,7 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
 TEST(FigurePreset, DrawsOnlyLettersThatTheFontHas) {
     const std::string scene = "\n[scene]\nkind = \"series\"\n[b]\nangle_deg = 91\n[[curve]]\ncolumn = \"one\"\n";
     const auto refusal = [](const std::string& text) { return error_of([&] { figure_from(text); }).second; };
-    const std::string lacks = " holds \"双\" (U+53CC), which the built-in font lacks; ";
+    const std::string lacks = " contains \"双\" (U+53CC), which the built-in font lacks; ";
     for (const std::string key : {"title", "subtitle", "erratum"}) {
         const auto message = refusal(key + " = \"双\"" + scene);
         EXPECT_EQ(message.rfind("presets/x.toml:1:1: " + key + lacks, 0), 0u) << message;
@@ -120,7 +120,7 @@ TEST(FigurePreset, IsNoFilm) {
     EXPECT_NE(figure.second.find("doppel figure fig2-right"), std::string::npos) << figure.second;
 }
 
-TEST(FigurePreset, IsCalledAsItWasGiven) {
+TEST(FigurePreset, KeepsTheNameThatWasGiven) {
     // a preset of one's own is no name that doppel knows
     const auto film = error_of([] { read_figure({"base", "base.toml", "", "base.toml"}); });
     EXPECT_NE(film.second.find("doppel render base.toml"), std::string::npos) << film.second;
@@ -132,7 +132,7 @@ std::string subtitle_of(const std::string& preset, const std::vector<std::string
     return figure_of(preset, arguments).subtitle;
 }
 
-TEST(FigurePreset, OfASweepSaysWhatItIs) {
+TEST(FigurePreset, OfASweepHasADescription) {
     for (const auto& [name, words] : std::vector<std::pair<const char*, const char*>>{
              {"fig2-right", "two links in angles, θ₂ = 0, pair 0.003° apart; explicit Euler, 1/30 000 s"},
              {"fig3-left", "two links in angles, θ₂ = 0, m₁ = 1 kg against m₁ = 1.01 kg; explicit Euler, 1/30 000 s"},
@@ -147,7 +147,7 @@ TEST(FigurePreset, OfASweepSaysWhatItIs) {
         EXPECT_EQ(subtitle_of(name), words) << name;
 }
 
-TEST(FigurePreset, OfASweepSaysWhatWasSet) {
+TEST(FigurePreset, OfASweepStatesOverrides) {
     for (const auto& [set, words] : std::vector<std::pair<std::string, std::string>>{
              {"grid.difference=0.25", "two links in angles, θ₂ = 0, pair 0.25° apart; explicit"},
              {"grid.difference=-0.25", ", pair 0.25° apart; explicit"},
@@ -173,7 +173,7 @@ TEST(FigurePreset, OfASweepSaysWhatWasSet) {
 TEST(FigurePreset, OfALogarithmOfRatiosTakesADistance) {
     const auto [code, message] = error_of([] { figure_of("fig2-left", {"b.angle_deg=[90, 90]"}); });
     EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_NE(message.find("[series] quantity \"log_ratio\" takes sides that are released differently"),
+    EXPECT_NE(message.find("[series] quantity \"log_ratio\" needs sides that are released differently"),
               std::string::npos)
         << message;
 }
@@ -215,7 +215,7 @@ TEST(FigureErrors, OfTheTopAreNamed) {
     EXPECT_EQ(message.rfind("presets/x.toml:1:1: curve", 0), 0u) << message;
 }
 
-TEST(FigureErrors, MethodsThatDoNotServeAreToldAtOnce) {
+TEST(FigureErrors, UnsupportedMethodsAreReportedAtOnce) {
     const auto [code, message] = error_of([] {
         figure_from(
             "[scene]\nkind = \"grid\"\n[system]\nmodel = \"angles\"\n[grid]\ndifference = 1\n[grid.panel]\nkey = "

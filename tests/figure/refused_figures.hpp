@@ -74,7 +74,7 @@ inline const std::vector<RefusedFigure> refused_figures_series{
     RefusedFigure{"series", "[[curve]]\nlabel = \"x\"", "", {"[[curve]] 1 column is missing"}},
     RefusedFigure{"series", "[[curve]]\ncolumn = \"x\"\ncolour = 3", ":5:1: [[curve]] 1 has no \"colour\"", {}},
     RefusedFigure{"series", "[[curve]]\ncolumn = \"x\"\nsystem.angle = [3, 3]", ":5:8: ", {"has no \"angle\""}},
-    RefusedFigure{"series", "[series]\ncheck_tolerance = 1e-9", ":4:1: [series] check_tolerance", {"a tolerance"}},
+    RefusedFigure{"series", "[series]\ncheck_tolerance = 1e-9", ":4:1: [series] check_tolerance", {"adaptive methods"}},
     RefusedFigure{"series", "[curve]\ncolumn = \"x\"", ":3:2: curve", {"[[curve]]"}}};
 
 inline const std::vector<RefusedFigure> refused_figures_others{
@@ -121,8 +121,8 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{
         "grid", "[grid]\noverlay = \"energy-bound\"", ":4:1: [grid] overlay", {"two ideal links released at rest"}},
     RefusedFigure{"grid", "[grid.x]\npoints = 1", ":4:1: [grid.x] points", {"from 2 to 1048576; it is 1"}},
-    RefusedFigure{"grid", "[grid]\nflip_tolerance = 1e-9", ":4:1: [grid] flip_tolerance", {"is of flip_time"}},
-    RefusedFigure{"grid", "[grid.x]\nkey = \"system.mass_kg[3]\"", ":4:1: [grid.x] key", {"whose last is [1]"}},
+    RefusedFigure{"grid", "[grid]\nflip_tolerance = 1e-9", ":4:1: [grid] flip_tolerance", {"is only for flip_time"}},
+    RefusedFigure{"grid", "[grid.x]\nkey = \"system.mass_kg[3]\"", ":4:1: [grid.x] key", {"whose last element is [1]"}},
     RefusedFigure{"grid", "[grid.x]\nspacing = \"logarithmic\"", ":4:1: [grid.x] spacing", {"takes points"}},
     RefusedFigure{"grid",
                   "[grid.x]\nspacing = \"logarithmic\"\npoints = 9",
@@ -132,7 +132,7 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{"grid",
                   "[b]\ngravity_m_per_s2 = 9\n[grid.x]\nkey = \"system.gravity_m_per_s2\"",
                   ":6:1: [grid.x] key",
-                  {"in [b] as well"}},
+                  {"also in [b]"}},
     RefusedFigure{"grid",
                   "[grid]\ndifference = 1\n[grid.x]\nkey = \"a.mass_kg[0]\"\nfrom = 1",
                   ":4:1: [grid] difference",
@@ -152,7 +152,7 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   {"must be above from (10); it is 10"}},
     RefusedFigure{"grid", "[grid.y]\nkey = \"theta1_deg\"", ": [grid] x", {"\"theta1_deg\" is there twice"}},
     RefusedFigure{
-        "grid", "[grid.y]\nkey = \"system.links\"\nfrom = 1\nto = 4", ":4:1: [grid.y] key", {"whole numbers alone"}},
+        "grid", "[grid.y]\nkey = \"system.links\"\nfrom = 1\nto = 4", ":4:1: [grid.y] key", {"only whole numbers"}},
     RefusedFigure{"grid",
                   "[grid]\nquantity = \"flip_time\"\nrange = [0, 3]\n[grid.y]\nkey = \"theta2_deg\"",
                   ":5:1: [grid] range",
@@ -193,12 +193,14 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   ":4:1: [grid] quantity",
                   {"let [b] differ from [a]"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"convergence\"", ":4:1: [grid] quantity", {"key = \"setting\""}},
-    RefusedFigure{"grid", "[grid.x]\nkey = \"setting\"\nfrom = 1", ": [grid.x] points", {"must say how many"}},
+    RefusedFigure{
+        "grid", "[grid.x]\nkey = \"setting\"\nfrom = 1", ": [grid.x] points", {"must be the number of settings"}},
     RefusedFigure{"grid",
                   "[grid.x]\nkey = \"setting\"\nfrom = 1\nto = 31\npoints = 2",
                   ":5:1: [grid.x] from",
                   {"leave 1 to 1", "30 s"}},
-    RefusedFigure{"grid", "[grid.x]\ntolerance_to = 1", ":4:1: [grid.x] tolerance_to", {"is of key = \"setting\""}},
+    RefusedFigure{
+        "grid", "[grid.x]\ntolerance_to = 1", ":4:1: [grid.x] tolerance_to", {"is only for key = \"setting\""}},
     RefusedFigure{"grid", "[grid.panel]\nkey = \"setting\"\nfrom = 1\nto = 2\npoints = 2", "", {"for x"}},
     RefusedFigure{"grid", "[grid]\noverlay = \"linear-limit\"", ":4:1: [grid] overlay", {"map of stability"}},
     RefusedFigure{
@@ -206,9 +208,9 @@ inline const std::vector<RefusedFigure> refused_figures_others{
         "[system]\nangle_deg = [0, 0]\n[grid]\nquantity = \"stability\"\n[grid.x]\nkey = \"setting\"\nfrom = 0.1\nto = "
         "1\npoints = 2",
         ":6:1: [grid] quantity",
-        {"energy to keep"}},
+        {"more energy than hanging"}},
     RefusedFigure{"sweep", "", ":2:1: [scene] kind", {"it is \"sweep\""}},
-    RefusedFigure{"grid", "[grid.y]\nfrom = 1", ":4:1: [grid.y] from", {"needs a key"}},
+    RefusedFigure{"grid", "[grid.y]\nfrom = 1", ":4:1: [grid.y] from", {"has no key"}},
     RefusedFigure{"grid", "[grid.x]\nvalues = [1, 2]\nfrom = 1", ":5:1: [grid.x] from", {"give it, or values"}},
     RefusedFigure{"grid", "[grid.x]\nvalues = []", ":4:1: [grid.x] values", {"1 to 1000 values"}},
     RefusedFigure{"grid",
@@ -218,14 +220,14 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{"grid",
                   "[grid.y]\nkey = \"theta2_deg\"\n[grid.color]\nkey = \"mass_ratio\"\nvalues = [1]",
                   ":5:7: [grid] color",
-                  {"is of curves"}},
+                  {"is only for curves"}},
     RefusedFigure{"grid",
                   "[grid]\nquantity = \"energy_error\"\n[grid.x]\nkey = \"system.mass_kg[1]\"\nfrom = 1\n"
                   "[grid.color]\nkey = \"links\"\nvalues = [2, 1]",
                   ":5:7: [grid] x",
-                  {"beyond the array, whose last is [0]"}},
+                  {"beyond the array, whose last element is [0]"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"stroboscopic\"", ":4:1: [grid] quantity", {"that is driven"}},
-    RefusedFigure{"grid", "[grid]\nquantity = \"period\"", ":4:1: [grid] quantity", {"of one link; there are 2"}},
+    RefusedFigure{"grid", "[grid]\nquantity = \"period\"", ":4:1: [grid] quantity", {"needs one link; there are 2"}},
     RefusedFigure{"fractal", "", ":2:1: [scene] kind", {"\"grid\"", "it is \"fractal\""}}};
 
 }  // namespace doppel

@@ -49,13 +49,13 @@ TEST(FigureRun, ManifestTellsWhatTheFigureIs) {
     EXPECT_FALSE(manifest["libraries"]["drawing"].get<std::string>().empty());
 
     const Table table(table_text(figure, computed(figure)));
-    double least = table.rows[0][1], most = least;
+    double minimum = table.rows[0][1], maximum = minimum;
     for (const auto& row : table.rows) {
-        least = std::min(least, row[1]);
-        most = std::max(most, row[1]);
+        minimum = std::min(minimum, row[1]);
+        maximum = std::max(maximum, row[1]);
     }
-    EXPECT_EQ(manifest["findings"]["least_average_log_ratio"], least);
-    EXPECT_EQ(manifest["findings"]["greatest_average_log_ratio"], most);
+    EXPECT_EQ(manifest["findings"]["least_average_log_ratio"], minimum);
+    EXPECT_EQ(manifest["findings"]["greatest_average_log_ratio"], maximum);
 }
 
 TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
@@ -70,7 +70,7 @@ TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
     }
 }
 
-TEST(FigureRun, ManifestHasNullForWhatIsNoNumber) {
+TEST(FigureRun, ManifestHasNullForNaN) {
     const auto out = fresh_folder();
     // every pair breaks down, and exponents are drawn
     run_figure(figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
@@ -116,7 +116,7 @@ TEST(FigureRun, LeavesNothingOnAFullDisk) {
     EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }
 
-TEST(FigureRun, LeavesTheFilesOfARunBeforeWhereItFails) {
+TEST(FigureRun, KeepsTheFilesOfAnEarlierRunIfItFails) {
     const auto out = fresh_folder();
     run_figure(small_sweep(), {.out = out});
     const auto table = bytes_of(out / "fig2-right/fig2-right.csv");
@@ -127,7 +127,7 @@ TEST(FigureRun, LeavesTheFilesOfARunBeforeWhereItFails) {
     EXPECT_EQ(names_in(out / "fig2-right").size(), 3u);
 }
 
-TEST(FigureRun, FailsWhereAMethodBreaksDown) {
+TEST(FigureRun, FailsIfAMethodFails) {
     const auto out = fresh_folder() / "out";
     const auto figure = figure_of("fig4-left", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000"});
     expect_error(ExitCode::method_failed, {}, [&] { run_figure(figure, {.out = out}); });
@@ -135,7 +135,7 @@ TEST(FigureRun, FailsWhereAMethodBreaksDown) {
 }
 
 /// The second sentence of an error names what would be right.
-TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
+TEST(FigureRun, FailsIfEveryPairOfASweepFails) {
     const auto out = fresh_folder() / "out";
     for (const char* method : {"euler", "rk4"}) {  // both in lanes
         const auto figure = figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=80", "grid.x.step=5",
@@ -156,7 +156,7 @@ TEST(FigureRun, FailsWhereEveryPairOfASweepBreaksDown) {
     EXPECT_EQ(names_in(out / "fig2-right").size(), 2u);
 }
 
-TEST(FigureRun, DrawsASweepOfWhichSomeBreakDown) {
+TEST(FigureRun, DrawsASweepWithSomeFailedPairs) {
     const auto out = fresh_folder();
     const auto figure = figure_of("fig2-right", {"grid.x.step=30", "scene.sample_hz=5", "scene.duration_s=6",
                                                  "system.step_s=\"1/5\"", "chart.size=[320, 180]"});

@@ -47,7 +47,7 @@ TEST(Stability, RespectsTheLinearLimit) {
     EXPECT_NEAR(limit_of("rk4") * 5.7844, 2 * std::sqrt(2.0), 0.02);  // measured 0.013
 }
 
-TEST(Stability, SeesTheIslandsBeyondIt) {
+TEST(Stability, FindsTheStableIslandsBeyondTheLimit) {
     // trace of rattle6: stable from z = 2.9195 to 3.329
     const auto table = table_of(figure_of("stability", small_angle("rattle6", 2.96 / 5.7844, 3.28 / 5.7844, 6)));
     for (const auto& row : table.rows) EXPECT_FALSE(std::isnan(row[4])) << row[1] * 5.7844;
@@ -90,8 +90,8 @@ TEST(Stability, HasWholeStepsNearThoseAskedFor) {
     const auto table = table_of(figure);
     const double ratio = std::pow(500.0, 1 / 50.0);
     for (std::size_t column = 0; column < 40; ++column) {
-        const double asked = 0.002 * std::pow(ratio, static_cast<double>(column) + 0.5);
-        EXPECT_NEAR(table.rows[column][1] / asked, 1, std::max(0.006, asked / 2)) << asked;
+        const double requested = 0.002 * std::pow(ratio, static_cast<double>(column) + 0.5);
+        EXPECT_NEAR(table.rows[column][1] / requested, 1, std::max(0.006, requested / 2)) << requested;
     }
 }
 

@@ -32,7 +32,7 @@ TEST(Study, SweepsOverTheAngle) {
     expect_averages(narrowed("fig8", 0, 32, 4), {{0, 0.8160}, {8, 1.3063}, {20, 2.6548}, {32, 3.0262}});
 }
 
-TEST(Study, SweepsOfTwinsThatDifferInMass) {
+TEST(Study, SweepsOverAngleForAMassDifference) {
     expect_averages(narrowed("fig3-left", 4, 32, 4), {{4, 1.0294}, {20, 2.4862}, {32, 2.8891}});
     // both formulations agree where the motion is regular
     const auto angles = table_of(narrowed("fig3-left", 4, 28, 8)),
@@ -60,7 +60,7 @@ TEST(Study, HasItsWholeRangeInThePresets) {
     for (const char* name : {"fig3-right", "fig5-right"}) EXPECT_EQ(figure_of(name).experiment->trials(), 200u) << name;
 }
 
-TEST(Study, ColumnsAreThoseAgreedUpon) {
+TEST(Study, ColumnsAreTheDocumentedOnes) {
     const std::vector<std::pair<const char*, const char*>> tables{
         {"fig2-left", "sample,time_s,log_ratio"},          {"fig2-right", "theta1_deg,average_log_ratio"},
         {"fig3-left", "theta1_deg,average_log_ratio"},     {"fig3-right", "mass_ratio,average_log_ratio"},
@@ -96,15 +96,15 @@ TEST(Study, PairsOverAllSamples) {
     EXPECT_EQ(table_of(figure_of("fig6")).rows.size(), 4501u);
 }
 
-TEST(Study, FormulationsPart) {
+TEST(Study, FormulationsDiverge) {
     const auto figure = figure_of("fig6");
     const auto trials = computed(figure);
     const Table table(table_text(figure, trials));
-    for (const auto& [column, greatest, at] : {std::tuple{2u, 0.633, 4370L}, {3u, 1.044, 4350L}}) {
-        const auto most = std::max_element(table.rows.begin(), table.rows.end(),
-                                           [&](const auto& a, const auto& b) { return a[column] < b[column]; });
-        EXPECT_NEAR((*most)[column], greatest, 6e-4);
-        EXPECT_NEAR(static_cast<double>(most - table.rows.begin()), static_cast<double>(at), 5);
+    for (const auto& [column, largest, at] : {std::tuple{2u, 0.633, 4370L}, {3u, 1.044, 4350L}}) {
+        const auto maximum = std::max_element(table.rows.begin(), table.rows.end(),
+                                              [&](const auto& a, const auto& b) { return a[column] < b[column]; });
+        EXPECT_NEAR((*maximum)[column], largest, 6e-4);
+        EXPECT_NEAR(static_cast<double>(maximum - table.rows.begin()), static_cast<double>(at), 5);
     }
     // the manifest says the same
     for (const auto& finding : figure.experiment->findings(trials))
@@ -113,12 +113,12 @@ TEST(Study, FormulationsPart) {
         }
 }
 
-TEST(Study, FormulationsPartByTruncation) {
+TEST(Study, FormulationsDivergeByTruncation) {
     // erratum 6: a quarter of the step, a quarter of the distance
     const auto table = table_of(figure_of("fig6", {"system.step_s=\"1/120000\"", "scene.duration_s=37"}));
-    double greatest = 0;
-    for (const auto& row : table.rows) greatest = std::max(greatest, row[3]);
-    EXPECT_NEAR(greatest, 0.242, 6e-4);
+    double largest = 0;
+    for (const auto& row : table.rows) largest = std::max(largest, row[3]);
+    EXPECT_NEAR(largest, 0.242, 6e-4);
 }
 
 // Any model, method and precision goes by the films' loop; fixed steps in double go by lanes. Both are one sweep.
@@ -167,7 +167,7 @@ TEST(Sweep, GoesOverEveryParameter) {
     EXPECT_EQ(table_of(lone).rows.size(), 3u);
 }
 
-TEST(Sweep, EndsWhereItWasTold) {
+TEST(Sweep, EndsAtItsLimits) {
     for (const auto& [to, step, rows] :
          {std::tuple{"0.3", "0.1", 4u}, {"1", "0.1", 11u}, {"0", "1", 1u}, {"2", "0.01", 201u}}) {
         const auto figure =
@@ -176,7 +176,7 @@ TEST(Sweep, EndsWhereItWasTold) {
     }
 }
 
-TEST(Sweep, LeavesOutTwinsThatAreOne) {
+TEST(Sweep, LeavesOutEqualPairs) {
     // at 1 kg neither an angle nor a mass differs: no ratio to take a logarithm of, and nothing broke down
     const auto figure = figure_of("fig2-right", {"grid.x.key=\"b.mass_kg[0]\"", "grid.difference=0", "grid.x.from=1",
                                                  "grid.x.to=2", "system.angle_deg=[90, 0]", "scene.duration_s=1"});
@@ -188,7 +188,7 @@ TEST(Sweep, LeavesOutTwinsThatAreOne) {
     for (const auto& finding : figure.experiment->findings(trials)) EXPECT_NE(finding.key, "trials_broken_down");
 }
 
-TEST(Sweep, ExponentTellsRegularFromChaotic) {
+TEST(Sweep, ExponentDistinguishesRegularFromChaotic) {
     const auto table = table_of(figure_of("fig2-right", {"grid.right=\"exponent\"", "grid.exponent_duration_s=200",
                                                          "grid.x.step=60", "scene.duration_s=1"}));
     ASSERT_EQ(table.rows.size(), 4u);

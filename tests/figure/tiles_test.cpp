@@ -129,7 +129,7 @@ TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
     EXPECT_FALSE(fs::exists(out));
 }
 
-TEST(TilePage, SaysWhatItShowsAndNothingThatTheTitleMeans) {
+TEST(TilePage, HasItsTextsEscaped) {
     const auto out = fresh_folder();
     make(out, small());
     const auto page = test::bytes_of(out / "x/x.html");

@@ -49,7 +49,7 @@ std::vector<Row> rows_of(const FigurePreset& figure) {
     return rows_of(table_text(figure, computed(figure)));
 }
 
-TEST(WorkPrecision, SaysWhatMoves) {
+TEST(WorkPrecision, NamesTheSystem) {
     const auto subtitle = [](const FigurePreset& figure) {
         Figure page{.subtitle = figure.subtitle};
         figure.experiment->draw(computed(figure), page);
@@ -75,7 +75,7 @@ TEST(WorkPrecision, SaysWhatMoves) {
     std::filesystem::remove(path);
 }
 
-TEST(WorkPrecision, HasTheColumnsAndEveryLadder) {
+TEST(WorkPrecision, HasTheColumnsAndEveryStudy) {
     const auto figure =
         second({"work_precision.methods=[\"rk4\", \"rattle\", \"taylor\"]", "work_precision.most_evaluations=20000"});
     EXPECT_EQ(header_line(figure),
@@ -125,13 +125,13 @@ TEST(WorkPrecision, TakesBodies) {
         figure_of("speed-accuracy", {by_evaluations, "work_precision.scene=\"rods\"", "work_precision.duration_s=1",
                                      "work_precision.methods=[\"rk4\", \"dop853\", \"taylor\"]",
                                      "work_precision.most_evaluations=60000"});
-    std::map<std::string, double> least;
+    std::map<std::string, double> minimum;
     for (const auto& row : rows_of(figure)) {
-        auto& error = least.try_emplace(row.cells.at("model") + " " + row.cells.at("method"), 1).first->second;
+        auto& error = minimum.try_emplace(row.cells.at("model") + " " + row.cells.at("method"), 1).first->second;
         error = std::fmin(error, row.number("angle_error_rad"));
     }
-    ASSERT_EQ(least.size(), 3u);  // in angles alone
-    for (const auto& [name, error] : least)
+    ASSERT_EQ(minimum.size(), 3u);  // in angles alone
+    for (const auto& [name, error] : minimum)
         EXPECT_LT(error, name.ends_with("rk4") ? 1e-12 : 1e-14) << name;  // 2e-13, 1.5e-15
 }
 
@@ -165,9 +165,9 @@ TEST(WorkPrecision, KnowsItsProblems) {
 TEST(WorkPrecision, EndsAtTheFloor) {
     const auto rows =
         rows_of(second({"work_precision.models=[\"angles\"]", "work_precision.methods=[\"taylor\", \"dop853\"]"}));
-    double least = 1;
-    for (const auto& row : rows) least = std::fmin(least, row.number("angle_error_rad"));
-    EXPECT_LT(least, 7e-16);                               // measured 2e-16
+    double minimum = 1;
+    for (const auto& row : rows) minimum = std::fmin(minimum, row.number("angle_error_rad"));
+    EXPECT_LT(minimum, 7e-16);                             // measured 2e-16
     EXPECT_GT(rows.back().number("setting"), 0.99e-15);    // the finest that double can give
     EXPECT_LT(rows.back().number("energy_error"), 3e-15);  // measured 5.1e-16
 }
@@ -234,16 +234,16 @@ TEST(WorkPrecision, TakesAMechanism) {
         "methods = [\"rk4\", \"taylor\"]\nmost_evaluations = 3000\n",
         {by_evaluations});
     EXPECT_NE(header_line(figure).find(",place_error,"), std::string::npos);
-    double least = 1;
+    double minimum = 1;
     for (const auto& row : rows_of(figure)) {
         EXPECT_EQ(row.cells.at("model"), "mechanism");
         EXPECT_EQ(row.cells.at("problem"), "springs");
-        least = std::fmin(least, row.number("place_error"));
+        minimum = std::fmin(minimum, row.number("place_error"));
     }
-    EXPECT_LT(least, 5e-16);  // measured 8.9e-17
+    EXPECT_LT(minimum, 5e-16);  // measured 8.9e-17
 }
 
-TEST(WorkPrecision, FailsWhereEveryRunBreaksDown) {
+TEST(WorkPrecision, FailsIfEveryRunFails) {
     const auto figure = figure_of(
         "speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]",
                            "work_precision.methods=[\"gauss4\", \"rattle\"]", "work_precision.most_evaluations=100"});
@@ -253,9 +253,9 @@ TEST(WorkPrecision, FailsWhereEveryRunBreaksDown) {
     try {
         compose_figure(figure, trials);
         ADD_FAILURE() << "a diagram of nothing";
-    } catch (const Error& fault) {
-        EXPECT_EQ(fault.code(), ExitCode::method_failed);
-        EXPECT_NE(std::string(fault.what()).find("every run of every method failed"), std::string::npos);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        EXPECT_NE(std::string(error.what()).find("every run of every method failed"), std::string::npos);
     }
     const std::string one_that_ends = "work_precision.methods=[\"gauss4\", \"taylor\"]";
     const auto other = figure_of("speed-accuracy", {by_evaluations, "work_precision.problems=[\"P3\"]", one_that_ends,
@@ -264,7 +264,7 @@ TEST(WorkPrecision, FailsWhereEveryRunBreaksDown) {
 }
 
 /// What blows up may end near the true angles, as whole turns go, even at the very angle (of energies of 1e185).
-TEST(WorkPrecision, ARunThatBlewUpHasFailed) {
+TEST(WorkPrecision, ADivergedRunHasFailed) {
     const auto figure =
         figure_of("speed-accuracy",
                   {by_evaluations, "work_precision.scene=\"butterfly\"", "work_precision.duration_s=3",
@@ -294,7 +294,7 @@ TEST(WorkPrecision, ARunThatBlewUpHasFailed) {
     EXPECT_NE(std::get<std::string>(found.at("butterfly_1e-3_best").value), "euler, angles");
 }
 
-TEST(WorkPrecision, ReadsBackWhatItSaysOfItself) {
+TEST(WorkPrecision, ResolvedReadsBackToTheSame) {
     for (const auto& figure : {second({"work_precision.repeats=4", "work_precision.models=[\"constraints\"]"}),
                                figure_of("speed-accuracy", {by_evaluations, "work_precision.least_error=1e-5"})}) {
         const auto text = figure.resolved();
@@ -304,21 +304,21 @@ TEST(WorkPrecision, ReadsBackWhatItSaysOfItself) {
     EXPECT_NE(second().resolved_work(), second({}, "time").resolved_work());
 }
 
-TEST(WorkPrecision, SaysWhatIsWrong) {
+TEST(WorkPrecision, RefusesWrongSettings) {
     const auto expect_fault = [](const std::vector<std::string>& arguments, const std::string& words) {
         try {
             figure_of("speed-accuracy", arguments);
             ADD_FAILURE() << words << ": no fault";
-        } catch (const Error& fault) {
-            EXPECT_EQ(fault.code(), ExitCode::bad_input) << fault.what();
-            EXPECT_NE(std::string(fault.what()).find(words), std::string::npos) << fault.what();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
         }
     };
     expect_fault({"chart.cost=\"money\""}, "cost");
     expect_fault({"work_precision.problems=[\"P5\"]"}, "\"P5\" is not");
     expect_fault({"work_precision.problems=[]"}, "at least one");
     expect_fault({"work_precision.problems=[\"P1\", \"P1\"]"}, "twice");
-    expect_fault({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"}, "beside \"scene\"");
+    expect_fault({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"}, "combined with \"scene\"");
     expect_fault({"work_precision.scene=\"fig7\""}, "is a figure");
     expect_fault({"work_precision.duration_s=3"}, "duration_s");
     expect_fault({"work_precision.models=[\"angels\"]"}, "\"angels\" is not");

@@ -28,7 +28,7 @@ Preset read(const FormatRow& row, const Edge& edge) {
                      row.format == FilmFormat::webm ? fmt::format("codec = \"{}\"\n", row.codec) : "")});
 }
 
-TEST(FormatEdges, TheReaderRefusesWhatTheSinkWould) {
+TEST(FormatEdges, TheReaderRefusesWhatTheSinkRefuses) {
     const std::array edges{
         Edge{{64, 64}, "25"},
         Edge{{65, 64}, "25", {"H.264", "VP9", "AV1"}},

@@ -48,8 +48,8 @@ void expect_large_and_central(const Scene& scene, const Layout& layout, const st
         EXPECT_GE(2 * layout.reach, 0.45f * height) << what;
     for (const auto& panel : layout.panels) {
         const float outermost = layout.reach + layout.bob_radius;
-        EXPECT_TRUE(panel.area.holds(Point{panel.center.x - outermost, panel.center.y - outermost})) << what;
-        EXPECT_TRUE(panel.area.holds(Point{panel.center.x + outermost, panel.center.y + outermost})) << what;
+        EXPECT_TRUE(panel.area.contains(Point{panel.center.x - outermost, panel.center.y - outermost})) << what;
+        EXPECT_TRUE(panel.area.contains(Point{panel.center.x + outermost, panel.center.y + outermost})) << what;
     }
 }
 
@@ -73,7 +73,7 @@ void expect_in_place_at_all_sizes(const Scene& scene, const std::string& name) {
     }
 }
 
-TEST(Hero, CirclesAreLargeAndCentralAndNoWordsAreInTheirWay) {
+TEST(Hero, CirclesAreLargeCentralAndFreeOfText) {
     for (const char* film : films) expect_in_place_at_all_sizes(scene_of(film), film);
 }
 
@@ -104,7 +104,7 @@ TEST(Hero, LongHeadingsLeaveTheCircleWhereItIs) {
         expect_in_place_at_all_sizes(scene_of("butterfly", arguments), arguments[0]);
 }
 
-TEST(Divergence, TakesAStartAsOneAndAWholeSecondApart) {
+TEST(Divergence, NeedsACloseStartAndAWholeSecondAboveTheLimit) {
     const auto since = [](double start, const std::vector<std::pair<double, double>>& steps) {
         Divergence parting;
         parting.add(0, start);

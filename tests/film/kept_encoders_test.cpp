@@ -63,7 +63,7 @@ TEST(KeptEncoders, HoldEverySettingOnEveryKindOfFilm) {
     }
 }
 
-TEST(KeptEncoders, NoSettingTakesLessOfBothThanTheDefault) {
+TEST(KeptEncoders, NoSettingBeatsTheDefaultInTimeAndSize) {
     for (const auto& [film, settings] : kept_points()) {
         EXPECT_EQ(better_than_default(settings), std::set<std::string>()) << film;
         EXPECT_LT(settings.at("doppel").cpu, 0.6) << film << ", of veryfast";

@@ -36,7 +36,7 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
                 const Area picture{0, 0, static_cast<float>(scene.preset.video.size.width),
                                    static_cast<float>(scene.preset.video.size.height)};
                 for (std::size_t i = 0; i < areas.size(); ++i) {
-                    EXPECT_TRUE(picture.holds(areas[i])) << what;
+                    EXPECT_TRUE(picture.contains(areas[i])) << what;
                     EXPECT_GT(areas[i].width(), 20) << what;
                     EXPECT_GT(areas[i].height(), 6) << what;
                     for (std::size_t j = 0; j < i; ++j)
@@ -47,7 +47,7 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
                 expect_apart(labels, scene.preset.video.size, what);
                 for (const auto& label : labels)
                     for (const auto& panel : layout.panels)
-                        EXPECT_TRUE(panel.area.holds(box_of(label)) || !panel.area.overlaps(box_of(label)))
+                        EXPECT_TRUE(panel.area.contains(box_of(label)) || !panel.area.overlaps(box_of(label)))
                             << what << ": " << label.text;
                 if (std::string(size) == "[480, 270]" && strips <= 3) {
                     EXPECT_GE(2 * layout.reach, 0.45f * 270) << what;  // measured 0.57
@@ -56,8 +56,8 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
                 // the pendulums' circle stays inside its panel
                 for (const auto& panel : layout.panels) {
                     const auto& [x, y] = panel.center;
-                    EXPECT_TRUE(panel.area.holds(Point{x - layout.reach, y - layout.reach})) << what;
-                    EXPECT_TRUE(panel.area.holds(Point{x + layout.reach, y + layout.reach})) << what;
+                    EXPECT_TRUE(panel.area.contains(Point{x - layout.reach, y - layout.reach})) << what;
+                    EXPECT_TRUE(panel.area.contains(Point{x + layout.reach, y + layout.reach})) << what;
                 }
             }
 }
@@ -126,18 +126,18 @@ TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
     EXPECT_FALSE(scene_of("butterfly").a.motion.wants_tension) << "only where it is shown";
 }
 
-TEST(Layouts, AxesHoldAllThatThePairDoes) {
+TEST(Layouts, AxesContainTheWholeMotion) {
     struct Pair {
         const char* preset;
         std::vector<std::string> keys;
-        double least_share = 0;  // of the strip's height that the curve of the distance takes
+        double min_share = 0;  // of the strip's height that the curve of the distance takes
     };
     const std::vector<std::string> quick{"scene.duration_s=10", "system.integrator=\"rk4\"",
                                          "system.step_s=\"1/1200\""};
     const std::string energies = "video.panels=[\"energies-a\", \"energies-b\", \"angles\", \"rates\", \"exponent\"]",
                       errors = "video.panels=[\"energy\", \"rod-error\", \"rod-force\"]";
     // films as they are; chains that start alike, apart, at unlike energies, of unlike masses and lengths; other strips
-    for (auto [preset, keys, least_share] :
+    for (auto [preset, keys, min_share] :
          std::vector<Pair>{{"butterfly", {}, 0.75},
                            {"mass-ratio", {}, 0.6},
                            {"slow-parting", {}, 0.6},
@@ -155,7 +155,7 @@ TEST(Layouts, AxesHoldAllThatThePairDoes) {
                            {"triple", {errors}},
                            {"whip", {errors}}}) {
         const auto what = fmt::format("{} {}", preset, fmt::join(keys, " "));
-        if (!keys.empty() && least_share == 0) keys.insert(keys.end(), quick.begin(), quick.end());
+        if (!keys.empty() && min_share == 0) keys.insert(keys.end(), quick.begin(), quick.end());
         const auto scene = scene_of(preset, keys);
         const auto strips = make_layout(scene).strips;
         std::vector<Spread> seen(strips.size());
@@ -176,14 +176,15 @@ TEST(Layouts, AxesHoldAllThatThePairDoes) {
                 EXPECT_NEAR(axis.high, spread.high > 0 ? spread.high + width / 10 : 0, 1e-9 * width)
                     << what << ' ' << k;
             } else if (strips[k].kind != StripKind::distance) {
-                EXPECT_TRUE(spread.count == 0 || spread.most >= axis.high / 11) << what << ' ' << k;
+                EXPECT_TRUE(spread.count == 0 || spread.maximum >= axis.high / 11) << what << ' ' << k;
                 EXPECT_LE(axis.high / axis.low, spread.count == 0 ? 1.01e16 : 1.01e6) << what << ' ' << k;
-            } else if (least_share > 0) {
-                EXPECT_GE(spread.least, axis.low) << what;
-                EXPECT_GT(std::log(spread.most / spread.least) / std::log(axis.high / axis.low), least_share) << what;
+            } else if (min_share > 0) {
+                EXPECT_GE(spread.minimum, axis.low) << what;
+                EXPECT_GT(std::log(spread.maximum / spread.minimum) / std::log(axis.high / axis.low), min_share)
+                    << what;
             } else if (start > 0.1) {
                 EXPECT_GE(start, axis.low) << what;
-                EXPECT_GE(spread.most, axis.high / 10) << what;
+                EXPECT_GE(spread.maximum, axis.high / 10) << what;
             }
         }
     }
@@ -199,7 +200,7 @@ TEST(Layouts, AxesHoldAllThatThePairDoes) {
     }
 }
 
-TEST(Layouts, OnlyWhoStartsTogetherParts) {
+TEST(Layouts, OnlyPairsWithACloseStartDiverge) {
     const auto outcome = [](std::vector<std::string> keys) {
         keys.emplace_back("system.integrator=\"taylor\"");
         const auto scene = scene_of("butterfly", keys);

@@ -32,7 +32,7 @@ TEST(Manifest, WarnsWhereEnergyIsNotKept) {
     EXPECT_TRUE(manifest_of(scene_of("springs", {"scene.duration_s=2"}))["warnings"].empty());
 }
 
-TEST(Manifest, SaysHowFarARunCanBePredicted) {
+TEST(Manifest, ContainsThePredictabilityLimit) {
     EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=1"}))["horizon_s"]
                     .is_null());  // its steps were chosen by hand
     const auto chosen = manifest_of(scene_of("horizon"));

@@ -8,7 +8,7 @@
 namespace doppel {
 namespace mechanism_preset_test {
 
-std::string fault(const std::string& text) {
+std::string error(const std::string& text) {
     const auto [code, message] = error_of([&] {
         const auto scene = scene_of_text(text);
         PairRun{scene};
@@ -101,7 +101,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
     const std::string two = bead + "[[system.particle]]\nname = \"bob\"\nposition_m = [0, 1]\n",
                       spring = "[[system.force]]\nname = \"pull\"\nkind = \"spring\"\nfrom = \"bead\"\nto = [0, 3]\n",
                       rod = bead + "[[system.constraint]]\nkind = \"rod\"\n";
-    const std::pair<std::string, std::string> faults[] = {
+    const std::pair<std::string, std::string> errors[] = {
         // sides have the same particles, in one order
         {two + "[[b.particle]]\nname = \"bob\"\nposition_m = [0, 2]\n[[b.particle]]\nname = \"baed\"",
          R"(presets/x.toml:14:1: [[b.particle]] 2 name must name a particle of both sides; "baed" is only on this side; did you mean "bead"?)"},
@@ -138,13 +138,13 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {"[system]\nparticle = 3",
          "presets/x.toml:2:1: [system] particle must be written as [[system.particle]] tables; it is a whole "
          "number (3)"}};
-    for (const auto& [text, message] : faults) EXPECT_EQ(fault(text), message) << text;
+    for (const auto& [text, message] : errors) EXPECT_EQ(error(text), message) << text;
     // those of the mechanism itself name its side
-    const auto off = fault(rod + "from = \"bead\"\nto = [0, 0]\nlength_m = 1.5");
+    const auto off = error(rod + "from = \"bead\"\nto = [0, 0]\nlength_m = 1.5");
     EXPECT_TRUE(off.starts_with("x: side a: constraint 1 (rod 1–fixed): ")) << off;
 }
 
-TEST(MechanismPreset, ADropletThatDoubleCannotFeelAsksForQuad) {
+TEST(MechanismPreset, ADropletBelowDoublePrecisionNeedsQuad) {
     const std::string text = R"(
 [system]
 angle_deg = [79, 79]
@@ -155,7 +155,7 @@ position_m = [1609, 0]
 mass_kg = 3.4e-5
 )";
     EXPECT_EQ(
-        fault(text),
+        error(text),
         "x: the droplet attracts with 8.8e-22 m/s², below the rounding of g in double (1.8e-15): both sides would move "
         "identically. Set precision = \"quad\"");
     auto preset =

@@ -37,7 +37,7 @@ TEST(RunFaults, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
 }
 
-TEST(RunFaults, OfAnAdaptiveMethodSaysWhichStepHeld) {
+TEST(RunFaults, OfAnAdaptiveMethodNamesTheSmallestSuccessfulStep) {
     const auto failure = [](const std::vector<std::string>& arguments) {
         auto all = arguments;
         all.emplace_back("scene.duration_s=2");
@@ -52,7 +52,7 @@ TEST(RunFaults, OfAnAdaptiveMethodSaysWhichStepHeld) {
     EXPECT_NE(hopeless.second.find("the first step failed"), std::string::npos) << hopeless.second;
 }
 
-TEST(RunFaults, StopsBeforeItsFirstFrameWhileItLooksHowFarThePairGets) {
+TEST(RunFaults, StopsDuringTheSimulationBeforeTheFirstFrame) {
     // 100 million samples of a mechanism, whose view depends on all of them
     const auto scene = scene_of("springs", {"scene.duration_s=800000", "video.size=[64, 64]"});
     const auto out = fresh_folder();
@@ -70,7 +70,7 @@ TEST(RunFaults, StopsBeforeItsFirstFrameWhileItLooksHowFarThePairGets) {
     EXPECT_TRUE(fs::is_empty(out));
 }
 
-TEST(RunFaults, LooksAheadOnlyWhereAPictureDependsOnIt) {
+TEST(RunFaults, SimulatesInAdvanceOnlyIfAPictureDependsOnIt) {
     const std::vector<std::string> arguments{"scene.duration_s=800000", "video.size=[64, 64]",
                                              "video.panels=[\"distance\"]", "video.distance_range=[1e-5, 10]"};
     EXPECT_EQ(render(scene_of("springs", arguments), {.out = fresh_folder(), .first = 0, .last = 1}).frames, 1);
@@ -84,17 +84,17 @@ TEST(RunFaults, WhatIsTooLargeToKeepIsSimulatedAgain) {
         MotionRecord record;
         MotionBounds bounds;
     };
-    const auto seen = [&](double most_bytes) {
+    const auto seen = [&](double max_bytes) {
         long reports = 0;
         Recording recording(
-            scene, {40}, true, never_stopped, [&](const Progress&) { ++reports; }, most_bytes);
+            scene, {40}, true, never_stopped, [&](const Progress&) { ++reports; }, max_bytes);
         std::vector<double> numbers;
         for (int time = 0; time < 2; ++time)
             recording.play([&](const Snapshot& snapshot) {
                 numbers.insert(numbers.end(), {snapshot.pair.share, snapshot.pair.a.bobs[1].x, snapshot.pair.distance});
                 for (const auto& bobs : snapshot.members) numbers.push_back(bobs.back().theta);
             });
-        EXPECT_EQ(reports, most_bytes > 0 ? 61 : 61 + 2 * 40);
+        EXPECT_EQ(reports, max_bytes > 0 ? 61 : 61 + 2 * 40);
         return Seen{numbers, recording.record(), recording.bounds()};
     };
     const auto kept = seen(Recording::usual_bytes), again = seen(0);
@@ -102,11 +102,11 @@ TEST(RunFaults, WhatIsTooLargeToKeepIsSimulatedAgain) {
     EXPECT_EQ(kept.numbers, again.numbers);
     EXPECT_EQ(kept.record.outcome.largest_distance, again.record.outcome.largest_distance);
     EXPECT_EQ(kept.record.a.effort.steps, again.record.a.effort.steps);
-    EXPECT_EQ(kept.bounds.strips[0].most, again.bounds.strips[0].most);
+    EXPECT_EQ(kept.bounds.strips[0].maximum, again.bounds.strips[0].maximum);
     EXPECT_GT(kept.bounds.strips[0].count, 40) << "to the end";
 }
 
-TEST(RunFaults, LeavesNoFrameOfASequenceThatBrokeDown) {
+TEST(RunFaults, LeavesNoFrameOfAFailedSequence) {
     // many threads still write large pictures when the method fails, and nothing better is looked for
     const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1000",
                                               "scene.duration_s=2", "video.size=[1280, 720]", "video.format=\"png\""});

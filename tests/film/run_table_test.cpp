@@ -111,7 +111,7 @@ TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
     EXPECT_TRUE(again.energy_columns);
 }
 
-TEST(RunTable, LeavesTheLogRatioEmptyWhereThePairStartsAsOne) {
+TEST(RunTable, LeavesTheLogRatioEmptyForEqualStarts) {
     const auto lines = table_of(scene_of("two-methods", {"scene.duration_s=0.1"}));
     EXPECT_EQ(lines.size(), 14u);
     for (const auto& line : lines) EXPECT_TRUE(line.ends_with("log_ratio") || line.ends_with(","));

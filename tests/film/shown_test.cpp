@@ -9,7 +9,7 @@
 namespace doppel {
 namespace shown_test {
 
-TEST(Shown, IsWhatIsAskedForAndNoMore) {
+TEST(Shown, IsExactlyWhatIsRequested) {
     const auto words = [](const std::string& show, long last = 0) {
         const auto scene =
             scene_of("butterfly", {"video.show=" + show, "video.panels=[\"pendulums\"]", "title=\"T\"",

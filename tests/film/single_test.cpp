@@ -62,12 +62,12 @@ TEST(Single, RefusesWhatIsOfAPair) {
     refused(one + "[b]\nangle_deg = [91, 90]\n",
             "[video] layout \"single\" shows side a alone, but the preset has a table [b]; leave [b] out");
     refused(one + "panels = [\"pendulums\", \"distance\"]\n",
-            "[video] panels must be of side a for the layout \"single\"; \"distance\" is of a pair");
+            "[video] panels must be about side a for the layout \"single\"; \"distance\" is about a pair");
     refused(one + "[video.view]\nfollow = 3\n",
             "[video.view] follow must be from 0 to 2, as there are masses; it is 3");
-    refused(one + "[video.view]\nfollow = 1\ncenter_m = [0, 0]\n", "center_m is of a view that follows no mass");
+    refused(one + "[video.view]\nfollow = 1\ncenter_m = [0, 0]\n", "center_m is for a view that follows no mass");
     refused(one + "panels = [\"angles\"]\n[video.view]\nheight_m = 2\n",
-            "[video] view is of the pendulums, but panels does not hold \"pendulums\"");
+            "[video] view is about the pendulums, but panels does not contain \"pendulums\"");
     refused("[scene]\nmember_columns = true\n",
             "[scene] member_columns is for the layout \"ensemble\"; it is \"side-by-side\"");
     const std::string ensemble = "[scene]\nduration_s = 1\n[video]\nlayout = \"ensemble\"\nmembers = ";
@@ -141,7 +141,7 @@ TEST(Single, TrailsAlone) {
         const auto list = composed(scene, 60)->frame();
         EXPECT_FALSE(std::ranges::any_of(list, [&](const Item& item) {
             const auto* capsule = std::get_if<Capsule>(&item);
-            return capsule && capsule->from.y < 600 && make_layout(scene).panels[0].area.holds(capsule->from);
+            return capsule && capsule->from.y < 600 && make_layout(scene).panels[0].area.contains(capsule->from);
         })) << keys;
         EXPECT_TRUE(std::ranges::any_of(list, [](const Item& item) { return std::holds_alternative<Stroke>(item); }));
         EXPECT_FALSE(std::ranges::any_of(composed(scene, 0)->backdrop(), [](const Item& item) {

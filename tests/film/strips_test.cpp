@@ -109,11 +109,11 @@ TEST(Strips, WhenTheyDivergedStandsAtItsLine) {
         Outcome outcome;
         for_each_snapshot(scene, sample, [&](const Snapshot& seen) {
             outcome.add(scene.time(seen.pair.sample), seen.pair);
-            since = outcome.parting.since().value_or(0);
+            since = outcome.divergence.since().value_or(0);
         });
         const auto& strip = layout.strips[0];
         const auto box = box_of(*words);
-        EXPECT_TRUE(strip.area.holds(box)) << film << size;
+        EXPECT_TRUE(strip.area.contains(box)) << film << size;
         EXPECT_LT(std::abs(box.left - strip.time.at(since)), 14 * layout.text + 1) << film << size;
     }
 }
@@ -127,7 +127,7 @@ TEST(Strips, LimitsAreNamedForWhatTheyAre) {
                model = label_of(labels, "predictability limit of the model 5.3 s");
     ASSERT_TRUE(numerical);
     ASSERT_TRUE(model);
-    EXPECT_TRUE(layout.strips[0].area.holds(box_of(*numerical)));
+    EXPECT_TRUE(layout.strips[0].area.contains(box_of(*numerical)));
     EXPECT_NEAR(model->anchor.x, layout.strips[0].time.at(5.3), 10 * layout.text + 1);
     expect_apart(labels, {960, 540}, "");
     // no line of the grid crosses the words
@@ -183,7 +183,7 @@ TEST(Strips, PotentialEnergyCountsFromTheLowestPoint) {
     EXPECT_NEAR(potential(StripKind::energies_b), 0, 1e-12);
 }
 
-TEST(Strips, WordsAboveAreClearOfTheirAxis) {
+TEST(Strips, CaptionsDoNotTouchTheirAxis) {
     for (const char* size : {"[1920, 1080]", "[720, 406]", "[480, 270]"})
         for (const char* film : {"slow-parting", "two-methods", "raindrop"}) {
             const auto scene = scene_of(film, {fmt::format("video.size={}", size), "scene.duration_s=3"});

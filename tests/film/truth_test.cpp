@@ -111,7 +111,7 @@ TEST(Truth, TraceIsAtTheDistanceItShows) {
     EXPECT_NEAR(dot.y, y, 0.5);  // measured 0.2
 }
 
-TEST(Truth, WhatLiesBeyondTheHorizonIsShaded) {
+TEST(Truth, TimesAfterThePredictabilityLimitAreShaded) {
     const auto scene = scene_of("horizon", {"scene.duration_s=35"});
     ASSERT_TRUE(scene.horizon());
     const auto picture = frame_of(scene, 0);
@@ -128,7 +128,7 @@ TEST(Truth, WhatLiesBeyondTheHorizonIsShaded) {
     EXPECT_FALSE(scene_of("butterfly").horizon());
 }
 
-TEST(Truth, ABlowUpStaysInItsPanel) {
+TEST(Truth, ADivergingRunStaysInItsPanel) {
     // Euler with giant steps tears the rods: bobs and trails leave the panel, and must not be drawn over the rest
     const auto scene =
         scene_of("butterfly", {"system.model=\"constraints\"", "system.step_s=\"1/120\"", "video.size=[640, 360]"});
@@ -140,7 +140,7 @@ TEST(Truth, ABlowUpStaysInItsPanel) {
     for (; sample < 2400 && !outside; ++sample) {
         const auto state = pair.next(never);
         const auto& bob = state.a.bobs[1];
-        outside = !layout.panels.front().area.holds(layout.panels.front().at(bob.x, bob.y));
+        outside = !layout.panels.front().area.contains(layout.panels.front().at(bob.x, bob.y));
     }
     ASSERT_TRUE(outside);
     const auto picture = frame_of(scene, sample - 1), calm = frame_of(scene, 0);

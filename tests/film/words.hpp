@@ -45,7 +45,7 @@ inline void expect_apart(const std::vector<Label>& labels, Size size, const std:
     const Area picture{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
     for (std::size_t i = 0; i < labels.size(); ++i) {
         const auto box = box_of(labels[i], type);
-        EXPECT_TRUE(picture.holds(box)) << what << ": " << labels[i].text;
+        EXPECT_TRUE(picture.contains(box)) << what << ": " << labels[i].text;
         for (std::size_t j = 0; j < i; ++j)
             EXPECT_FALSE(box.overlaps(box_of(labels[j], type)))
                 << what << ": " << labels[i].text << " | " << labels[j].text;

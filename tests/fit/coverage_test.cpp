@@ -10,8 +10,8 @@ namespace coverage_test {
 
 using namespace test;
 
-/// How often the truth lies within ± 1.96 standard errors: of all fitted parameters together ("") and of each; and how often
-/// residuals look like noise ("white").
+/// How often the truth lies within ± 1.96 standard errors: of all fitted parameters together ("") and of each; and how
+/// often residuals look like noise ("white").
 std::map<std::string_view, double> coverage_of(int trials, const Parameters& truth, const ModelSpec& model,
                                                double noise) {
     std::map<std::string_view, double> shares;
@@ -32,7 +32,7 @@ std::map<std::string_view, double> coverage_of(int trials, const Parameters& tru
 
 // Trials that share all parameters: 200 of them tell a share of 95 % within 1.5 % for one parameter.
 // DOPPEL_LONG_FIT=1 runs 1000.
-TEST(FitCoverage, NineteenOfTwentyIntervalsHoldTheTruth) {
+TEST(FitCoverage, NineteenOfTwentyIntervalsContainTheTruth) {
     auto truth = lab_arms();
     truth[coulomb_1] = truth[coulomb_2] = truth[quadratic_1] = truth[quadratic_2] = 0;
     truth[offset_1] = 0.002, truth[offset_2] = -0.001;
@@ -44,7 +44,7 @@ TEST(FitCoverage, NineteenOfTwentyIntervalsHoldTheTruth) {
 }
 
 // Friction of three kinds tells apart badly: intervals are wide, and still right. 200 trials with DOPPEL_LONG_FIT=1.
-TEST(FitCoverage, HoldsForEveryKindOfFriction) {
+TEST(FitCoverage, IsRightForEveryKindOfFriction) {
     const bool is_long = std::getenv("DOPPEL_LONG_FIT");
     const double share = coverage_of(is_long ? 200 : 25, lab_arms(), model_of(false, 3, Drag::carried), 3e-4)[""];
     EXPECT_GT(share, is_long ? 0.93 : 0.88);  // measured 0.942 of 200 trials

@@ -7,10 +7,10 @@ namespace model_test {
 
 using namespace test;
 
-const ArmState somewhere{0.7, -1.1, 2.3, -3.1};
+const LinkState somewhere{0.7, -1.1, 2.3, -3.1};
 
 /// The angles, rad, at samples of a motion from somewhere.
-std::vector<std::array<double, 2>> angles_of(const Parameters& p, Drag drag, const ArmState& start, double step,
+std::vector<std::array<double, 2>> angles_of(const Parameters& p, Drag drag, const LinkState& start, double step,
                                              std::size_t samples, double interval) {
     Flow<> flow({.drag = drag}, p, start, step);
     std::vector<std::array<double, 2>> angles;
@@ -29,15 +29,16 @@ double worst_of(const std::vector<std::array<double, 2>>& one, const std::vector
     return worst;
 }
 
-/// Points, bodies, drag of either law; and joints that turn over, stick and slip: a swing of much dry friction until it rests.
-TEST(FitFlow, MovesAsPhysicsHasIt) {
+/// Points, bodies, drag of either law; and joints that turn over, stick and slip: a swing of much dry friction until it
+/// rests.
+TEST(FitFlow, AgreesWithThePhysicsModule) {
     auto dry = lab_arms();
     dry[coulomb_1] = 4, dry[coulomb_2] = 3;
     const auto points = ratios_of(point_masses(1.3, 0.7, 0.4, 0.6));
     for (const auto& [p, drag] : {std::pair(points, Drag::own), std::pair(lab_arms(), Drag::own),
                                   std::pair(lab_arms(), Drag::carried), std::pair(dry, Drag::own)}) {
         const auto body = pendulum_of(fitted_pendulum(p, {.drag = drag}, {}));
-        for (const auto& start : {ArmState(1.5, -0.8, 1, -2), somewhere})
+        for (const auto& start : {LinkState(1.5, -0.8, 1, -2), somewhere})
             EXPECT_LT(worst_of(angles_of(p, drag, start, 1.0 / 512, 251, 0.02), simulated_angles(body, start, 50, 251)),
                       1e-8);  // measured 1.3e-9
     }
@@ -64,7 +65,7 @@ void expect_there_and_back(const Parameters& p, const PhysicalPendulum<double>& 
     for (std::size_t k = 0; k < dynamic_count; ++k) EXPECT_NEAR(back[k], p[k], 1e-12 * std::abs(p[k]));
 }
 
-TEST(FitPhysical, RatiosGoThereAndBack) {
+TEST(FitPhysical, RatiosRoundTrip) {
     for (const double mass : {1.0, 0.138})
         for (const double gravity : {9.8, 1.62}) {
             const auto pendulum = pendulum_of(fitted_pendulum(lab_arms(), {}, {gravity, mass}));

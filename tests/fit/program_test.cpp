@@ -100,7 +100,7 @@ TEST(FitProgram, FitsARealPendulum) {
     EXPECT_LT(worst_of_preset(folder, "lab", read_tracks(lab).pieces[0], "500"), 0.02);  // measured below 5e-3
 }
 
-TEST(FitProgram, WhatWasLeftOutIsNoProgress) {
+TEST(FitProgram, OmittedDataIsReportedAsANote) {
     const auto folder = fresh_folder();
     auto track = read_tracks({lab[0]});
     track.pieces[0].angle[0][500] += 5;
@@ -176,7 +176,7 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
 }
 
 /// Names that a terminal or the preset would obey are refused, or escaped where they are only told.
-TEST(FitProgram, NamesOfStrangersGiveNoOrders) {
+TEST(FitProgram, ControlCharactersInNamesAreSanitised) {
     const auto folder = fresh_folder();
     for (const char* name : {"\x1b[2J", "a\nb",
                              "a\xe2\x80\xae"

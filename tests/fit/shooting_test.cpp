@@ -20,7 +20,7 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
         const auto track = simulated(truth, drag, {.pieces = 1, .piece_s = 1});
         auto fit = fit_at(model_of(point, 3, drag, 2), truth, track);
         fit.step_s = 0.004, fit.scale = {1e6, 1e6};  // no residual is beyond the bend
-        fit.shots = {{.last = track.samples(), .start = fit.shots[0].start + ArmState(0.01, 0, 1, -1)}};
+        fit.shots = {{.last = track.samples(), .start = fit.shots[0].start + LinkState(0.01, 0, 1, -1)}};
         auto& p = fit.parameters;
         const auto sums_here = [&] {
             evaluate_fit({track, no_stop}, fit);
@@ -51,7 +51,7 @@ TEST(FitShooting, FindsANoiselessTruth) {
     model.fitted[quadratic_1] = model.fitted[quadratic_2] = true;
     auto wrong = truth;
     for (const auto k : model.list()) wrong[k] *= 1.05;
-    const auto fit = fitted(model, wrong, track, {.most_passes = 60, .relative = 1e-12});
+    const auto fit = fitted(model, wrong, track, {.max_passes = 60, .relative = 1e-12});
     for (const auto k : model.list())  // measured 3e-8
         EXPECT_NEAR(fit.parameters[k], truth[k], 1e-6 * std::max(std::abs(truth[k]), 0.1)) << parameter_words[k].key;
     EXPECT_LT(fit.rms, 1e-8);
@@ -67,7 +67,7 @@ TEST(FitShooting, KeepsFrictionFromBeingNegative) {
 }
 
 /// One angle of a hundred is anywhere.
-TEST(FitShooting, DoesNotFollowWildSamples) {
+TEST(FitShooting, IsRobustAgainstOutliers) {
     auto track = simulated(lab_arms(false), Drag::own, {.noise = 1e-3});
     for (auto& piece : track.pieces)
         for (std::size_t i = 7; i < piece.size(); i += 100) piece.angle[i % 2][i] += 0.5;
@@ -77,7 +77,7 @@ TEST(FitShooting, DoesNotFollowWildSamples) {
 }
 
 /// A start from which the motion runs away is guessed anew; the fit goes on.
-TEST(FitShooting, OneBadStartEndsItselfNotTheFit) {
+TEST(FitShooting, ContinuesAfterOneBadStart) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
     auto start = fit_at(model_of(false, 0), lab_arms(false), track);
     start.shots[1].start[2] = 2e4;                                         // rad/s
@@ -118,7 +118,7 @@ TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     }
 }
 
-TEST(FitLadder, ChoosesWhatMadeTheTrack) {
+TEST(FitLadder, ChoosesTheModelThatMadeTheTrack) {
     auto rigid = lab_arms(false);
     rigid[viscous_1] = 0.1, rigid[viscous_2] = 0.05;
     auto result = answered(simulated(rigid, Drag::own, {.noise = 1e-3}));
@@ -135,7 +135,7 @@ TEST(FitLadder, ChoosesWhatMadeTheTrack) {
 }
 
 /// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.
-TEST(FitHorizon, FindsTheIntervalOfPiecesAndHowFarItSees) {
+TEST(FitHorizon, FindsTheIntervalOfPiecesAndTheHorizon) {
     auto truth = lab_arms(false);
     truth[viscous_1] = 0.05;
     const auto track = simulated(truth, Drag::own, {.pieces = 8, .piece_s = 2.5, .noise = 1e-3, .every_s = 5});
@@ -149,7 +149,7 @@ TEST(FitHorizon, FindsTheIntervalOfPiecesAndHowFarItSees) {
 }
 
 /// Of a track that is cut into eight, the first prediction is seen for most of it and the last hardly at all.
-TEST(FitHorizon, SaysWhatNoneIsWorthAndWhatItUsed) {
+TEST(FitHorizon, ReportsMissingPredictionsAndTheDataUsed) {
     FitResult result;
     result.horizon = Horizon{.longest_s = 10.9};
     for (int k = 0; k < 8; ++k) result.horizon->predictions.push_back({.data_s = 1.9, .within_s = 10.9 - 1.5 * k});
@@ -160,7 +160,7 @@ TEST(FitHorizon, SaysWhatNoneIsWorthAndWhatItUsed) {
               "the 4 that ran for 6.4 s or more, none exceeded it: at 95 % confidence at most 53 % would.");
 }
 
-TEST(FitHorizon, TakesTheMedianOfTimesCutShort) {
+TEST(FitHorizon, TakesTheMedianOfCensoredTimes) {
     EXPECT_FALSE(median_of({{1, false}, {2, false}}));
     EXPECT_EQ(median_of({{1, true}, {2, true}, {3, true}}), 2);
     // Kaplan & Meier by hand: 1 − 1/5 = 0.8; × (1 − 1/3) = 0.53; × (1 − 1/2) = 0.27

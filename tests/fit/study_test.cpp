@@ -51,8 +51,9 @@ std::vector<unsigned> seeds_of(unsigned all, std::vector<unsigned> some) {
     return some;
 }
 
-// Of 200 of these tracks 15 were once refused or fitted to a wrong motion: over stretches too long for their chaos, from starts that
-// the model before had spoilt. The suite has some of these; DOPPEL_LONG_FIT=1 runs all, in some two minutes.
+// Of 200 of these tracks 15 were once refused or fitted to a wrong motion: over stretches too long for their chaos,
+// from starts that the model before had spoilt. The suite has some of these; DOPPEL_LONG_FIT=1 runs all, in some two
+// minutes.
 TEST(FitStudy, EnergeticTracksAreFittedToTheirNoise) {
     for (const auto seed : seeds_of(200, {16, 80, 86, 122, 191})) try {
             const auto result = answered(energetic_track(seed));
@@ -79,7 +80,7 @@ Track rubbing_track(unsigned seed, Parameters& truth) {
     const long hz = std::array{200, 250, 500}[static_cast<std::size_t>(3 * even(random))];
     const auto samples = static_cast<std::size_t>(seconds * static_cast<double>(hz));
     const auto within = [&](double size) { return size * (2 * even(random) - 1); };
-    const ArmState start{within(1.5), within(1.5), within(4), within(4)};
+    const LinkState start{within(1.5), within(1.5), within(4), within(4)};
     const auto angles = simulated_angles(made, start, hz, samples);
     Track track{.pieces = {{.name = "simulated.csv"}}, .start_s = {0}, .noise = {5e-4, 5e-4}};
     auto& piece = track.pieces[0];
@@ -91,8 +92,8 @@ Track rubbing_track(unsigned seed, Parameters& truth) {
     return track;
 }
 
-// By a law that is smooth within 5 deg/s 86 % of intervals held this friction, the worst 8 of its errors off; the suite has some
-// of these tracks. DOPPEL_LONG_FIT=1 runs 60, in a minute.
+// By a law that is smooth within 5 deg/s 86 % of intervals held this friction, the worst 8 of its errors off; the suite
+// has some of these tracks. DOPPEL_LONG_FIT=1 runs 60, in a minute.
 TEST(FitStudy, IntervalsHoldCoulombFriction) {
     int within = 0, count = 0;
     double worst = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "fit/beginning.hpp"
 #include "fit/flow.hpp"
+#include "fit/initial_fit.hpp"
 #include "fit/result.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> even(-1, 1);
     Track track{.noise = {noise, noise}};
-    ArmState start;
+    LinkState start;
     for (std::size_t k = 0; k < pieces; ++k) {
         if (k == 0 || every_s == 0)
             start = {amplitude * even(random), amplitude * even(random), 4 * even(random), 4 * even(random)};
@@ -78,19 +78,19 @@ inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     const auto& friction = pendulum.friction;
     take(viscous_1, friction.viscous);
     take(coulomb_1, friction.coulomb);
-    take(quadratic_1, friction.arm_quadratic.empty() ? friction.air_quadratic : friction.arm_quadratic);
+    take(quadratic_1, friction.link_quadratic.empty() ? friction.air_quadratic : friction.link_quadratic);
     p[scale_1] = p[scale_2] = 1;
     return p;
 }
 inline PhysicalPendulum<double> pendulum_of(const FittedPendulum& fitted) {
     std::map<std::string, std::vector<double>> lists;
-    for (const auto& [key, both] : fitted.arms) lists[key] = {both[0], both[1]};
+    for (const auto& [key, both] : fitted.links) lists[key] = {both[0], both[1]};
     return {.chain = {.mass = lists["mass_kg"], .length = lists["length_m"], .gravity = fitted.gravity},
             .center = lists["center_m"],
             .inertia = lists["inertia_kg_m2"],
             .friction = {.viscous = lists["joint_viscous_N_m_s"],
                          .coulomb = lists["joint_coulomb_N_m"],
-                         .arm_quadratic = lists["arm_drag_quadratic_N_m_s2"],
+                         .link_quadratic = lists["arm_drag_quadratic_N_m_s2"],
                          .air_quadratic = lists["air_drag_quadratic_N_m_s2"]}};
 }
 inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, double l2) {
@@ -98,7 +98,7 @@ inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, do
 }
 
 /// Angles as "simulate" has them, Coulomb friction with its events: `samples` of them at `hz` a second.
-inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<double> pendulum, const ArmState& start,
+inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<double> pendulum, const LinkState& start,
                                                            long hz, std::size_t samples) {
     pendulum.chain.angle = {start[0], start[1]}, pendulum.chain.rate = {start[2], start[3]};
     MotionSpec spec;
@@ -152,7 +152,7 @@ inline Fit fitted(const ModelSpec& model, const Parameters& parameters, const Tr
 }
 
 inline FitResult answered(const Track& track, Bodies bodies = Bodies::automatic) {
-    return answer(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
+    return analyse(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
 }
 
 /// The exit code and the message that a fit ends with, of a track that work() returns; 0 where it is taken.

@@ -53,7 +53,7 @@ TEST(FitTrack, RefusesWhatIsNoTable) {
     for (const auto& [text, words] : cases) expect_refused({text}, 2, words);
 }
 
-TEST(FitTrack, RefusesWhatTellsNoModel) {
+TEST(FitTrack, RefusesTracksThatDetermineNoModel) {
     auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 1});
     expect_refused({csv_of(track.pieces[0])}, 2,
                    "the track is too short: 101 samples in 1 s; it needs at least 100 in 1.5 s");
@@ -164,7 +164,7 @@ TEST(FitTrack, ManyPiecesTakeAsLongAsTheirRows) {
     EXPECT_LT(seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start, 3);  // measured 0.08 s; 27 s when quadratic
 }
 
-TEST(FitTrack, LeavesWildSamplesOut) {
+TEST(FitTrack, LeavesOutliersOut) {
     auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 1e-3});
     for (const std::size_t i : {50, 120, 333}) track.pieces[0].angle[1][i] += 0.3;
     const auto read_again = read({csv_of(track.pieces[0])});

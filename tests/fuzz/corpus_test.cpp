@@ -28,14 +28,14 @@ std::string read_watched(const std::string& input, const std::string& name, Read
     std::string message;
     try {
         message = read(input);
-    } catch (const std::exception& fault) {
-        ADD_FAILURE() << name << ": " << fault.what() << "\n--- input:\n" << input;
+    } catch (const std::exception& error) {
+        ADD_FAILURE() << name << ": " << error.what() << "\n--- input:\n" << input;
     }
     EXPECT_LT(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, patience) << name << "\n--- input:\n" << input;
     return message;
 }
 
-TEST(Readers, KeepTheirWordOnTheCorpus) {
+TEST(Readers, ReadOrRefuseTheCorpus) {
     int inputs = 0;
     for (const auto& file : fs::directory_iterator(fs::path(DOPPEL_SOURCE_DIR) / "tests/fuzz/corpus")) {
         read_watched(test::bytes_of(file.path()), file.path().filename().string());
@@ -57,7 +57,7 @@ void PrintTo(const Files& files, std::ostream* out) {
 
 class ReadersOfFiles : public testing::TestWithParam<Files> {};
 
-TEST_P(ReadersOfFiles, KeepTheirWordOnTheCorpusAndItsMutations) {
+TEST_P(ReadersOfFiles, ReadOrRefuseTheCorpusAndItsMutations) {
     const auto& [folder, read, mutations] = GetParam();
     std::mt19937 random(2026);
     read_watched("", "empty", read);
@@ -94,7 +94,7 @@ std::string with_damaged_table(std::string font, std::size_t table, std::mt19937
     return font;
 }
 
-TEST(Fonts, DamagedOnesCrashNothing) {
+TEST(Fonts, DamagedFontsDoNotCrash) {
     const auto font = test::embedded_font();
     EXPECT_EQ(read_watched(font, "whole", test::read_font), "");
     const auto tables = test::number_at(font, 4, 2);

@@ -38,8 +38,8 @@ template <class Read>
 void read_again(const std::string& resolved, const Read& read) {
     try {
         expect_same(resolved, read(PresetText{"input", "input.toml", resolved}));
-    } catch (const Error& fault) {
-        throw std::logic_error(std::string("the resolved preset is refused: ") + fault.what() + "\n" + resolved);
+    } catch (const Error& error) {
+        throw std::logic_error(std::string("the resolved preset is refused: ") + error.what() + "\n" + resolved);
     }
 }
 
@@ -68,11 +68,11 @@ std::string refusal_of(const Read& read) {
     try {
         read();
         return {};
-    } catch (const Error& fault) {
-        const std::string message = fault.what();
-        if (fault.code() != ExitCode::bad_input) throw std::logic_error("not exit 2: " + message);
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        if (error.code() != ExitCode::bad_input) throw std::logic_error("not exit 2: " + message);
         if (!names_a_place(message)) throw std::logic_error("names no place: " + message);
-        for (const auto& line : fault.further())
+        for (const auto& line : error.further())
             if (!names_a_place(line) && !line.starts_with("and ")) throw std::logic_error("names no place: " + line);
         return message;
     }

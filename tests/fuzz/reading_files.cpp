@@ -48,9 +48,9 @@ std::string refusal_of(std::string_view bytes, const Read& read) {
     try {
         read(file.path());
         return {};
-    } catch (const Error& fault) {
-        const std::string message = fault.what();
-        if (fault.code() != ExitCode::io_failed) throw std::logic_error("not exit 4: " + message);
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        if (error.code() != ExitCode::io_failed) throw std::logic_error("not exit 4: " + message);
         if (!message.starts_with(file.path().string())) throw std::logic_error("names no file: " + message);
         return message;
     }
@@ -106,8 +106,8 @@ void show(const FigurePreset& figure, PartFile& part) {
     table.finish();
     try {
         compose_figure(figure, trials);
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::method_failed) throw;  // nothing to draw
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::method_failed) throw;  // nothing to draw
     }
 }
 
@@ -169,9 +169,9 @@ std::string read_font(std::string_view input) {
     std::shared_ptr<const Font> font;
     try {
         font = Font::from_file(file.path());
-    } catch (const Error& fault) {
-        if (fault.code() != ExitCode::bad_input) throw std::logic_error(std::string("not exit 2: ") + fault.what());
-        return fault.what();
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::bad_input) throw std::logic_error(std::string("not exit 2: ") + error.what());
+        return error.what();
     }
     constexpr char32_t letters = 0x2400, step = 7;
     constexpr int largest = 40;  // px

@@ -63,8 +63,8 @@ TEST(ParseColor, RefusesEverythingElse) {
     }
 }
 
-TEST(MapColor, GrowsLighterEvenly) {
-    double least = 1e9, most = 0, before = -1;
+TEST(MapColor, LightnessIncreasesEvenly) {
+    double minimum = 1e9, maximum = 0, before = -1;
     for (int i = 0; i <= 64; ++i) {
         const Triple here = linear(map_color(i / 64.0));
         const double lightness = lab(here)[0];
@@ -72,10 +72,10 @@ TEST(MapColor, GrowsLighterEvenly) {
         before = lightness;
         if (i % 4) continue;
         const double step = i ? distance(here, linear(map_color((i - 4) / 64.0))) : 12;
-        least = std::min(least, step);
-        most = std::max(most, step);
+        minimum = std::min(minimum, step);
+        maximum = std::max(maximum, step);
     }
-    EXPECT_LT(most / least, 2.6);  // measured 2.28: the blues are where CIE L*a*b* and OKLab differ
+    EXPECT_LT(maximum / minimum, 2.6);  // measured 2.28: the blues are where CIE L*a*b* and OKLab differ
 }
 
 TEST(MapColor, EndsWhereItsScaleEnds) {
@@ -85,7 +85,7 @@ TEST(MapColor, EndsWhereItsScaleEnds) {
     EXPECT_GT(distance(linear(map_color(0)), linear(map_color(1))), 80);
 }
 
-TEST(Themes, HaveEightHuesThatAllCanTellApart) {
+TEST(Themes, HaveEightDistinguishableHues) {
     for (const Theme& theme : themes) {
         EXPECT_EQ(theme.palette[0], theme.sides[0]);
         EXPECT_EQ(theme.palette[1], theme.sides[1]);
@@ -105,10 +105,10 @@ TEST(Themes, HaveEightHuesThatAllCanTellApart) {
 TEST(Themes, CanBeRead) {
     // WCAG 2.1 §1.4.3: 4.5 for text; 7 is its enhanced level
     for (const auto& theme : themes) {
-        const double least = theme.name == "high-contrast" ? 7 : 4.5;
+        const double minimum = theme.name == "high-contrast" ? 7 : 4.5;
         for (const auto ground : {theme.background, theme.panel}) {
             for (const auto color : {theme.text, theme.quiet_text, theme.sides[0], theme.sides[1]})
-                EXPECT_GE(contrast(color, ground), theme.name == "light" ? 4.0 : least) << theme.name;
+                EXPECT_GE(contrast(color, ground), theme.name == "light" ? 4.0 : minimum) << theme.name;
             EXPECT_GE(contrast(theme.text, ground), 7) << theme.name;
         }
     }

@@ -61,12 +61,12 @@ void expect_all_models_as_alone() {
     expect_each_trial_as_alone<Which, RodChain<double, 3>>(Model::constraints, 3);
 }
 
-TEST(Batch, EachTrialEndsAsAloneAtEveryWidth) {
+TEST(Batch, ResultsEqualThoseOfSinglePendulumsAtEveryWidth) {
     expect_all_models_as_alone<Euler>();
     expect_all_models_as_alone<Rk4>();
 }
 
-TEST(Batch, TakesTheWidestThatTheProcessorHas) {
+TEST(Batch, UsesTheWidestRegisters) {
     const auto trials = some_trials(2);
     EXPECT_EQ(Batch(trials, Model::angles, "euler", step).width(), register_widths().back());
     EXPECT_EQ(Batch(trials, Model::angles, "euler", step, 2).width(), 2);
@@ -79,7 +79,7 @@ std::string refusal(Make make) {
     return said;
 }
 
-TEST(Batch, SaysWhatItCannotStep) {
+TEST(Batch, RefusesUnsupportedPendulums) {
     const auto trials = some_trials(2);
     EXPECT_EQ(refusal([&] { Batch(trials, Model::angles, "dop853", step); }),
               "a batch needs two or three links and euler or rk4; it has 2 and dop853");

@@ -23,9 +23,9 @@ std::vector<double> angles_after(const MotionSpec& spec, long samples) {
     return angles;
 }
 double difference(const std::vector<double>& one, const std::vector<double>& other) {
-    double most = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, std::abs(one[i] - other[i]));
-    return most;
+    double maximum = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) maximum = std::max(maximum, std::abs(one[i] - other[i]));
+    return maximum;
 }
 
 /// Two rods with a motor, whose joints turn over, stick and slip: each some 20 times in 5 s.
@@ -54,17 +54,17 @@ TEST(Coulomb, APendulumTurnsAndStopsWhereEnergyAndWorkSay) {
     struct Try {
         std::string_view method;
         long steps_per_s;
-        double tolerance, most;
+        double tolerance, maximum;
     };
     // measured 3e-15, 6e-16, 1e-13, 2e-11, 4e-10, 7e-15, 3e-5
-    for (const auto& [method, steps, tolerance, most] :
+    for (const auto& [method, steps, tolerance, maximum] :
          {Try{"taylor", 0, 1e-15, 1e-13}, Try{"taylor", 0, 1e-13, 1e-12}, Try{"dop853", 0, 1e-13, 1e-12},
           Try{"dopri5", 0, 1e-11, 1e-9}, Try{"rk4", 1000, 0, 1e-9}, Try{"adams", 1000, 0, 1e-12},
           Try{"midpoint", 1000, 0, 1e-4}}) {
         Course course(spec_of(p, method, steps, tolerance));
         const auto end = course.advance(1500).bobs[0];
         EXPECT_EQ(end.omega, 0) << method;
-        EXPECT_NEAR(end.theta, side * turn, most) << method;
+        EXPECT_NEAR(end.theta, side * turn, maximum) << method;
         EXPECT_EQ(course.advance(100).bobs[0].theta, end.theta) << method;
     }
 }
@@ -92,7 +92,7 @@ TEST(Coulomb, InQuadToo) {
     EXPECT_LE(difference(angles_after(spec_of(sticking(), "taylor", 0, 1e-15), 100), fine), 1e-13);
 }
 
-TEST(Coulomb, ARestingJointIsLetGoByThePeakOfADrive) {
+TEST(Coulomb, AHeldJointIsReleasedByThePeakOfADrive) {
     // two motors that beat: their sum exceeds what friction gives by 0.5 % at most, for moments, after seconds of rest
     auto p = physical(Pendulum<double>{{1}, {1}, {0}, {0}});
     p.friction.coulomb = {1.99};

@@ -125,7 +125,7 @@ struct Settled : Oscillator {
     void project(State& y) const { y.normalize(); }
 };
 
-TEST(Adams, TakesItsSlopesWhereTheModelSettled) {
+TEST(Adams, EvaluatesSlopesAtProjectedStates) {
     Settled model;
     Adams::Stepper<Settled> stepper(model, {1, 0}, 0.1);
     for (int i = 0; i < 40; ++i) {

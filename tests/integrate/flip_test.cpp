@@ -1,7 +1,9 @@
 #include "errors.hpp"
 #include "integrate/flips.hpp"
 #include "integrate/flips_kernel.hpp"
+#include "integrate/taylor.hpp"
 #include "integrate/widths.hpp"
+#include "numeric/roots.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +51,36 @@ std::vector<double> flips(const std::vector<Release>& releases, const Pendulum<d
     return times;
 }
 
+/// The first flip of one pendulum by different equations and code: TaylorStepper with its tolerance. At 1e-13, all of
+/// 110 flips within 20 s are within 2e-6 s of those in quad at 1e-24.
+double reference_flip(const Pendulum<double>& pendulum, double duration, double tolerance) {
+    struct Outward {
+        double value, rate;
+    };
+    DoublePendulum<double> model(pendulum);
+    const auto start = DoublePendulum<double>::start(pendulum);
+    if (start.head(2).cwiseAbs().maxCoeff() > pi) return 0;
+    TaylorStepper<DoublePendulum<double>> stepper(model, start, tolerance);
+    for (double time = 0; time < duration; time += stepper.step()) {
+        stepper.take_step();
+        double flip = never;
+        for (const int rod : {0, 1})
+            for (const double sense : {1.0, -1.0}) {
+                auto angle = stepper.on_step(rod);
+                for (double& value : angle.b) value *= sense;
+                for (const auto& rise : angle.rises(pi)) {
+                    const auto at = [&](double t) {
+                        const auto& y = stepper.at(t);
+                        return Outward{sense * y[rod] - pi, sense * y[2 + rod]};
+                    };
+                    flip = std::min(flip, root(rise, at));
+                }
+            }
+        if (flip < never) return time + flip <= duration ? time + flip : never;
+    }
+    return never;
+}
+
 /// Masses, lengths and gravity of which no two are alike.
 Pendulum<double> uneven() {
     Pendulum<double> p;
@@ -68,7 +100,7 @@ double rate_there(double theta, double omega, double length, double gravity) {
     return std::sqrt(omega * omega - 4 * gravity / length * std::pow(std::sin(theta / 2), 2));
 }
 
-TEST(Flips, AreForbiddenJustBelowTheLeastEnergyOfARodUpright) {
+TEST(Flips, AreForbiddenBelowTheEnergyOfAnUprightRod) {
     // −2 cosθ1 − cosθ2 < −2 + 1, where both hang the same: θ1 = 90° and θ2 = 180°, θ2 = 0 and θ1 = 90°
     constexpr double little = 1e-9;
     EXPECT_TRUE(flip_is_forbidden(released({}, {pi / 2 - little, 0})));
@@ -116,7 +148,7 @@ std::vector<double> kernel_flips(const std::vector<Release>& releases, const Fli
     return times;
 }
 
-TEST(Flips, NeverHappenWhereTheyAreForbidden) {
+TEST(Flips, DoNotOccurWhereForbidden) {
     auto releases = some_releases(1000);
     std::erase_if(releases, [](const Release& r) { return !flip_is_forbidden(released({}, r)); });
     ASSERT_GT(releases.size(), 200u);
@@ -180,7 +212,7 @@ TEST(Flips, ComeWhenTheReferenceSays) {
     EXPECT_LT(odd.early, 1e-7);  // measured 1.2e-8
 }
 
-TEST(Flips, OfARodReleasedBeyondTheTopAreThereAtOnce) {
+TEST(Flips, OfARodReleasedBeyondTheTopOccurAtZero) {
     for (const Release& release : {Release{pi + 0.1, 0}, Release{0, -pi - 0.1}}) {
         EXPECT_EQ(reference_flip(released({}, release), 1, 1e-12), 0);
         EXPECT_EQ(flips({release})[0], 0);
@@ -297,7 +329,7 @@ ExitCode refusal(const Pendulum<double>& p, const FlipSpec& spec, std::size_t ti
     return test::thrown_by([&] { first_flips(all_released(p, {{2, 2}, {2.5, 1}}), spec, found, stop, width); }).first;
 }
 
-TEST(Flips, ThatBreakDownHaveNoTimeAndSpoilNoOther) {
+TEST(Flips, FailedOnesAreNaNAndDoNotAffectOthers) {
     // gravity so strong that a swing takes 1e-15 s
     const auto calm = released({}, {2.5, 1});
     auto wild = calm;
@@ -310,7 +342,7 @@ TEST(Flips, ThatBreakDownHaveNoTimeAndSpoilNoOther) {
     EXPECT_EQ(times[2], times[0]);
 }
 
-TEST(Flips, AreNotLookedForInVain) {
+TEST(Flips, AreNotSearchedWhereForbidden) {
     Pendulum<double> triple;
     triple.mass = triple.length = triple.angle = triple.rate = {1, 1, 1};
     EXPECT_EQ(refusal({}, {}, 2), ExitCode::done);

@@ -57,13 +57,13 @@ TEST(Gauss, KeepsEnergyOverAHundredThousandPeriods) {
     EXPECT_LT(gauss.late, 2e-3);               // measured 9e-4 J
 }
 
-TEST(Gauss, LosesNoEnergyToRounding) {
+TEST(Gauss, HasNoEnergyDriftFromRounding) {
     // steps so short that truncation hides: what is left is rounding, which must walk at random
     const auto errors = errors_of<Gauss6, Angles>(released(30, 0), 1.0 / 512, 1'000'000);
     EXPECT_LT(errors.late, 4e-14);  // measured 7e-15 J of 30; 3e-13 without compensation, 2e-13 with a loose iteration
 }
 
-TEST(Gauss, SaysWhenTheStepIsTooLong) {
+TEST(Gauss, FailsIfTheStepIsTooLong) {
     using Model = DoublePendulum<double>;
     const auto p = unequal<double>();
     const auto [code, text] = test::thrown_by([&] { after<Gauss6, Model>(p, Model::start(p), 3.0, 10); });

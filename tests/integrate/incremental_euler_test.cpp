@@ -32,7 +32,7 @@ double apart(const Pendulum<double>& p, double seconds, double h = step) {
     return y.cwiseAbs().maxCoeff();
 }
 
-TEST(IncrementalEuler, IsWhatEulerStepsDoubleWith) {
+TEST(IncrementalEuler, IsUsedForEulerInDouble) {
     static_assert(std::is_same_v<Euler::Stepper<DoublePendulum<double>>, IncrementalEuler<DoublePendulum<double>>>);
     static_assert(std::is_same_v<Euler::Stepper<RodChain<Lanes<4>, 3>>, IncrementalEuler<RodChain<Lanes<4>, 3>>>);
     static_assert(std::is_same_v<Euler::Stepper<RodChain<long double, 3>>, Plain<RodChain<long double, 3>>>);
@@ -55,7 +55,7 @@ TEST(IncrementalEuler, IsThePlainMethodUpToRounding) {
     EXPECT_LT(apart<Three>(uneven(3), 1), 5e-13);               // measured 1.1e-13
 }
 
-TEST(IncrementalEuler, TakesSinesAfreshWhereStepsAreLarge) {
+TEST(IncrementalEuler, EvaluatesSinesDirectlyForLargeSteps) {
     // 90 rad/s at 1 ms: 0.09 rad a step, far above 2⁻¹⁰
     auto p = released(10, 50);
     p.rate = {90, -90};

@@ -25,7 +25,7 @@ MotionSpec fine(Model model, const MethodEntry& method, const Pendulum<double>& 
     return spec;
 }
 
-/// Calls visit(model, method) for every method and each of the two models of chains that it serves.
+/// Calls visit(model, method) for every method and each of the two models of chains that it supports.
 template <class Visit>
 void for_each_combination(const Visit& visit) {
     for (const auto& method : methods()) {
@@ -74,7 +74,7 @@ TEST(Limits, EqualLinksSwingInTheModesOfLaguerre) {
     // small angles: M θ″ = −K θ with M_ij = N + 1 − max(i, j), K_ii = N + 1 − i (unit masses and lengths, times g):
     // ω² = g · root. A mode of amplitude 1e-6 is back after its period, with an error of amplitude².
     // measured 1.3e-21, 6.1e-20, 3.6e-19, 8.0e-19, 1.2e-18
-    for (const auto& [n, most] : {std::pair{1, 1e-20}, {2, 5e-19}, {3, 2e-18}, {6, 5e-18}, {12, 7e-18}}) {
+    for (const auto& [n, maximum] : {std::pair{1, 1e-20}, {2, 5e-19}, {3, 2e-18}, {6, 5e-18}, {12, 7e-18}}) {
         Eigen::MatrixXd mass(n, n), stiffness = Eigen::MatrixXd::Zero(n, n);
         for (int i = 0; i < n; ++i) {
             stiffness(i, i) = n - i;
@@ -96,15 +96,15 @@ TEST(Limits, EqualLinksSwingInTheModesOfLaguerre) {
                 spec.tolerance = parse_quad("1e-14");
                 const auto end = Course(spec).advance(1);
                 for (int i = 0; i < n; ++i)
-                    EXPECT_NEAR(end.bobs[static_cast<std::size_t>(i)].theta, shape[i], most) << n << ", " << mode;
+                    EXPECT_NEAR(end.bobs[static_cast<std::size_t>(i)].theta, shape[i], maximum) << n << ", " << mode;
             }
         }
     }
 }
 
-TEST(Limits, AVanishingUpperMassIsReachedOrRefused) {
+TEST(Limits, AVanishingUpperMassIsSimulatedOrRefused) {
     // m1 → 0 with the links aligned: the condition of J M⁻¹ Jᵀ grows like 4 m2/m1, and the motion becomes stiff
-    const std::map<std::string_view, double> most{
+    const std::map<std::string_view, double> maximum{
         {"dopri5", 2e-10}, {"dop853", 2e-10}, {"taylor", 5e-12}};  // m; measured 3.5e-11, 2.8e-11, 8.4e-13
     for (const double m1 : {1e-2, 1e-4, 1e-6}) {
         Pendulum<double> p{{m1, 1}, {0.5, 0.5}, {radians(60), radians(60)}, {0, 0}, 9.8};
@@ -123,11 +123,11 @@ TEST(Limits, AVanishingUpperMassIsReachedOrRefused) {
                 EXPECT_TRUE(error < 1e-3 || !(std::abs(seen.energy_change) < 1e-4 * scale))
                     << m1 << ": " << error << " m, " << seen.energy_change << " J";
                 if (method.adaptive) {
-                    EXPECT_LT(error, most.at(method.name)) << m1;
+                    EXPECT_LT(error, maximum.at(method.name)) << m1;
                 }
-            } catch (const Error& fault) {
-                EXPECT_EQ(fault.code(), ExitCode::method_failed) << fault.what();
-                EXPECT_FALSE(method.adaptive) << fault.what();
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ExitCode::method_failed) << error.what();
+                EXPECT_FALSE(method.adaptive) << error.what();
             }
         });
     }

@@ -55,7 +55,7 @@ void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int wi
     }
 }
 
-TEST(MotionBatch, EachGoesAsItWouldAlone) {
+TEST(MotionBatch, EachMotionEqualsThatAlone) {
     const int wide = register_widths().back();
     for (const auto model : {Model::angles, Model::constraints})
         for (const std::size_t links : {1u, 2u, 3u, 4u})
@@ -66,7 +66,7 @@ TEST(MotionBatch, EachGoesAsItWouldAlone) {
     expect_each_as_alone(fan(Model::constraints, "rattle", 2, 70), 1, 1);
 }
 
-TEST(MotionBatch, FollowsTheTurns) {
+TEST(MotionBatch, CountsTurns) {
     // thrown so that some go round, both ways; the lone motion's own turns are tested against angles
     auto specs = fan(Model::constraints, "euler", 2, 30);
     for (std::size_t k = 0; k < specs.size(); ++k) specs[k].chain->rate = {Quad(15 - static_cast<int>(k)), Quad(0)};
@@ -92,7 +92,7 @@ TEST(MotionBatch, StepsOneByOneWhatIsNotSteppedAlike) {
     expect_alone([&](MotionSpec& spec) { spec.chain = fan(Model::constraints, "euler", 3, 1)[0].chain; });
 }
 
-TEST(MotionBatch, SaysWhoCannotGoOn) {
+TEST(MotionBatch, NamesTheFailedMotion) {
     // two of them break down in the same sample, in different parts: the first is named whatever the threads do
     auto specs = fan(Model::constraints, "rattle", 2, 200);
     for (auto& spec : specs) spec.steps_per_sample = 1;

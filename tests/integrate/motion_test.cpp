@@ -22,15 +22,15 @@ Eigen::Vector2d end_angles(Model model, std::string_view method, const Pendulum<
     return {bobs[0].theta, bobs[1].theta};
 }
 
-TEST(Methods, AreThoseOfTheRegistry) {
+TEST(Methods, AreListedFromTheRegistry) {
     for (const auto& method : methods()) {
-        for (const auto& [model, serves] :
+        for (const auto& [model, supports] :
              {std::pair{Model::angles, method.angles}, {Model::constraints, method.constraints}})
             for (const auto precision : {Precision::in_double, Precision::in_quad}) {
                 auto spec = stepping(model, method.name, released(40, 70), 1000);
                 spec.precision = precision;
                 spec.tolerance = 1e-8;
-                if (serves)
+                if (supports)
                     EXPECT_NEAR(Course(spec).advance(100).bobs[0].theta, 0.67993, 5e-4) << method.name;
                 else
                     EXPECT_THROW(make_motion(spec), Error) << method.name;
@@ -89,12 +89,12 @@ TEST(Motion, MirrorImageStaysTheMirrorImage) {
         }
 }
 
-TEST(Motion, AdvancesTheSameInOneGoOrInMany) {
+TEST(Motion, DoesNotDependOnHowAdvanceIsDivided) {
     for (const auto& method : methods())
-        for (const auto& [model, serves] :
+        for (const auto& [model, supports] :
              {std::pair{Model::angles, method.angles}, {Model::constraints, method.constraints}})
             for (const auto& degrees : {std::vector{90.0, 90.0}, {90.0, -20.0, 50.0}, {60.0, 0.0, 10.0, 40.0}}) {
-                if (!serves || method.adaptive) continue;
+                if (!supports || method.adaptive) continue;
                 auto spec = stepping(model, method.name, from_rest(degrees), 1024);  // a double
                 spec.tolerance = 1e-8;
                 const auto often = Course(spec).advance(1024);
@@ -154,11 +154,11 @@ TEST(Motion, CountsTurnsToAllDigitsOfQuad) {
     }
 }
 
-TEST(Motion, IsNotMadeOfWhatHasNothingToStabilise) {
+TEST(Motion, RefusesStabilisationWithoutEffect) {
     using Chain = RodChain<double, 2>;
-    static_assert(serves<Rattle, Chain> && serves<Rk4, Projected<Chain>> && serves<Rk4, Baumgarte<Chain>>);
-    static_assert(!serves<Rattle, Projected<Chain>> && !serves<Rattle6, Baumgarte<Chain>>);
-    const auto fault = [](Model model, std::string_view method, Stabilise stabilise) {
+    static_assert(supports<Rattle, Chain> && supports<Rk4, Projected<Chain>> && supports<Rk4, Baumgarte<Chain>>);
+    static_assert(!supports<Rattle, Projected<Chain>> && !supports<Rattle6, Baumgarte<Chain>>);
+    const auto error = [](Model model, std::string_view method, Stabilise stabilise) {
         auto spec = stepping(model, method, released(40, 70), 1000);
         if (model == Model::mechanism) spec.parts = parts_of(*spec.chain);
         spec.stabilise = stabilise;
@@ -167,12 +167,12 @@ TEST(Motion, IsNotMadeOfWhatHasNothingToStabilise) {
     const auto bad = [](const char* words) { return test::Thrown(ExitCode::bad_input, words); };
     for (const auto stabilise : {Stabilise::baumgarte, Stabilise::projection}) {
         for (const auto model : {Model::constraints, Model::mechanism}) {
-            EXPECT_EQ(fault(model, "rattle", stabilise),
+            EXPECT_EQ(error(model, "rattle", stabilise),
                       bad("the method \"rattle\" keeps the constraints itself; there is nothing to stabilise"));
-            EXPECT_EQ(fault(model, "rk4", stabilise).first, ExitCode::done);
+            EXPECT_EQ(error(model, "rk4", stabilise).first, ExitCode::done);
         }
-        EXPECT_EQ(fault(Model::angles, "rk4", stabilise),
-                  bad("in angles the rods have constant length; there is nothing to stabilise"));
+        EXPECT_EQ(error(Model::angles, "rk4", stabilise),
+                  bad("with angles as coordinates the rods have constant length; there is nothing to stabilise"));
     }
 }
 
@@ -192,7 +192,7 @@ TEST(Motion, CountsItsSteps) {
     EXPECT_DOUBLE_EQ(run.motion->effort().smallest_step, 0.01);
 }
 
-TEST(Motion, SeesTheForcesInTheRodsWhereWanted) {
+TEST(Motion, ObservesRodTensionsOnRequest) {
     // one motion by three models, in two precisions, with and without projection; forces of physics/rod_chain.hpp
     auto p = released(90, -20);
     p.mass = {1, 2.5};

@@ -1,4 +1,5 @@
-// The order of interpolations, and Butcher's conditions; the orders of all methods: integrate/physical_methods_test.cpp.
+// The order of interpolations, and Butcher's conditions; the orders of all methods:
+// integrate/physical_methods_test.cpp.
 
 #include "integrate/dormand_prince.hpp"
 #include "integrate/euler.hpp"
@@ -125,8 +126,8 @@ double violation(const Weights& w, int from, int to) {
 
 TEST(OrderConditions, HoldForEveryTree) {
     EXPECT_EQ(trees_up_to(8).size(), 200u);  // 1 + 1 + 2 + 4 + 9 + 20 + 48 + 115
-    const auto check = [](const char* name, const Weights& w, int order, double most) {
-        EXPECT_LT(violation(w, 1, order), most) << name;
+    const auto check = [](const char* name, const Weights& w, int order, double maximum) {
+        EXPECT_LT(violation(w, 1, order), maximum) << name;
         EXPECT_GT(violation(w, order + 1, order + 1), 1e-3) << name;
     };
     check("euler", weights_of(Euler::table.a, Euler::table.b, 1), 1, 1e-33);

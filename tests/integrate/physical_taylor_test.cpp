@@ -51,14 +51,15 @@ Eigen::Vector4d exponential(const Eigen::Matrix4d& a, double t, Eigen::Vector4d 
     return y;
 }
 
-TEST(PhysicalTaylor, SmallSwingsFadeAsTheLinearSystemDoes) {
-    // M θ″ + B θ′ + K θ = 0, of rods with friction at the joints and on the arms: exact but for the cube of the amplitude
+TEST(PhysicalTaylor, SmallSwingsDecayAsInTheLinearSystem) {
+    // M θ″ + B θ′ + K θ = 0, of rods with friction at the joints and on the arms: exact but for the cube of the
+    // amplitude
     const double small = 1e-6;
     auto p = physical(Pendulum<double>{{1.2, 0.5}, {0.8, 1.1}, {small, -2 * small}, {0, 0}});
     p.center = {0.4, 0.55};
     p.inertia = {0.06, 0.05};
     p.friction.viscous = {0.1, 0.2};
-    p.friction.arm_linear = {0.03, 0.01};
+    p.friction.link_linear = {0.03, 0.01};
     const double s1 = 1.2 * 0.4 + 0.8 * 0.5, s2 = 0.5 * 0.55;
     Eigen::Matrix2d mass, friction, spring;
     mass << 0.06 + 1.2 * 0.16 + 0.64 * 0.5, 0.8 * s2, 0.8 * s2, 0.05 + 0.5 * 0.55 * 0.55;
@@ -99,8 +100,9 @@ double least_amplitude(double frequency) {
     return high;
 }
 
-TEST(PhysicalTaylor, TheUprightIsHeldWhereKapitzaAndMathieuSay) {
-    // Kapitza: a² ν² > 2 g l. Mathieu's edge: 4 g / (l ν²) = q²/2 − 7 q⁴/128 + 29 q⁶/2304 − 68687 q⁸/18874368, q = 2 a / l
+TEST(PhysicalTaylor, TheUprightIsStableWhereKapitzaAndMathieuPredict) {
+    // Kapitza: a² ν² > 2 g l. Mathieu's edge: 4 g / (l ν²) = q²/2 − 7 q⁴/128 + 29 q⁶/2304 − 68687 q⁸/18874368, q = 2 a
+    // / l
     // Source  Abramowitz & Stegun, 20.2.25
     const double fast = least_amplitude(80);
     EXPECT_NEAR(fast * 80 / std::sqrt(2 * 9.8), 1, 0.01);  // measured 1.0007
@@ -115,7 +117,7 @@ TEST(PhysicalTaylor, TheUprightIsHeldWhereKapitzaAndMathieuSay) {
 TEST(PhysicalTaylor, SeesARateThatDipsBelowZeroAndBackWithinAStep) {
     // ω = 0.99 + sin t but for the drag |ω| ω, which turns over twice in 0.28 s of steps of some seconds
     PhysicalPendulum<double> p = physical(Pendulum<double>{{1}, {1}, {0}, {0.99}, 0});
-    p.friction.arm_quadratic = {0.01};
+    p.friction.link_quadratic = {0.01};
     p.torques = {{0, 1, 1, 0}};
     const auto end = [&](auto which, double tolerance) {
         PhysicalChain<double> model(p);
@@ -127,7 +129,7 @@ TEST(PhysicalTaylor, SeesARateThatDipsBelowZeroAndBackWithinAStep) {
     EXPECT_NEAR(end(Taylor(), 1e-12), end(Dop853(), 1e-14), 1e-11);
 }
 
-TEST(PhysicalTaylor, WhatSticksStaysWhereItIs) {
+TEST(PhysicalTaylor, AStickingJointStaysExactly) {
     auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {pi / 3, pi / 3}, {0, 0}});
     p.friction.coulomb = {3, 1};
     for (const auto* method : {"taylor", "rk4", "euler", "dopri5", "dop853", "semi-implicit-euler"}) {

@@ -27,7 +27,7 @@ struct Dragged : RodChain<Scalar, N> {
     Scalar k = Scalar(0.5);  // 1/s
 
     using RodChain<Scalar, N>::RodChain;
-    bool feels_velocity() const { return true; }
+    bool depends_on_velocity() const { return true; }
     void free_acceleration(const Half& q, const Half& v, Half& a) const {
         RodChain<Scalar, N>::free_acceleration(q, v, a);
         a -= k * v;
@@ -126,16 +126,16 @@ Quad least_energy(double z, long steps, Quad& largest) {
     const Quad zero = -p.gravity;
     const auto above = [&] { return Quad(energy(bobs_of_particles<Quad>(p, stepper.state()), p.gravity) - zero); };
     const Quad first = above();
-    Quad least = first;
+    Quad minimum = first;
     largest = first;
     for (long i = 0; i < steps; ++i) {
         stepper.advance(1);
         const Quad now = above();
-        if (now < least) least = now;
+        if (now < minimum) minimum = now;
         if (now > largest) largest = now;
     }
     largest /= first;
-    return least / first;
+    return minimum / first;
 }
 
 TEST(Rattle, KeepsEnergyWithinAQuarterOfZSquared) {
@@ -143,9 +143,9 @@ TEST(Rattle, KeepsEnergyWithinAQuarterOfZSquared) {
     // rises
     for (const double z : {0.1, 0.5, 1.5}) {
         Quad largest;
-        const Quad least = least_energy(z, 2000, largest);
-        EXPECT_NEAR(static_cast<double>(least), 1 - z * z / 4, 2e-6 * z * z);  // measured 2.1e-7 of it
-        EXPECT_NEAR(static_cast<double>(largest), 1, 1e-15);                   // measured 0
+        const Quad minimum = least_energy(z, 2000, largest);
+        EXPECT_NEAR(static_cast<double>(minimum), 1 - z * z / 4, 2e-6 * z * z);  // measured 2.1e-7 of it
+        EXPECT_NEAR(static_cast<double>(largest), 1, 1e-15);                     // measured 0
     }
 }
 
@@ -157,7 +157,7 @@ TEST(Rattle, IsStableUpToZOfTwo) {
     EXPECT_GT(static_cast<double>(largest), 1e4);  // measured 4e5
 }
 
-TEST(Rattle, FeelsFriction) {
+TEST(Rattle, IncludesFriction) {
     // the same equations by Runge–Kutta: Baumgarte with α = 0 adds nothing to them
     const auto p = unequal<double>();
     using Model = Dragged<double, 2>;
@@ -177,7 +177,7 @@ Mechanism<double>::State on_mechanism(const Assembly<double>& parts, double rate
     return after<Rattle, Model>(parts, Model::start(parts), 1 / rate, steps);
 }
 
-TEST(Rattle, GoesOnWhereFrictionAllButBalancesASpring) {
+TEST(Rattle, ContinuesWhereFrictionNearlyBalancesASpring) {
     // two large forces on a bead in a slot, with a bob on it; the sum is rounded by far more than it amounts to
     for (const auto& [damping, bound] : {std::pair{1e3, 5e-4}, {1e4, 4e-5}}) {
         const Assembly<double> parts{
@@ -190,7 +190,7 @@ TEST(Rattle, GoesOnWhereFrictionAllButBalancesASpring) {
     }
 }
 
-TEST(Rattle, SaysWhenFrictionIsTooStrong) {
+TEST(Rattle, FailsIfFrictionIsTooStrong) {
     const auto p = unequal<double>();
     using Model = Dragged<double, 2>;
     Model model(p);
@@ -199,7 +199,7 @@ TEST(Rattle, SaysWhenFrictionIsTooStrong) {
     EXPECT_THROW(stepper.advance(1), Error);
 }
 
-TEST(Rattle, GoesOnWhereOnlyRoundingIsLeft) {
+TEST(Rattle, ContinuesWhereOnlyRoundingIsLeft) {
     // three links that gave up after 206 701 steps, at 1.3e-15 m²
     const auto rad = [](std::vector<double> degrees) {
         for (auto& value : degrees) value = radians(value);
@@ -215,7 +215,7 @@ TEST(Rattle, GoesOnWhereOnlyRoundingIsLeft) {
     EXPECT_LT((errors_of<Rattle6, Chain>(p, 1.0 / 12000, 12'000).rod), 1e-14);  // measured 6.7e-16 m
 }
 
-TEST(Rattle, GoesOnInScenesDrawnByLot) {
+TEST(Rattle, ContinuesInRandomScenes) {
     std::mt19937 random(20);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     for (int i = 0; i < 60; ++i) {
@@ -246,7 +246,7 @@ Assembly<double> hung_at(const Pendulum<double>& p, const Place<double>& pivot) 
     return parts;
 }
 
-TEST(Rattle, GoesOnFarFromTheOrigin) {
+TEST(Rattle, ContinuesFarFromTheOrigin) {
     const auto p = unequal<double>(3);
     for (const double far : {0.0, 20.0, 1e3, 1e6}) {
         const auto parts = hung_at(p, Place<double>(far, -0.75 * far));
@@ -262,20 +262,20 @@ TEST(Rattle, GoesOnFarFromTheOrigin) {
 TEST(Rattle, KeepsTheRodsOfALightFirstMass) {
     // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings like a bead on a string under the
     // weight of m2, at ω = √(2 m2 g / (l m1)), where steps are stable below 2 / ω
-    for (const auto& [light, most] : {std::pair{1e-3, 1e-5}, {1e-6, 3e-9}, {1e-9, 5e-13}, {1e-12, 2e-13}}) {
+    for (const auto& [light, maximum] : {std::pair{1e-3, 1e-5}, {1e-6, 3e-9}, {1e-9, 5e-13}, {1e-12, 2e-13}}) {
         auto p = released(30, 30);
         p.mass[0] = light;
         const double fastest = std::sqrt(2 * p.gravity / light);
         const auto errors = errors_of<Rattle, Rods>(p, 0.1 / fastest, 10'000);
-        EXPECT_LT(errors.rod, 1e-15) << light;  // measured 2.2e-16 m
-        EXPECT_LT(errors.late, most) << light;  // measured 1.8e-6, 3.2e-10, 9e-14, 3e-14 J
+        EXPECT_LT(errors.rod, 1e-15) << light;     // measured 2.2e-16 m
+        EXPECT_LT(errors.late, maximum) << light;  // measured 1.8e-6, 3.2e-10, 9e-14, 3e-14 J
     }
     auto p = released(30, 31);
     p.mass[0] = 1e-9;
     EXPECT_THROW((errors_of<Rattle, Rods>(p, 1e-4, 10'000)), Error);
 }
 
-TEST(Rattle, SaysWhenTheStepIsTooLong) {
+TEST(Rattle, FailsIfTheStepIsTooLong) {
     const auto [code, text] = test::thrown_by([] { errors_of<Rattle, Rods>(released(150, 90), 1.0, 1000); });
     EXPECT_EQ(code, ExitCode::method_failed);
     EXPECT_EQ(text.rfind("rattle: step ", 0), 0u) << text;

@@ -115,15 +115,15 @@ double allowed(double error) {
     return std::max(5 * error, 5e-15);
 }
 
-TEST(Reference, EveryMethodComesAsNearAsItShould) {
+TEST(Reference, EveryMethodReachesItsExpectedError) {
     for (std::size_t number = 0; number < cases().size(); ++number) {
         const auto [name, pendulum] = cases()[number];
         const auto reference = certified(pendulum);
         std::size_t rows = 0;
         for (const auto& method : methods())
-            for (const auto& [model, serves] :
+            for (const auto& [model, supports] :
                  {std::pair{Model::angles, method.angles}, {Model::constraints, method.constraints}}) {
-                if (!serves) continue;
+                if (!supports) continue;
                 const auto row = std::ranges::find_if(
                     measured, [&](const Measured& m) { return m.method == method.name && m.model == model; });
                 ASSERT_NE(row, std::end(measured)) << "a method without a row: " << method.name;

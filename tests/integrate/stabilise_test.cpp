@@ -96,17 +96,17 @@ TEST(Projected, ReachesTheDigitsOfTheScalar) {
 
 TEST(Projected, KeepsTheRodsOfALightFirstMass) {
     // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings at √(2 m2 g / (l m1))
-    for (const auto& [light, most] : {std::pair{1e-3, 2e-10}, {1e-6, 2e-13}, {1e-9, 3e-13}, {1e-12, 3e-13}}) {
+    for (const auto& [light, maximum] : {std::pair{1e-3, 2e-10}, {1e-6, 2e-13}, {1e-9, 3e-13}, {1e-12, 3e-13}}) {
         auto p = released(30, 30);
         p.mass[0] = light;
         Projected<Chain> model(p);
         const auto errors = errors_of<Rk4>(p, model, 0.1 / std::sqrt(2 * p.gravity / light), 10'000);
-        EXPECT_LT(errors.rod, 1e-15) << light;    // measured 2.2e-16 m
-        EXPECT_LT(errors.energy, most) << light;  // measured 3.3e-11, 2.1e-14, 3.9e-14, 5.0e-14 J
+        EXPECT_LT(errors.rod, 1e-15) << light;       // measured 2.2e-16 m
+        EXPECT_LT(errors.energy, maximum) << light;  // measured 3.3e-11, 2.1e-14, 3.9e-14, 5.0e-14 J
     }
 }
 
-TEST(Projected, SaysWhenALightMassWouldHaveToJump) {
+TEST(Projected, FailsIfALightMassWouldHaveToJump) {
     // aligned links that are a millimetre too far apart: the light mass in between would be thrown aside
     auto p = released(30, 30);
     p.mass[0] = 1e-9;
@@ -117,7 +117,7 @@ TEST(Projected, SaysWhenALightMassWouldHaveToJump) {
     EXPECT_THROW(model.project(y), Error);
 }
 
-TEST(Projected, SaysWhenThereIsNoWayBack) {
+TEST(Projected, FailsIfNoPointOnTheConstraintsIsFound) {
     // a rod without length has no direction: J M⁻¹ Jᵀ is 0
     const auto p = released(0, 0);
     Projected<Chain> model(p);
@@ -150,7 +150,7 @@ TEST(Baumgarte, IsStableBelowTheLimitOfTheMethod) {
     EXPECT_GT(growth<Rk4>(2.785293563 * 1.001, 800), 1e4);     // measured 6e4
 }
 
-TEST(Baumgarte, PullsBackAsItsEquationSays) {
+TEST(Baumgarte, CorrectsErrorsByItsEquation) {
     // C″ = −2α C′ − α² C at a state off the constraints: J a + J̇ v, by the model's own operations
     Pendulum<double> p = released(40, -20);
     p.mass = {1.25, 0.5};

@@ -106,7 +106,7 @@ Assembly<Quad> hanging(double degrees, bool beside_a_droplet) {
     return parts;
 }
 
-TEST(TaylorMechanism, ADropletIsFeltAsItShouldBe) {
+TEST(TaylorMechanism, ADropletHasItsTheoreticalEffect) {
     // both links in one line at rest, and so M = ((2, 1), (1, 1)) for the angles: each bob takes up the part across the
     // line of the droplet's pull on itself
     const auto at = hanging(79, false).particles;
@@ -129,7 +129,7 @@ std::string error_of(const Assembly<double>& parts, double seconds, double toler
     return said;
 }
 
-TEST(TaylorMechanism, SaysWhereBodiesCollide) {
+TEST(TaylorMechanism, FailsIfBodiesCollide) {
     const Assembly<double> parts{
         .particles = {{1, P(0, 0)}, {1, P(1, 0)}}, .constraints = {}, .forces = {Attraction<double>{one, two, 1}}};
     EXPECT_EQ(error_of(parts, 2, 1e-12).substr(0, 8), "taylor: ");
@@ -143,7 +143,7 @@ TEST(TaylorMechanism, PassesThroughTheMiddleOfASpring) {
     EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[0], std::cos(tau) + v * std::sin(tau) - 1, 3e-11);  // measured 5e-12
 }
 
-TEST(TaylorMechanism, SaysWhenTheMotionBlowsUp) {
+TEST(TaylorMechanism, FailsIfTheMotionDiverges) {
     auto parts = four_bars();
     for (const double speed : {1e200, std::nan("")}) {
         parts.forces = {Gravity<double>{speed}};

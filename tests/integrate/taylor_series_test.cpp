@@ -87,7 +87,7 @@ void expect_lanes_like_quad() {
     }
 }
 
-TEST(TaylorSeries, LanesHoldTheSameCoefficients) {
+TEST(TaylorSeries, LanesHaveTheSameCoefficients) {
     expect_lanes_like_quad<2>();
     expect_lanes_like_quad<3>();
 }

@@ -68,7 +68,7 @@ void for_each_problem(Test&& test) {
     test("P4", p4);
 }
 
-TEST(Taylor, ErrsByWhatTheToleranceAndTheSensitivityAllow) {
+TEST(Taylor, ErrorIsToleranceTimesSensitivity) {
     for_each_problem([](const char* name, const auto& problem) {
         for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
             const double error = problem.error(tolerance);
@@ -78,7 +78,7 @@ TEST(Taylor, ErrsByWhatTheToleranceAndTheSensitivityAllow) {
     });
 }
 
-TEST(Taylor, ComesThroughTheVanishingCoefficientsAtEveryOrder) {
+TEST(Taylor, HandlesVanishingCoefficientsAtEveryOrder) {
     // from rest at 90/90 three in four coefficients vanish, whatever the order
     for (int order : {8, 9, 10, 11, 12, 13, 14, 15, 16, 20, 24})
         for (double tolerance : {1e-6, 1e-9})
@@ -124,7 +124,7 @@ TEST(Taylor, HoldsInsideEveryStep) {
     }
 }
 
-TEST(Taylor, StepsAlikeHoweverItIsSampled) {
+TEST(Taylor, StepsDoNotDependOnSampling) {
     const auto p = p1.pendulum;
     AngleChain<double, 2> model(p), other_model(p);
     TaylorStepper once(model, AngleChain<double, 2>::start(p), 1e-12);
@@ -141,7 +141,7 @@ TEST(Taylor, StepsAlikeHoweverItIsSampled) {
 }
 
 TEST(Taylor, LongChainsFollowRungeKutta) {
-    for (const auto& [links, steps, most] : {std::tuple{8, 4000L, 2e-14}, {64, 3000L, 3e-13}}) {
+    for (const auto& [links, steps, maximum] : {std::tuple{8, 4000L, 2e-14}, {64, 3000L, 3e-13}}) {
         auto p = uneven(static_cast<std::size_t>(links));
         for (auto& l : p.length) l /= links;
         for (auto& rate : p.rate) rate = 0;
@@ -153,11 +153,11 @@ TEST(Taylor, LongChainsFollowRungeKutta) {
         const auto end = end_of<Model>(p, step * static_cast<double>(steps), 1e-13);
         const auto& expected = rk4.state();
         ASSERT_GT((expected - Model::start(p)).head(links).cwiseAbs().maxCoeff(), 0.01);
-        EXPECT_LT(angle_error(expected, end), most) << links;  // measured 3e-15, 5e-14
+        EXPECT_LT(angle_error(expected, end), maximum) << links;  // measured 3e-15, 5e-14
     }
 }
 
-TEST(Taylor, KeepsRodsWhereTheModelSettles) {
+TEST(Taylor, KeepsRodsOfAProjectedModel) {
     using Model = Projected<RodChain<double, Eigen::Dynamic>>;
     const auto p = p1.pendulum;
     const auto bobs = bobs_of_particles(p, end_of<Model>(p, 10.0, 1e-12));
@@ -185,7 +185,7 @@ TEST(Taylor, RefusesWhatTheScalarCannotGive) {
     EXPECT_NE(error_of(ExitCode::bad_input, [&] { end_of<AngleChain<double, 2>>(p, 1.0, std::nan("")); }), "no error");
 }
 
-TEST(Taylor, SaysWhenTheMotionBlowsUp) {
+TEST(Taylor, FailsIfTheMotionDiverges) {
     auto p = p1.pendulum;
     p.rate = {1e200, -1e200};
     EXPECT_EQ(error_of(ExitCode::method_failed, [&] { end_of<AngleChain<double, 2>>(p, 1.0, 1e-12); }).substr(0, 19),

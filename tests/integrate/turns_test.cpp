@@ -58,7 +58,7 @@ TEST(Turns, AreNotAddedWhereNotFollowed) {
     EXPECT_DOUBLE_EQ(seen(turns, places(4, 5))[0].theta, 4 - 2 * pi);
 }
 
-TEST(Turns, AreCountedWhereMoreThanHalfATurnPassesBetweenLooks) {
+TEST(Turns, AreCountedForMoreThanHalfATurnBetweenUpdates) {
     // 30 rad and −20 rad a look, at rates that grow to twice and fall to nothing
     const auto first = [](double n) { return 15 * n + 0.15 * n * n; };
     const auto second = [](double n) { return 3 - 20 * n + 0.2 * n * n; };
@@ -73,7 +73,7 @@ TEST(Turns, AreCountedWhereMoreThanHalfATurnPassesBetweenLooks) {
     }
 }
 
-TEST(Turns, AreNotMadeUpOfARodThatSwingsToAndFro) {
+TEST(Turns, AreNotCountedForARodThatSwingsToAndFro) {
     // by 0.9 rad about the top, as a light mass between heavy ones does, up to 8 rad of a swing between two looks
     const auto angle = [](double t) { return pi + 0.9 * std::sin(4000 * t); };
     const auto rate = [](double t) { return 0.9 * 4000 * std::cos(4000 * t); };
@@ -89,7 +89,7 @@ TEST(Turns, AreNotMadeUpOfARodThatSwingsToAndFro) {
     }
 }
 
-TEST(Turns, AreLookedAtTheMoreOftenTheFasterTheyAre) {
+TEST(Turns, AreUpdatedMoreOftenForFasterRods) {
     Turns turns({0, 0});
     turns.update(places(0, 0, 3, -8), 0);
     EXPECT_DOUBLE_EQ(turns.longest_interval(), Turns::longest);

@@ -337,12 +337,12 @@ def report(tree):
     results = list({r["id"]: r for r in map(json.loads, lines)}.values())  # the last of each
     results = [r for r in results if mutants[r["id"]]["state"] == "planted"]
     for module in ROOMS:
-        of_room = [r for r in results if mutants[r["id"]]["module"] == module]
-        if not of_room:
+        of_module = [r for r in results if mutants[r["id"]]["module"] == module]
+        if not of_module:
             continue
-        caught = [r for r in of_room if r["caught"]]
+        caught = [r for r in of_module if r["caught"]]
         own = [r for r in caught if r["caught"].startswith(module + ":")]
-        print(f"{module}: {len(caught)} of {len(of_room)} caught, {len(own)} by the module's own tests")
+        print(f"{module}: {len(caught)} of {len(of_module)} caught, {len(own)} by the module's own tests")
     for r in sorted(results, key=lambda r: (mutants[r["id"]]["file"], mutants[r["id"]]["line"])):
         m = mutants[r["id"]]
         if not r["caught"]:

@@ -37,13 +37,13 @@ typename Model::State flow(const Pendulum<typename Model::Scalar>& p, const type
 /// some h² = 1e-22 of the third derivative.
 template <class Which, template <class> class Model, int N, class Scalar>
 double jacobian_error(std::size_t links) {
-    using Varied = Model<Dual<Scalar, N>>;
+    using SweptKeys = Model<Dual<Scalar, N>>;
     using Exact = Model<Quad>;
     constexpr int steps = 200;
     const auto start = Exact::start(unequal<Quad>(links));
     const State<Scalar, Exact::State::SizeAtCompileTime> rounded = start.template cast<Scalar>();
-    const auto end = flow<Varied, Which>(unequal<Scalar>(links).template cast<Dual<Scalar, N>>(),
-                                         as_variables<Varied, Scalar>(rounded), steps, Scalar(1) / Scalar(400));
+    const auto end = flow<SweptKeys, Which>(unequal<Scalar>(links).template cast<Dual<Scalar, N>>(),
+                                            as_variables<SweptKeys, Scalar>(rounded), steps, Scalar(1) / Scalar(400));
     const Quad h(1e-11);
     double worst = 0;
     for (int j = 0; j < N; ++j) {

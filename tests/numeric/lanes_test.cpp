@@ -51,7 +51,7 @@ TEST(Lanes, SelectDecidesLaneByLane) {
     EXPECT_EQ(chosen[3], 20);  // NaN is not small
 }
 
-TEST(Lanes, TheGreaterIsNoNumberWhereEitherIsNone) {
+TEST(Lanes, TheLargerIsNaNIfEitherIs) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [a, b, expected] :
          {std::array{1.0, 2.0, 2.0}, {2.0, 1.0, 2.0}, {nan, 1.0, nan}, {1.0, nan, nan}}) {

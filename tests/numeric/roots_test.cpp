@@ -19,7 +19,7 @@ std::vector<double> with_roots(const std::vector<double>& roots, double factor) 
     return a;
 }
 
-TEST(Bernstein, HasTheEndsOfThePolynomialAndHoldsIt) {
+TEST(Bernstein, HasEndValuesAndBoundsOfThePolynomial) {
     const std::vector<double> a{0.3, -2, 1.5, 4, -3.3};
     const double length = 0.7;
     const auto polynomial = Bernstein::of_powers(a, length);
@@ -27,10 +27,10 @@ TEST(Bernstein, HasTheEndsOfThePolynomialAndHoldsIt) {
     ASSERT_EQ(polynomial.b.size(), 5u);
     EXPECT_EQ(polynomial.b.front(), 0.3);
     EXPECT_NEAR(polynomial.b.back(), value(length), 1e-15);  // measured 0
-    const auto [least, greatest] = std::minmax_element(polynomial.b.begin(), polynomial.b.end());
+    const auto [minimum, largest] = std::minmax_element(polynomial.b.begin(), polynomial.b.end());
     for (double t = 0; t <= length; t += 0.01) {
-        EXPECT_GE(value(t), *least);
-        EXPECT_LE(value(t), *greatest);
+        EXPECT_GE(value(t), *minimum);
+        EXPECT_LE(value(t), *largest);
     }
 }
 
@@ -50,7 +50,7 @@ TEST(Bernstein, FindsEveryRiseInOrder) {
     }
 }
 
-TEST(Bernstein, TellsPairsOfRootsApartDownToRounding) {
+TEST(Bernstein, SeparatesPairsOfRootsDownToRounding) {
     for (const double apart : {1e-2, 1e-5, 1e-7}) {
         const auto rises = Bernstein::of_powers(with_roots({0.3 - apart / 2, 0.3 + apart / 2}, 1), 1).rises();
         ASSERT_EQ(rises.size(), 1u) << apart;

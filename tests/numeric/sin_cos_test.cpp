@@ -94,7 +94,7 @@ TEST(SinCos, OfADoubleIsThatOfALaneAtEveryWidth) {
     EXPECT_TRUE(std::isnan(SinCos<double>(std::nan("")).cos));
 }
 
-TEST(TurningAngle, FollowsTheSeriesAsFarAsItMay) {
+TEST(TurningAngle, AgreesWithTheSineWithinItsRange) {
     // just within the largest turn the series must still give the sine and cosine of the sum
     for (double theta = -3; theta < 3; theta += 0.01) {
         const SinCos<double> start(theta);
@@ -106,7 +106,7 @@ TEST(TurningAngle, FollowsTheSeriesAsFarAsItMay) {
     }
 }
 
-TEST(SinCos, OfStagesAreTurnedNearbyAndTakenAfreshFurtherAway) {
+TEST(SinCos, OfStagesAreRotatedIfNearAndOtherwiseEvaluated) {
     using std::cos;
     using std::sin;
     using Column = Eigen::Matrix<double, 3, 1>;

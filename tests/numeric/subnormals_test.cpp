@@ -7,17 +7,17 @@
 namespace doppel {
 namespace subnormals_test {
 
-TEST(NoSubnormals, TakesThemForZeroAndOnlyWhileItLives) {
-    volatile double least = std::numeric_limits<double>::min(), tiny = std::numeric_limits<double>::denorm_min();
-    EXPECT_GT(least / 2, 0);
+TEST(NoSubnormals, TreatsThemAsZeroDuringItsLifetime) {
+    volatile double minimum = std::numeric_limits<double>::min(), tiny = std::numeric_limits<double>::denorm_min();
+    EXPECT_GT(minimum / 2, 0);
     {
         const NoSubnormals here;
-        volatile const double half = least / 2, sum = tiny + tiny, whole = least * 2;
+        volatile const double half = minimum / 2, sum = tiny + tiny, whole = minimum * 2;
         EXPECT_EQ(half, 0);
         EXPECT_EQ(sum, 0);
         EXPECT_GT(whole, 0);
     }
-    EXPECT_GT(least / 2, 0);
+    EXPECT_GT(minimum / 2, 0);
 }
 
 }  // namespace subnormals_test

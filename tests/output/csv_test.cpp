@@ -63,7 +63,7 @@ TEST(Csv, NumbersComeBackAsTheyWere) {
     }
 }
 
-TEST(Csv, WhatIsNotFiniteIsNeverWritten) {
+TEST(Csv, RefusesNumbersThatAreNotFinite) {
     Csv csv(fresh_folder() / "x.csv", {"time_s", "energy_J"});
     csv.add(0.0);
     csv.add(1.0);

@@ -84,7 +84,7 @@ bool is_yuv(const Kind& kind) {
     return kind.format == FilmFormat::mp4 || kind.format == FilmFormat::webm;
 }
 
-TEST(Encoder, SaysWhatLibavSays) {
+TEST(Encoder, ReportsLibavsErrors) {
     auto encoding = encoding_of({.size = tiny});
     encoding.encoder_options = {{"crf", "abc"}};
     Encoder encoder(fresh_folder() / "x.mp4", encoding, never_stopped);
@@ -191,7 +191,7 @@ TEST_P(Encoders, OnlyWhatChangedNeedsToBeTaken) {
     EXPECT_TRUE(all == areas);
 }
 
-TEST_P(Encoders, WhereverTheDiskIsFullItIsAnError) {
+TEST_P(Encoders, AFullDiskIsAlwaysAnError) {
     const Kind& kind = GetParam();
     const auto folder = fresh_folder();
     const auto path = folder / ("x" + extension(kind.format) + ".part");

@@ -54,7 +54,7 @@ TEST(Gif, TimesAreRoundedWithoutAddingUp) {
     }
 }
 
-TEST(Gif, WhatRestsKeepsItsColours) {
+TEST(Gif, UnchangedPixelsKeepTheirColours) {
     const auto path =
         film(fresh_folder() / "x.gif", {.format = FilmFormat::gif, .size = small, .fps_numerator = 50}, 20);
     Picture source, shown;
@@ -76,7 +76,8 @@ TEST(Gif, WhatRestsKeepsItsColours) {
     EXPECT_GT(colours.size(), 200u);
 }
 
-/// A square of one colour moves over others, and a line comes with it; only what changed is taken, the last frame rests.
+/// A square of one colour moves over others, and a line comes with it; only what changed is taken, the last frame
+/// rests.
 TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
     const auto path = fresh_folder() / "x.gif";
     Picture picture(small);

@@ -162,7 +162,7 @@ std::string chunk_of(const std::string& type, const std::string& content) {
 }
 
 // Room is made only for what a file can hold: stb_image alone took 2 GB for the first and 1 GB for the second.
-TEST(Png, BelievesNoLengthBeyondItsFile) {
+TEST(Png, RejectsLengthsBeyondTheFile) {
     const auto folder = fresh_folder();
     const auto path = folder / "x.png";
     write_png(path, noise({8, 8}, 5));

@@ -215,7 +215,7 @@ TEST(Publication, IsNotCompletedOverAFileThatSomebodyPutThere) {
     EXPECT_TRUE(is_new(contents(folder), expected_new));
 }
 
-TEST(Publication, IsNotForgottenWhereItsNoteCannotBeRead) {
+TEST(Publication, IsKeptIfItsNoteCannotBeRead) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
     const auto folder = after_old_run(quick.path / "folder");
@@ -264,7 +264,7 @@ TEST(Transaction, AFolderThatCannotBeMadeIsNamed) {
     watch_calls({});
 }
 
-TEST(Transaction, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
+TEST(Transaction, ALiveRunIsNotDisturbedWithoutLocks) {
     const auto folder = fresh_folder();
     const auto file = folder / ".doppel-run/x.csv";
     watch_calls([](const std::string& call) { return call == "flock" ? ENOLCK : 0; });
@@ -297,7 +297,7 @@ TEST(Transaction, WhereLocksAreUnknownALiveRunIsNotDisturbed) {
 }
 
 // pictures that compare is given may have any name
-TEST(Transaction, ANameOfSeveralLinesIsOneName) {
+TEST(Transaction, ANameWithLineBreaksIsOneName) {
     const auto folder = fresh_folder();
     write_bytes(folder / "x.csv", "somebody's");
     const std::string name = "y\nremove x.csv\npublish";

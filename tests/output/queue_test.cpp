@@ -15,12 +15,12 @@ using namespace std::chrono_literals;
 
 TEST(Queue, KeepsOrderAndBound) {
     Queue<int> queue(4);
-    std::atomic<int> pushed = 0, popped = 0, most = 0;
+    std::atomic<int> pushed = 0, popped = 0, maximum = 0;
     std::jthread giver([&] {
         for (int k = 0; k < 20'000; ++k) {
             queue.push(k);
             // pushed - popped is never less than what is in the queue, and at most one more: a pop not yet counted
-            most = std::max(most.load(), ++pushed - popped.load());
+            maximum = std::max(maximum.load(), ++pushed - popped.load());
         }
         queue.close();
     });
@@ -30,11 +30,11 @@ TEST(Queue, KeepsOrderAndBound) {
         ++popped;
     }
     EXPECT_EQ(expected, 20'000);
-    EXPECT_LE(most, 5);
-    EXPECT_GE(most, 1);
+    EXPECT_LE(maximum, 5);
+    EXPECT_GE(maximum, 1);
 }
 
-TEST(Queue, CloseWakesBothSides) {
+TEST(Queue, CloseWakesProducersAndConsumers) {
     Queue<int> full(1), empty(1);
     full.push(1);
     std::atomic<bool> refused = false, ended = false;
@@ -51,7 +51,7 @@ TEST(Queue, CloseWakesBothSides) {
     EXPECT_EQ(full.pop(), std::nullopt);
 }
 
-TEST(Queue, AbandonForgets) {
+TEST(Queue, AbandonDiscardsElements) {
     Queue<int> queue(2);
     queue.push(1);
     queue.abandon();
@@ -67,7 +67,7 @@ TEST(Workers, DoAllThatWasGiven) {
     EXPECT_EQ(sum, 1000 * 1001 / 2);
 }
 
-TEST(Workers, OneErrorStopsAllAndComesOut) {
+TEST(Workers, OneErrorStopsAllAndIsRethrown) {
     std::atomic<int> done = 0;
     Workers<int> workers(3, 2, [&](int k) {
         if (k == 10) throw std::runtime_error("ten");
@@ -78,7 +78,7 @@ TEST(Workers, OneErrorStopsAllAndComesOut) {
     EXPECT_THROW(workers.finish(), std::runtime_error);
 }
 
-TEST(Workers, DestroyedTheyDropWhatWaits) {
+TEST(Workers, DestroyedTheyDiscardTheQueue) {
     std::atomic<int> done = 0;
     {
         Workers<int> workers(1, 8, [&](int) {

@@ -140,10 +140,11 @@ TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {
         const auto whole_bytes = bytes_of_area(picture, all, format);
         for (int trial = 0; trial < 100; ++trial) {
             const int left = upto(size.width), top = upto(size.height);
-            const Rect asked{left, top, left + 1 + upto(size.width - left), top + 1 + upto(size.height - top)};
-            const Rect area = aligned(format, asked, size);
-            ASSERT_EQ(united(area, asked), area);
-            ASSERT_TRUE(asked.left - area.left < 2 && area.right - asked.right < 2 && asked.top - area.top < 2);
+            const Rect requested{left, top, left + 1 + upto(size.width - left), top + 1 + upto(size.height - top)};
+            const Rect area = aligned(format, requested, size);
+            ASSERT_EQ(united(area, requested), area);
+            ASSERT_TRUE(requested.left - area.left < 2 && area.right - requested.right < 2 &&
+                        requested.top - area.top < 2);
             const auto bytes = bytes_of_area(picture, area, format);
             const std::uint8_t *mine = bytes.data(), *plane = whole_bytes.data();
             for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {

@@ -141,7 +141,7 @@ TEST(Transaction, AFolderIsReplacedAsAWhole) {
     EXPECT_EQ(bytes_of(out / "frames/000000.png"), "picture");
 }
 
-TEST(Transaction, OneThatCannotBePublishedTakesTheOthersWithIt) {
+TEST(Transaction, AFailedPublicationLeavesAllFilesUnchanged) {
     const auto out = fresh_folder();
     {
         Transaction files(out / "a");
@@ -231,7 +231,7 @@ TEST(Transaction, KnowsWhatDoppelMadeByItsContentToo) {
     expect_error(ExitCode::io_failed, {"y.png"}, [&] { files.file("y.png"); });
 }
 
-TEST(Transaction, LeavesWhatSomebodyChangedButWhereForced) {
+TEST(Transaction, ReplacesChangedFilesOnlyIfForced) {
     const auto out = fresh_folder();
     write_bytes(out / "x.toml", "by Doppel");
     write_bytes(out / "record.json", R"({"doppel": {}, "files": {"x.toml": {"bytes": 9, "sha256": ")" +
@@ -247,7 +247,7 @@ TEST(Transaction, LeavesWhatSomebodyChangedButWhereForced) {
     Transaction(out).file("x.toml");
 }
 
-TEST(Transaction, LeavesFilesOfAnotherKindOfRunButWhereForced) {
+TEST(Transaction, ReplacesFilesOfAnotherKindOfRunOnlyIfForced) {
     const auto out = fresh_folder();
     write_bytes(out / "x.json", R"({"doppel": {}, "models": [], "files": {"x.csv": {}}})");
     write_bytes(out / "x.csv", "residuals");
@@ -337,7 +337,7 @@ TEST(Files, NamesAreInTheirOrder) {
     EXPECT_EQ(names_in(folder), names);
 }
 
-TEST(Transaction, HoldTheFolderForOneRunAtATime) {
+TEST(Transaction, LockTheFolderForOneRun) {
     const auto out = fresh_folder();
     const auto pid = std::to_string(getpid());
     {
@@ -353,7 +353,7 @@ TEST(Transaction, HoldTheFolderForOneRunAtATime) {
     Transaction(out / "a").file("y.csv");
 }
 
-TEST(Transaction, WhatAKilledRunLeftGoesWithTheNext) {
+TEST(Transaction, RemovesFilesOfAKilledRun) {
     const auto out = fresh_folder();
     write_bytes(out / "x.mp4.part", "somebody's");
     EXPECT_TRUE(killed_before(0, [&] {
@@ -374,7 +374,7 @@ TEST(Transaction, WhatAKilledRunLeftGoesWithTheNext) {
     EXPECT_EQ(listing(out), Names{"x.mp4.part"});
 }
 
-TEST(Transaction, WhatItsLockSaysReachesNoOtherFolder) {
+TEST(Transaction, ItsLockFileCannotNameAnotherFolder) {
     const auto out = fresh_folder();
     write_bytes(out / "x.csv", "mine");
     fs::create_directories(out / "a" / hidden);

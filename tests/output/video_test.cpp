@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr Size small{480, 270};
 
 // libav opens a file by its name, after it was made
-TEST(Video, IsWrittenThroughNoLinkThatTakesItsName) {
+TEST(Video, FollowsNoLinkWithItsName) {
     const auto folder = fresh_folder();
     for (const auto& [format, name] : {std::pair{FilmFormat::mp4, "x.mp4"},
                                        {FilmFormat::webm, "x.webm"},
@@ -92,14 +92,14 @@ TEST(Mp4, CanBeEnteredEveryFiveSeconds) {
         const auto times = key_times(path);
         ASSERT_FALSE(times.empty());
         EXPECT_EQ(times[0], 0);
-        const double most = std::max(5.0, 1 / fps);
-        for (std::size_t k = 1; k < times.size(); ++k) EXPECT_LE(times[k] - times[k - 1], most + 1e-9) << fps;
-        EXPECT_LE(double(frames) / fps - times.back(), most + 1e-9) << fps;
+        const double maximum = std::max(5.0, 1 / fps);
+        for (std::size_t k = 1; k < times.size(); ++k) EXPECT_LE(times[k] - times[k - 1], maximum + 1e-9) << fps;
+        EXPECT_LE(double(frames) / fps - times.back(), maximum + 1e-9) << fps;
     }
 }
 
 // The default's crf is veryfast's for the eye; the quantizers of ten bits are others.
-TEST(Mp4, LooksAlikeWithBothPresetsAndBothDepths) {
+TEST(Mp4, HasEqualQualityWithBothPresetsAndDepths) {
     const auto folder = fresh_folder();
     const auto noise_of = [&](const char* preset, PixelFormat pixels) {
         double sum = 0;
@@ -114,7 +114,7 @@ TEST(Mp4, LooksAlikeWithBothPresetsAndBothDepths) {
     EXPECT_NEAR(noise_of("doppel", PixelFormat::yuv420_10), ours, 3);
 }
 
-TEST(Mp4, WhereverTheDiskIsFullItIsAnError) {
+TEST(Mp4, AFullDiskIsAlwaysAnError) {
     const auto path = fresh_folder() / "x.mp4.part";
     const VideoOptions options{.size = small};
     const auto size = static_cast<long>(fs::file_size(film(path, options, 60)));
@@ -127,7 +127,7 @@ TEST(Mp4, WhereverTheDiskIsFullItIsAnError) {
     EXPECT_NO_THROW(film(path, options, 60));
 }
 
-TEST(Mp4, AnErrorOfTheEncodersThreadComesOutOfTake) {
+TEST(Mp4, TakeThrowsErrorsOfTheEncodersThread) {
     const auto path = fresh_folder() / "x.mp4.part";
     const auto sink = make_video_sink(path, {.size = small, .preset = "ultrafast"});
     const FullDisk full(100'000);

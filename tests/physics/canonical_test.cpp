@@ -76,7 +76,8 @@ Pendulum<Quad> unequal(std::size_t links) {
     return random_pendulum(random, links).cast<Quad>();
 }
 
-/// Calls check(form) for each model that has Hamilton's form: chains of points, and bodies, at rest in the room or driven.
+/// Calls check(form) for each model that has Hamilton's form: chains of points, and bodies, with a fixed or driven
+/// pivot.
 template <class Check>
 void for_each_form(const Check& check) {
     const auto named = [&](const char* name, auto form) {
@@ -147,7 +148,7 @@ TEST(Canonical, AsksForNoMemory) {
 /// The largest error of a turning angle on a walk whose steps are `step`, in units of ε.
 template <class Scalar>
 double error_of_turning(double step) {
-    NearbyAngle<Scalar> turning;
+    CachedSinCos<Scalar> turning;
     double worst = 0;
     Scalar angle(0.3);
     for (int i = 0; i < 1000; ++i) {
@@ -160,12 +161,12 @@ double error_of_turning(double step) {
     return worst;
 }
 
-TEST(NearbyAngle, IsSineAndCosineToRounding) {
+TEST(CachedSinCos, IsSineAndCosineToRounding) {
     for (const double step : {1.0, 1.2e-2, 1e-3, 1e-6}) {
         EXPECT_LT(error_of_turning<double>(step), 1.0) << step;       // measured 0.84
         EXPECT_LT(error_of_turning<Quad>(step * 1e-3), 1.6) << step;  // measured 0.75, against sines as rounded
     }
-    NearbyAngle<double> down;
+    CachedSinCos<double> down;
     EXPECT_EQ(down.at(0.0).sin, 0.0);
     EXPECT_EQ(down.at(0.0).cos, 1.0);
 }

@@ -86,7 +86,7 @@ TEST(Models, StagesReuseTheAnglesOfTheStep) {
     expect_stages_reuse_angles<AngleChain<double, Eigen::Dynamic>>(9);
 }
 
-TEST(Models, HangAndStandStillExactly) {
+TEST(Models, StayExactlyInEquilibrium) {
     const Pendulum<double> p{{1, 2, 3}, {1, 2, 0.5}, {0, 0, 0}, {0, 0, 0}, 9.8},
         two{{1, 2}, {1, 3}, {0, 0}, {0, 0}, 9.8};
     EXPECT_EQ(start_rate<DoublePendulum<double>>(two), (State<double, 4>::Zero()));

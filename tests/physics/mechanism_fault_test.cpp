@@ -16,7 +16,7 @@ using namespace counted;
 
 const std::string no_fault = "no error";
 
-std::string fault_of(const Assembly<double>& parts) {
+std::string error_of(const Assembly<double>& parts) {
     const auto [code, message] = test::thrown_by([&] { check(parts); });
     EXPECT_TRUE(code == ExitCode::bad_input || message == no_fault) << message;
     return message;
@@ -24,25 +24,25 @@ std::string fault_of(const Assembly<double>& parts) {
 
 struct BadPart {
     std::variant<Constraint<double>, Force<double>> part;
-    const char* fault;
+    const char* error;
 };
 
 /// Each in a loop of four bars: a sixth constraint, or the only force.
 void expect_faults(const std::vector<BadPart>& bad_parts) {
-    for (const auto& [part, fault] : bad_parts) {
+    for (const auto& [part, error] : bad_parts) {
         auto parts = four_bars();
         if (const auto* constraint = std::get_if<Constraint<double>>(&part)) parts.constraints.push_back(*constraint);
         if (const auto* force = std::get_if<Force<double>>(&part)) parts.forces = {*force};
-        EXPECT_EQ(fault_of(parts), fault);
+        EXPECT_EQ(error_of(parts), error);
     }
 }
 
 TEST(MechanismFault, OfParticles) {
-    EXPECT_EQ(fault_of({}), "the mechanism has no particles; it needs at least one");
+    EXPECT_EQ(error_of({}), "the mechanism has no particles; it needs at least one");
     const auto changed = [](auto change) {
         auto parts = four_bars();
         change(parts.particles);
-        return fault_of(parts);
+        return error_of(parts);
     };
     EXPECT_EQ(changed([](auto& p) { p[1].mass = 0; }), "particle 2: its mass is 0 kg; it must be greater than 0");
     EXPECT_EQ(changed([](auto& p) { p[2].place[1] = std::nan(""); }),
@@ -110,7 +110,7 @@ TEST(MechanismFault, OfRedundantConstraints) {
 TEST(MechanismFault, IsMeasuredByTheSizeOfTheMechanism) {
     for (const double size : {0.01, 1.0, 100.0}) {
         const auto off_by = [&](double share) {
-            return fault_of({.particles = {{1, P(0, -size * (1 + share)), P(0, 0)}},
+            return error_of({.particles = {{1, P(0, -size * (1 + share)), P(0, 0)}},
                              .constraints = {Rod<double>{one, P(0, 0), size}},
                              .forces = {}});
         };
@@ -122,17 +122,17 @@ TEST(MechanismFault, IsMeasuredByTheSizeOfTheMechanism) {
 TEST(MechanismFault, OfAStartThatLeavesTheConstraints) {
     auto parts = four_bars();
     parts.particles[0].velocity = P(0, 0.5);
-    EXPECT_EQ(fault_of(parts),
+    EXPECT_EQ(error_of(parts),
               "constraint 1 (anchor of particle 1): the start violates it at 0.5 m/s; start particle 1 "
               "at (0, 0) m/s");
     // the particle that is named is the constraint's
     parts = {.particles = {{1, P(0, 0)}, {1, P(3, 4), P(5, 0)}},
              .constraints = {Rod<double>{two, P(0, 0), 5}},
              .forces = {}};
-    EXPECT_EQ(fault_of(parts),
+    EXPECT_EQ(error_of(parts),
               "constraint 1 (rod 2–fixed): the start violates it at 3 m/s; start particle 2 at (3.2, -2.4) m/s");
     parts.particles[1].velocity = P(3.2, -2.4);
-    EXPECT_EQ(fault_of(parts), no_fault);
+    EXPECT_EQ(error_of(parts), no_fault);
 }
 
 /// A parallelogram of cranks of 1 m and a coupler of 2 m that swings through the place where all three lie in a line:
@@ -164,7 +164,7 @@ TEST(MechanismFault, OfASingularConfigurationHoweverLongTheSteps) {
     EXPECT_NEAR(model.energy(after(model, slower, 20000, 5e-4)), start, 3e-9);  // measured 5e-10
 }
 
-TEST(MechanismFault, OfAMotionThatBlowsUp) {
+TEST(MechanismFault, OfAMotionThatDiverges) {
     auto parts = four_bars();
     parts.forces.push_back(Spring<double>{two, P(0, 2), 1e9, 0.5});
     Mechanism<double> model(parts);
@@ -173,7 +173,7 @@ TEST(MechanismFault, OfAMotionThatBlowsUp) {
     EXPECT_NE(message.find("the motion diverged; use a smaller step"), std::string::npos) << message;
 }
 
-TEST(MechanismFault, OfRodsThatAStepHasTorn) {
+TEST(MechanismFault, OfRodsWithLargeErrors) {
     // two hinged rods are never singular; so far out that both ends are one, the second has no direction left
     const Pendulum<double> p{{1, 1}, {1, 1}, {1, 2}, {0, 0}, 9.8};
     const auto parts = parts_of(p);
@@ -186,9 +186,9 @@ TEST(MechanismFault, OfRodsThatAStepHasTorn) {
                             "2.2e+20 times the longest rod: the motion diverged; use a smaller step"}));
 }
 
-TEST(MechanismFault, OfNothingAtAStartThatIsMet) {
+TEST(MechanismFault, IsNotReportedForAValidStart) {
     // what rounding leaves at the start of a bead at the origin is measured by where its slot is
-    EXPECT_EQ(fault_of({.particles = {{1, P(0, 0)}},
+    EXPECT_EQ(error_of({.particles = {{1, P(0, 0)}},
                         .constraints = {SlotLine<double>{one, P(0.1, 0.3), P(1, 3)}},
                         .forces = {Gravity<double>{}}}),
               no_fault);

@@ -65,10 +65,10 @@ TEST(Mechanism, DampedSpringDecaysAsItShould) {
     EXPECT_NEAR((y.segment<2>(2) - y.segment<2>(0)).norm(), expected, 3e-12);  // measured 5e-13
     EXPECT_NEAR((y.segment<2>(4) + 3 * y.segment<2>(6)).norm(), 0, 3e-15);     // momentum; measured 4.2e-16
     EXPECT_FALSE(parts.conserves_energy());
-    EXPECT_TRUE(model.feels_velocity());
+    EXPECT_TRUE(model.depends_on_velocity());
     parts.forces = {Spring<double>{one, two, 8, 1.25}};
     EXPECT_TRUE(parts.conserves_energy());
-    EXPECT_FALSE(Mechanism<double>(parts).feels_velocity());
+    EXPECT_FALSE(Mechanism<double>(parts).depends_on_velocity());
 }
 
 TEST(Mechanism, AttractionKeepsACircularOrbit) {
@@ -91,7 +91,7 @@ Assembly<S> beside_a_droplet() {
             .forces = {Gravity<S>{}, Droplet<S>{At<S>(S(1609), S(0)), S(34) / S(1000000)}}};
 }
 
-TEST(Mechanism, DropletIsFeltInQuadAndOnlyThere) {
+TEST(Mechanism, DropletHasAnEffectOnlyInQuad) {
     // G M / r² = 6.674e-11 · 3.4e-5 / 1609²
     const auto dydt = rate_at_start(beside_a_droplet<Quad>());
     const Quad expected = parse_quad("6.674e-11") * parse_quad("3.4e-5") / (Quad(1609) * Quad(1609));
@@ -164,7 +164,7 @@ TEST(Mechanism, ErrorsOfASlotAreDistancesFromIt) {
     }
 }
 
-TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
+TEST(Mechanism, SolvesForMultipliersBetweenTwoPositions) {
     // J(q1) M⁻¹ Jᵀ(q0) x, put together by pull() and constraint_velocity(), must come back as x
     auto parts = four_bars();
     parts.particles.push_back({1, P(1.5, 2)});  // braced: the matrix fills up as it is factored
@@ -179,7 +179,7 @@ TEST(Mechanism, SolvesForPullsAcrossTwoPlaces) {
         for (auto& c : q1) c += number(random);
         for (auto& c : x) c = number(random);
         v.setZero();
-        model.pull(q0, x, v);
+        model.apply_multipliers(q0, x, v);
         model.constraint_velocity(q1, v, image);
         model.solve(q1, q0, image);
         EXPECT_LT((image - x).norm(), 2e-15);  // measured 4e-16
@@ -203,7 +203,7 @@ TEST(Mechanism, StepsWithoutAllocating) {
     model.residual(q, c);
     model.constraint_velocity(q, v, c);
     model.jdot_v(q, v, c);
-    model.pull(q, c, v);
+    model.apply_multipliers(q, c, v);
     model.solve(q, q, c);
     EXPECT_EQ(allocations() - before, 0);
 }

@@ -77,7 +77,7 @@ TEST(PhysicalChain, AJointIsHeldThatIsHeldWhileAnotherSlides) {
     EXPECT_NEAR(alpha[0], (3 - 3 * 9.8 * std::sin(pi / 3)) / 5, 1e-14);  // measured 0
 }
 
-TEST(PhysicalChain, AJointThatHasTurnedRoundComesToRestWhereItCanBeHeld) {
+TEST(PhysicalChain, AReversingJointIsHeldIfFrictionAllows) {
     auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {0.3, 0.2}, {1e-3, 0}});
     p.friction.coulomb = {10, 5};
     Chain chain(p);

@@ -22,14 +22,15 @@ PhysicalPendulum<Scalar> bodies(std::size_t links) {
     return p.template cast<Scalar>();
 }
 
-/// The same with viscous friction, drag on links and ends, a motor at the first and the last joint, and a pivot that moves.
+/// The same with viscous friction, drag on links and ends, a motor at the first and the last joint, and a pivot that
+/// moves.
 template <class Scalar>
 PhysicalPendulum<Scalar> driven_bodies(std::size_t links) {
     auto p = bodies<double>(links);
     for (std::size_t i = 0; i < links; ++i) {
         const auto k = static_cast<double>(i);
         p.friction.viscous.push_back(0.125 + 0.0625 * k);
-        p.friction.arm_linear.push_back(0.03125 * (k + 1));
+        p.friction.link_linear.push_back(0.03125 * (k + 1));
         p.friction.drag_linear.push_back(0.0625 + 0.03125 * k);
         p.friction.drag_quadratic.push_back(0.09375 - 0.015625 * k);
     }

@@ -43,10 +43,10 @@ TEST(Tension, OfAChainInLineIsTheWeightBelow) {
     expect_near(in_parts(parts_of(upright)), {-3 * 9.8, -2 * 9.8}, 1e-13);
 }
 
-double greatest(const Forces& forces) {
-    double most = 0;
-    for (const double force : forces) most = std::max(most, std::abs(force));
-    return most;
+double largest(const Forces& forces) {
+    double maximum = 0;
+    for (const double force : forces) maximum = std::max(maximum, std::abs(force));
+    return maximum;
 }
 
 TEST(Tension, AndWeightGiveEachBobItsAcceleration) {
@@ -61,18 +61,18 @@ TEST(Tension, AndWeightGiveEachBobItsAcceleration) {
                 P sum = P(0, -p.mass[k] * p.gravity) - forces[k] * along(k);
                 if (k + 1 < links) sum += forces[k + 1] * along(k + 1);
                 const P expected = p.mass[k] * accelerations[k];
-                EXPECT_LT((sum - expected).norm(), 7e-14 * greatest(forces)) << links;  // measured 1e-14 of it
+                EXPECT_LT((sum - expected).norm(), 7e-14 * largest(forces)) << links;  // measured 1e-14 of it
             }
         }
 }
 
-TEST(Tension, IsTheSameOfEveryModel) {
+TEST(Tension, IsTheSameForEveryModel) {
     std::mt19937 random(11);
     for (const std::size_t links : {1u, 2u, 3u, 8u})
         for (int i = 0; i < 100; ++i) {
             const auto p = random_pendulum(random, links);
             const auto expected = in_angles(p);
-            const double tolerance = 1e-12 * greatest(expected);  // measured 1.4e-15 of it
+            const double tolerance = 1e-12 * largest(expected);  // measured 1.4e-15 of it
             expect_near(in_parts(parts_of(p)), expected, tolerance);
             AngleChain<double, Eigen::Dynamic> chain(p);
             auto dydt = released_in_angles<double, Eigen::Dynamic>(p);

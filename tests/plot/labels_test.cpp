@@ -48,7 +48,7 @@ TEST_F(LabelTest, IsTheSameWhereverItsPixelsLie) {
     }
 }
 
-TEST_F(LabelTest, KeepsToItsSideOfTheAnchor) {
+TEST_F(LabelTest, IsAlignedToItsAnchor) {
     const float width = text_width("Hello H", 24);
     const Rect left = extent(drawn(label("Hello H", {200, 50}, 24)));
     const Rect center = extent(drawn(label("Hello H", {200 + width / 2, 50}, 24, Weight::regular, Align::center)));
@@ -66,7 +66,7 @@ TEST_F(LabelTest, BoldIsHeavierButNotAnotherText) {
     EXPECT_GT(text_width("Runge", 30, Weight::bold), text_width("Runge", 30));
 }
 
-TEST_F(LabelTest, WhatIsMissingShowsAsABox) {
+TEST_F(LabelTest, MissingGlyphsShowAsABox) {
     const Picture box = drawn(label("日", {20, 50}, 30));
     EXPECT_GT(ink(box).area, 50);
     EXPECT_EQ(box.at(30, 40)[0], 0) << "the box is hollow";

@@ -27,7 +27,7 @@ Picture drawn_by_cairo(const DisplayList& list) {
 
 struct Difference {
     double mean = 0;  // of 255, over all samples
-    int most = 0;
+    int maximum = 0;
 };
 
 Difference difference(const DisplayList& list) {
@@ -38,7 +38,7 @@ Difference difference(const DisplayList& list) {
     for (std::size_t i = 0; i < gl.rgba.size(); ++i) {
         const int off = std::abs(gl.rgba[i] - cairo.rgba[i]);
         found.mean += off / static_cast<double>(gl.rgba.size());
-        found.most = std::max(found.most, off);
+        found.maximum = std::max(found.maximum, off);
     }
     return found;
 }
@@ -67,8 +67,8 @@ TEST(Page, ShapesAreAsOpenGlDrawsThem) {
         {"ring", Ring{{110, 75}, 50, 3, ink}},
         {"stroke", Stroke{{{{20, 120}, 1, 1, 1, 8}, {{150, 60}, 1, 1, 1, 0}, {{220, 130}}}, 4, ink}}};
     for (const auto& [name, item] : items) {
-        const auto [mean, most] = difference(on_white(item));
-        EXPECT_LE(most, 40) << name;
+        const auto [mean, maximum] = difference(on_white(item));
+        EXPECT_LE(maximum, 40) << name;
         EXPECT_LE(mean, 0.12) << name;
     }
 }
@@ -102,9 +102,9 @@ TEST(Page, TextIsWhereOpenGlWritesIt) {
 }
 
 TEST(Page, GlowsFallOffAsOpenGlDrawsThem) {
-    const auto [mean, most] = difference(on_white(Capsule{{100, 80}, {100, 80}, 20, rgb(0xff8000), 24}));
-    EXPECT_LE(most, 27);   // at the edges of the six rings; measured 18
-    EXPECT_LE(mean, 0.2);  // measured 0.12
+    const auto [mean, maximum] = difference(on_white(Capsule{{100, 80}, {100, 80}, 20, rgb(0xff8000), 24}));
+    EXPECT_LE(maximum, 27);  // at the edges of the six rings; measured 18
+    EXPECT_LE(mean, 0.2);    // measured 0.12
 }
 
 TEST(Page, LinesAreDashedCutAndFilled) {

@@ -77,8 +77,9 @@ TEST(Plot, AxesThatDifferAreNotShared) {
 
 TEST(Plot, CurvesOnSharedAxesHaveOneRange) {
     Figure figure{.columns = 2, .shares_axes = true};
-    for (const double most : {3.0, 40.0})
-        figure.panels.push_back({.x = {.label = "x"}, .y = {.label = "y"}, .curves = {{.x = {0, 1}, .y = {0, most}}}});
+    for (const double maximum : {3.0, 40.0})
+        figure.panels.push_back(
+            {.x = {.label = "x"}, .y = {.label = "y"}, .curves = {{.x = {0, 1}, .y = {0, maximum}}}});
     auto words = words_in(composed(figure, size, light));
     EXPECT_EQ(words["y"], 1);
     EXPECT_EQ(words["40"], 1);

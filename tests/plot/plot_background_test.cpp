@@ -28,7 +28,7 @@ Figure level_line(Background background) {
     return {.panels = {plot}};
 }
 
-TEST(Plot, AGroundIsPaleAndHasNoWords) {
+TEST(Plot, ABackgroundIsPaleAndHasNoLabel) {
     const auto pale = [](Color color, float share) { return mixed(light.background, color, share); };
     const auto band = composed(level_line(Background::band), size, light);
     EXPECT_EQ(words_in(band).count("background"), 0u);
@@ -53,7 +53,7 @@ Figure fan(int count) {
     return {.panels = {plot}};
 }
 
-TEST(Plot, WordsOfManyCurvesStandUponThem) {
+TEST(Plot, LabelsOfManyCurvesAreOnTheCurves) {
     constexpr int count = 16;
     const auto list = composed(fan(count), size, light);
     const auto words = words_in(list);
@@ -121,7 +121,7 @@ TEST(Plot, ARuleOverAMapIsSeenOnAllColors) {
     EXPECT_GT(upright[1]->dash, 0);
 }
 
-TEST(Plot, AMarkAmongManyCurvesIsLedTo) {
+TEST(Plot, AMarkAmongManyCurvesHasALeaderLine) {
     auto figure = fan(12);
     auto& curves = figure.panels[0].curves;
     figure.panels[0].y.high = 2;

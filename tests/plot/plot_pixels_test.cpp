@@ -118,7 +118,7 @@ TEST(Plot, CurvesAreCutAtThePanel) {
     EXPECT_NEAR(cut.right, std::lerp(area.left, area.right, 2 / 3.0f), 0.01f);
 }
 
-TEST(Plot, ManyPointsAreThinnedWithoutATrace) {
+TEST(Plot, ReducingManyPointsDoesNotChangeThePicture) {
     Figure dense, sparse;
     dense.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = -2, .high = 2}}};
     Curve wave{.hue = 1};

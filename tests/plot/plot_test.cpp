@@ -53,7 +53,7 @@ void expect_legible(const Page& page, float slack = 0.01f) {
     }
 }
 
-TEST(Plot, WordsNeverTouchAndNeverLeaveThePicture) {
+TEST(Plot, TextsNeverOverlapOrLeaveThePicture) {
     int number = 0;
     for (const Figure& figure : all_figures()) {
         for (const Size size : {Size{480, 270}, {800, 600}, {1280, 720}, {1600, 900}, {900, 1600}}) {
@@ -64,7 +64,7 @@ TEST(Plot, WordsNeverTouchAndNeverLeaveThePicture) {
     }
 }
 
-TEST(Plot, WordsNeverTouchWhateverTheCurvesDo) {
+TEST(Plot, TextsNeverOverlapForAnyCurves) {
     std::mt19937 random(11);
     const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
     for (int trial = 0; trial < 150; ++trial) {
@@ -119,7 +119,7 @@ TEST(Plot, ScaleTwoDoublesEveryLength) {
     }
 }
 
-TEST(Plot, NamesAllThatIsNamed) {
+TEST(Plot, LabelsAllNamedCurves) {
     auto words = words_in(composed(sweep(), {1600, 900}, light));
     for (const char* text :
          {"Chaos sets in near 63°", "by release angle", "Explicit Euler.", "exponent", "parted", "to compare with",
@@ -145,7 +145,7 @@ TEST(Plot, SaysWhatCannotBeDrawn) {
     EXPECT_THROW(compose(sweep(), {480, 270}, light, 0), Error);
 }
 
-TEST(Plot, SaysWhatItHasNoRoomFor) {
+TEST(Plot, ReportsTextsLeftOut) {
     const Figure figure{.title = "title", .subtitle = "subtitle", .panels = sweep().panels, .captions = {"caption"}};
     EXPECT_TRUE(compose(figure, {1600, 900}, light).notes.empty());
     using Notes = std::vector<std::string>;
@@ -160,10 +160,10 @@ TEST(Plot, TextOnPaperIsAsHighAsAskedFor) {
     // 8.6 cm where labels of 20 px are 8 pt: 609 px; its height as of 16:9
     const auto page = compose(sweep(), {609, 343}, light, 1, 1.0f);
     EXPECT_EQ(page.scale, 1);
-    float least = 1e9f;
+    float minimum = 1e9f;
     for (const auto& item : page.items)
-        if (const auto* label = std::get_if<Label>(&item)) least = std::min(least, label->size);
-    EXPECT_GE(least, 0.72f * 20 - 0.01f);  // the name of a grey curve, where room is short; all else is larger
+        if (const auto* label = std::get_if<Label>(&item)) minimum = std::min(minimum, label->size);
+    EXPECT_GE(minimum, 0.72f * 20 - 0.01f);  // the name of a grey curve, where room is short; all else is larger
 }
 
 TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {

@@ -65,7 +65,7 @@ Axis any_axis(std::mt19937& random, int trial, bool logarithmic) {
     return axis;
 }
 
-TEST(ChartTicks, AreSoundOverAnyRange) {
+TEST(ChartTicks, AreValidForAnyRange) {
     std::mt19937 random(2026);
     for (int trial = 0; trial < 8000; ++trial) {
         const bool logarithmic = trial % 2 == 1;
@@ -111,7 +111,7 @@ TEST(ChartTicks, ReadAsPeopleWrite) {
     EXPECT_EQ(texts({0.1, 2, 0, 400, true}), (Texts{"0.1", "0.2", "0.5", "1", "2"}));
 }
 
-TEST(ChartTicks, DegradeWhereNothingCanBeTold) {
+TEST(ChartTicks, AreFewWhereValuesCannotBeDistinguished) {
     EXPECT_TRUE(texts({1, 1, 0, 300}).empty());
     EXPECT_TRUE(texts({1e10, 1e10 + 1e-300, 0, 300}).empty());
     EXPECT_TRUE(texts({0, 1, 0, 0}).empty());
@@ -120,7 +120,7 @@ TEST(ChartTicks, DegradeWhereNothingCanBeTold) {
     EXPECT_GE(texts({1e10, 1e10 + 1e-3, 0, 300}).size(), 2u);
 }
 
-TEST(Axis, MapsItsEndsAndKeepsToThem) {
+TEST(Axis, MapsAndClampsToItsEnds) {
     const Axis inverted{10, -10, 100, 300}, decades{1e-300, 1e300, 0, 600, true}, huge{-1.7e308, 1.7e308, 0, 2};
     EXPECT_FLOAT_EQ(inverted.at(10), 100);
     EXPECT_FLOAT_EQ(inverted.at(-5), 250);
@@ -159,7 +159,7 @@ TEST(ChartTicks, OfAFewDecadesAreEnoughToReadValuesBy) {
 TEST(AxisItems, HaveNumbersInTheMarginAndTheirUnitAfterTheLast) {
     const Axis time{0, 30, 40, 560};
     const Area area{40, 10, 560, 200}, within{0, 0, 600, 240};
-    AxisLook look{.edge = AxisLook::Edge::bottom, .em = 20, .unit = " s"};
+    AxisStyle look{.edge = AxisStyle::Edge::bottom, .em = 20, .unit = " s"};
     const auto ticks = spaced_ticks(time, true, 20);
     const auto last_of = [&](const Area& around) {
         std::string text;

@@ -127,7 +127,7 @@ TEST(Gl, GoInAnyOrder) {
     }
 }
 
-TEST(Gl, BothDrawAtOnceInTwoThreads) {
+TEST(Gl, BothDrawInTwoThreadsAtTheSameTime) {
     const auto list = rich_list(0), other = rich_list(1);
     const std::array alone{drawn(osmesa_or_egl(), list).rgba, drawn(Gl::egl, list).rgba};
     std::array<int, 2> same{};

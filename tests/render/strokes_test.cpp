@@ -26,11 +26,11 @@ TEST(Stroke, IsAsOpaqueAtItsJointsAndCrossingsAsElsewhere) {
         points.push_back({80 + 30 * std::sin(2 * angle), 60 + 30 * std::cos(3 * angle)});
     }
     const Picture picture = drawn(size, {stroke(points, 9, white.with_alpha(0.4f))});
-    int most = 0;
+    int maximum = 0;
     for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) most = std::max<int>(most, picture.at(x, y)[0]);
+        for (int x = 0; x < size.width; ++x) maximum = std::max<int>(maximum, picture.at(x, y)[0]);
     }
-    EXPECT_EQ(most, 102);  // 0.4 · 255
+    EXPECT_EQ(maximum, 102);  // 0.4 · 255
     EXPECT_EQ(picture.at(80, 60)[0], 102);
     EXPECT_EQ(picture.at(138, 98)[0], 102);
     EXPECT_EQ(picture.at(140, 60)[0], 102);
@@ -94,10 +94,11 @@ TEST(Stroke, FollowsACircleInFewPieces) {
         const Stroke pieces = in_pieces(stroke(points, 4));
         EXPECT_LE(pieces.vertices.size(), 17u);  // measured 15; straight ones come to 64
         const Picture bent = drawn(size, {pieces}), round = drawn(size, {Ring{{80, 60}, 50, 4, white}});
-        int most = 0;
+        int maximum = 0;
         for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x) most = std::max(most, std::abs(bent.at(x, y)[0] - round.at(x, y)[0]));
-        EXPECT_LE(most, 20);  // measured 11: 0.04 px
+            for (int x = 0; x < size.width; ++x)
+                maximum = std::max(maximum, std::abs(bent.at(x, y)[0] - round.at(x, y)[0]));
+        EXPECT_LE(maximum, 20);  // measured 11: 0.04 px
     }
 }
 
@@ -127,7 +128,7 @@ TEST(Stroke, KeepsItsCornersAndJoints) {
     EXPECT_EQ(next_piece(line, 0, Bends::no).last, 1u);
 }
 
-TEST(Stroke, ChangesItsLooksOnTheSpotAtTwoJoints) {
+TEST(Stroke, ChangesItsStyleAtOnceAtTwoJoints) {
     Stroke step{.vertices = {{{20, 60}, 0.2f}, {{50, 60}, 0.2f}, {{80, 60}, 0.2f}}, .width = 20, .color = white};
     for (const float x : {80.f, 110.f, 140.f}) step.vertices.push_back({{x, 60}, 0.8f});
     for (auto& vertex : step.vertices) vertex.joint = true;
@@ -160,7 +161,7 @@ TEST(Stroke, GlowsBeyondItsEdge) {
     }
 }
 
-TEST(Stroke, LeavesOthersAndTheBackdropAlone) {
+TEST(Stroke, DoesNotChangeOthersOrTheBackdrop) {
     const Color color = rgb(0x4fb0ff);
     const Picture picture =
         drawn(size, {filled(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});

@@ -14,10 +14,10 @@ using Lines = std::vector<std::string>;
 Lines faults_of(const std::string& text, const std::vector<std::string>& arguments = {}) {
     try {
         read_preset({"x", "x.toml", text, "x.toml"}, sets(arguments));
-    } catch (const Error& fault) {
-        EXPECT_EQ(fault.code(), ExitCode::bad_input);
-        Lines lines{fault.what()};
-        lines.insert(lines.end(), fault.further().begin(), fault.further().end());
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::bad_input);
+        Lines lines{error.what()};
+        lines.insert(lines.end(), error.further().begin(), error.further().end());
         for (auto& line : lines)
             if (line.starts_with("x.toml:")) line.erase(0, 7);
         return lines;
@@ -30,8 +30,8 @@ Lines starts(Lines lines, std::size_t letters) {
     return lines;
 }
 
-TEST(AllFaults, StandInTheOrderOfTheFileAndThenOfTheCommandLine) {
-    const auto faults = faults_of(R"([video]
+TEST(AllFaults, AreInTheOrderOfFileAndThenCommandLine) {
+    const auto errors = faults_of(R"([video]
 fps = -2
 theme = "blue"
 sise = [64, 64]
@@ -56,15 +56,15 @@ mas_kg = 3
         "--set video.hold_end_s: [video] hold_end_s must be ≥ 0; it is -1",
         R"(--set a.lable: [a] has no "lable"; did you mean "label"?)",
         R"(--set video.fps: [video] fps must be a number or a fraction such as "1/30000"; it is "fast")"};
-    EXPECT_EQ(faults, expected);
+    EXPECT_EQ(errors, expected);
 }
 
 /// Neither is wrong where the key beside it is right.
-TEST(AllFaults, LeaveOutWhatMayFollowFromAnother) {
+TEST(AllFaults, OmitErrorsThatAnotherMayCause) {
     const auto alone = [](const std::string& text) {
-        const auto faults = faults_of(text);
-        EXPECT_EQ(faults.size(), 1u) << text << testing::PrintToString(faults);
-        return faults.empty() ? "" : faults.front();
+        const auto errors = faults_of(text);
+        EXPECT_EQ(errors.size(), 1u) << text << testing::PrintToString(errors);
+        return errors.empty() ? "" : errors.front();
     };
     EXPECT_EQ(alone("[system]\nlinks = \"3\"\nmass_kg = [1, 2, 3]").substr(0, 19), "2:1: [system] links");
     EXPECT_EQ(alone("[system]\nlinsk = 3\nmass_kg = [1, 2, 3]").substr(0, 17), "2:1: [system] has");
@@ -82,7 +82,7 @@ TEST(AllFaults, LeaveOutWhatMayFollowFromAnother) {
 }
 
 /// The key that decides is there, and right. Where two do not go with it, it may be the one that is wrong.
-TEST(AllFaults, TellThoseOfSeveralKeysBesideOthers) {
+TEST(AllFaults, IncludeErrorsOfSeveralKeys) {
     EXPECT_EQ(starts(faults_of("[system]\nlinks = 3\nmass_kg = [1, 2]\nfoo = 1\nlength_m = [1]"), 20),
               (Lines{"3:1: [system] mass_k", "4:1: [system] has no"}));
     EXPECT_EQ(starts(faults_of("[video]\nformat = \"mp4\"\ncrf = 60\ncodec = \"av1\"\nfps = 0"), 18),
@@ -93,14 +93,14 @@ TEST(AllFaults, TellThoseOfSeveralKeysBesideOthers) {
               (Lines{"2:1: [a] links m", "4:1: [video] siz"}));
 }
 
-TEST(AllFaults, AreToldOnceAndUpToTwenty) {
+TEST(AllFaults, AreReportedOnceAndAtMostTwenty) {
     std::string text = "[video]\n";
     for (int i = 0; i < 23; ++i) text += "key" + std::to_string(i) + " = 1\n";
-    const auto faults = faults_of(text + "size = 3\n[video.fonts]\ntext = 1\n");
-    ASSERT_EQ(faults.size(), 21u);
-    EXPECT_TRUE(faults[0].starts_with("2:1: [video] has no \"key0\"")) << faults[0];
-    EXPECT_TRUE(faults[19].starts_with("21:1: [video] has no \"key19\"")) << faults[19];
-    EXPECT_EQ(faults[20], "and 5 more");
+    const auto errors = faults_of(text + "size = 3\n[video.fonts]\ntext = 1\n");
+    ASSERT_EQ(errors.size(), 21u);
+    EXPECT_TRUE(errors[0].starts_with("2:1: [video] has no \"key0\"")) << errors[0];
+    EXPECT_TRUE(errors[19].starts_with("21:1: [video] has no \"key19\"")) << errors[19];
+    EXPECT_EQ(errors[20], "and 5 more");
     EXPECT_EQ(faults_of("[video.fonts]\ntext = 1\n").size(), 1u);
 }
 

@@ -12,13 +12,13 @@
 namespace doppel {
 namespace captions_test {
 
-TEST(Captions, RoundWhatWasMeasuredOnce) {
-    EXPECT_EQ(roughly(0.1234), "0.12");
-    EXPECT_EQ(roughly(1.26), "1.3");
-    EXPECT_EQ(roughly(9.96), "10");
-    EXPECT_EQ(roughly(96.4), "96");
-    EXPECT_EQ(roughly(223456), "220 000");
-    EXPECT_EQ(roughly(2345), "2300");
+TEST(Captions, RoundSingleMeasurements) {
+    EXPECT_EQ(two_digits(0.1234), "0.12");
+    EXPECT_EQ(two_digits(1.26), "1.3");
+    EXPECT_EQ(two_digits(9.96), "10");
+    EXPECT_EQ(two_digits(96.4), "96");
+    EXPECT_EQ(two_digits(223456), "220 000");
+    EXPECT_EQ(two_digits(2345), "2300");
     EXPECT_EQ(scientific(523), "520");
     EXPECT_EQ(scientific(0.1), "0.1");
     EXPECT_EQ(scientific(1234), "1.2 × 10³");
@@ -26,7 +26,7 @@ TEST(Captions, RoundWhatWasMeasuredOnce) {
     EXPECT_EQ(grouped(30000), "30 000");
 }
 
-TEST(Captions, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
+TEST(Captions, StateTheDifferenceOfASideAsFarAsItFits) {
     const auto few = side_captions(scene_of("butterfly"));
     EXPECT_EQ(few[0].heading, "θ₁ = 90°");
     EXPECT_EQ(few[0].note, "θ₂ = 90°");
@@ -36,7 +36,7 @@ TEST(Captions, OfASideTellWhatSetsItApartAndNoMoreThanFits) {
     EXPECT_EQ(many[1].note, "ω₂ = 2°/s, m₁ = 3 kg, m₂ = 4 kg, …");
 }
 
-TEST(Captions, AreThoseOfThePresetWhereItHasSome) {
+TEST(Captions, AreThePresetsIfItSetsThem) {
     const auto own = scene_of("butterfly", {"a.label=\"left\"", "b.note=\"\"", "subtitle=\"by me\""});
     EXPECT_EQ(scene_caption(own), "by me");
     const auto sides = side_captions(own);
@@ -52,12 +52,13 @@ TEST(Captions, AreThoseOfThePresetWhereItHasSome) {
     EXPECT_EQ(again.subtitle, "by me");
     EXPECT_NE(error_of([&] { scene_of("butterfly", {"system.label=\"x\""}); }).second.find("[system] has no \"label\""),
               std::string::npos);
-    EXPECT_NE(
-        error_of([&] { scene_of("butterfly", {"b.label=\"\xcd\xb8\""}); }).second.find("[b] label holds \"\xcd\xb8\""),
-        std::string::npos);
+    EXPECT_NE(error_of([&] {
+                  scene_of("butterfly", {"b.label=\"\xcd\xb8\""});
+              }).second.find("[b] label contains \"\xcd\xb8\""),
+              std::string::npos);
 }
 
-TEST(Captions, OfAnAccuracyNameNoToleranceThatItChose) {
+TEST(Captions, OfAnAccuracyOmitTheChosenTolerance) {
     // the sides are 10⁻¹² degrees apart, and each gets a tolerance of its own
     const auto scene = scene_of("horizon", {"scene.duration_s=5"});
     for (const auto& side : side_captions(scene)) {
@@ -68,7 +69,7 @@ TEST(Captions, OfAnAccuracyNameNoToleranceThatItChose) {
     // one that the preset names is said
     const auto given = side_captions(scene_of(
         "butterfly", {"system.integrator=\"taylor\"", "a.tolerance=1e-9", "b.tolerance=1e-12", "b.angle_deg=90"}));
-    EXPECT_EQ(given[0].heading, "tolerance 1e-09");
+    EXPECT_EQ(given[0].heading, "tolerance 10⁻⁹");
     // so are two accuracies
     const auto two = side_captions(scene_of("horizon", {"scene.duration_s=2", "a.accuracy=1e-3", "b.angle_deg=90"}));
     EXPECT_EQ(two[0].heading, "accuracy 0.001 rad");
@@ -174,16 +175,16 @@ TEST(Resolved, KeepsTheRangeOfEveryStripAndTheColoursOfTheSides) {
     }
 }
 
-TEST(Words, OfAValueInAnErrorAreCut) {
-    const auto fault = [](std::size_t letters) {
+TEST(Words, OfLongValuesInErrorsAreShortened) {
+    const auto error = [](std::size_t letters) {
         return error_of([&] {
                    read_preset({"x", "x.toml", "[system]\nlinks = \"" + std::string(letters, 'y') + "\"", "x.toml"});
                })
             .second;
     };
     // 60 with its quotes
-    EXPECT_TRUE(fault(58).ends_with("it is a string (\"" + std::string(58, 'y') + "\")")) << fault(58);
-    EXPECT_TRUE(fault(59).ends_with("it is a string (\"" + std::string(58, 'y') + "…)")) << fault(59);
+    EXPECT_TRUE(error(58).ends_with("it is a string (\"" + std::string(58, 'y') + "\")")) << error(58);
+    EXPECT_TRUE(error(59).ends_with("it is a string (\"" + std::string(58, 'y') + "…)")) << error(59);
 }
 
 }  // namespace captions_test

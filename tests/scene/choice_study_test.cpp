@@ -18,22 +18,22 @@ const std::atomic<bool> never = false;
 
 /// CPU time of a run up to `last`, s: the least of several. Infinite where the method breaks down.
 double seconds_of_run(const MotionSpec& motion, long last) {
-    double least = INFINITY, all = 0;
+    double minimum = INFINITY, all = 0;
     for (int run = 0; run < 3 || (all < 0.03 && run < 30); ++run) try {
             const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
             const auto moving = make_motion(motion);
             for (long sample = 0; sample < last; ++sample) moving->advance(never);
             const double taken = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-            least = std::min(least, taken);
+            minimum = std::min(minimum, taken);
             all += taken;
         } catch (const Error&) {
             return INFINITY;
         }
-    return least;
+    return minimum;
 }
 
-/// The CPU time of the loosest setting of a method that keeps an accuracy as long as the chosen side does, where it takes no
-/// more than four times as long as that.
+/// The CPU time of the loosest setting of a method that keeps an accuracy as long as the chosen side does, where it
+/// takes no more than four times as long as that.
 double seconds_of_loosest(const StepLevels& levels, const SideSpec& spec, const Rational& hz, const Side& chosen,
                           double chosen_s) {
     const auto& choice = *chosen.choice;
@@ -74,8 +74,8 @@ TEST(ChoiceStudy, TakesLittleMoreTimeThanTheBestMethod) {
             std::optional<Side> side;
             try {
                 side = MethodChooser(preset, never).choose(1, never)[0];
-            } catch (const Error& fault) {
-                EXPECT_EQ(fault.code(), ExitCode::bad_input) << kind.name << ": " << fault.what();  // out of reach
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // out of reach
                 continue;
             }
             ++reached;

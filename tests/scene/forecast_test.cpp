@@ -25,7 +25,7 @@ Forecast predicted(const std::string& system, int duration_s = 30) {
     return forecast_of(scene, scene.a, never);
 }
 
-TEST(Forecast, TellsForAboutHowLongRunsInDoubleCanBeRight) {
+TEST(Forecast, EstimatesThePredictabilityLimitInDouble) {
     for (const char* system : {"angle_deg = [90, 90]", "angle_deg = [150, 90]",
                                "angle_deg = [120, -60]\nmass_kg = [2, 1]", "links = 3\nangle_deg = [120, 0, 0]"}) {
         const auto scene = scene_from(system, 40);
@@ -50,11 +50,11 @@ TEST(Forecast, TellsForAboutHowLongRunsInDoubleCanBeRight) {
     }
 }
 
-TEST(Forecast, TellsTheErrorAtTheEndOfWhatIsRight) {
+TEST(Forecast, EstimatesTheFinalErrorOfAccurateRuns) {
     EXPECT_EQ(predicted("angle_deg = [30, 0]", 5).error_s, 5);
 }
 
-TEST(Forecast, SaysSoBeforeTheEndToo) {
+TEST(Forecast, ReportsDivergenceBeforeTheEnd) {
     // what it makes of ten seconds holds what forty show
     const auto shown = *predicted("angle_deg = [90, 90]", 40).limit,
                told = *predicted("angle_deg = [90, 90]", 10).limit;
@@ -64,7 +64,7 @@ TEST(Forecast, SaysSoBeforeTheEndToo) {
     EXPECT_FALSE(predicted("angle_deg = [30, 0]").limit);  // regular: no end in sight
 }
 
-TEST(Forecast, TellsAnUnstableEquilibriumFromChaos) {
+TEST(Forecast, DistinguishesAnUnstableEquilibriumFromChaos) {
     using Kind = Forecast::Kind;
     const auto upright = predicted("links = 1\nangle_deg = [180]", 5);
     EXPECT_EQ(upright.kind, Kind::unstable);

@@ -99,7 +99,7 @@ TEST(FrameTimes, OfEachSpeedFallOnSamplesWhereTheyCan) {
 }
 
 // Frames between samples must not change the samples: neither their steps nor the rounding of their time.
-TEST(FrameTimes, SamplesAreTheSameToTheBitWhateverIsSeenBetweenThem) {
+TEST(FrameTimes, SamplesDoNotDependOnFramesBetweenThem) {
     const std::atomic<bool> never = false;
     struct Case {
         const char* preset;
@@ -137,9 +137,9 @@ TEST(FrameTimes, BetweenSamplesIsTheMotion) {
     struct Case {
         const char* preset;
         std::vector<std::string> more;
-        double most;  // m
+        double maximum;  // m
     };
-    for (const auto& [preset, more, most] :
+    for (const auto& [preset, more, maximum] :
          {Case{"butterfly", {}, 0},  // at the same steps
           {"butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1e-12"}, 1e-11},
           {"butterfly",
@@ -160,8 +160,8 @@ TEST(FrameTimes, BetweenSamplesIsTheMotion) {
                 expected = truth.next(never);
                 ASSERT_NEAR(scene.time(state.moment()), finer.time(expected.sample), 1e-14);
                 for (std::size_t i = 0; i < state.a.bobs.size(); ++i) {
-                    ASSERT_NEAR(state.a.bobs[i].x, expected.a.bobs[i].x, most) << preset << ' ' << n << ' ' << fifth;
-                    ASSERT_NEAR(state.a.bobs[i].theta, expected.a.bobs[i].theta, 100 * most) << preset << ' ' << n;
+                    ASSERT_NEAR(state.a.bobs[i].x, expected.a.bobs[i].x, maximum) << preset << ' ' << n << ' ' << fifth;
+                    ASSERT_NEAR(state.a.bobs[i].theta, expected.a.bobs[i].theta, 100 * maximum) << preset << ' ' << n;
                 }
             }
             expected = truth.next(never);

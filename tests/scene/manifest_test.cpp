@@ -29,7 +29,7 @@ TEST(Manifest, IsFinishedAsTheFilesThatItNames) {
             R"({"files": {"x.mp4": {"bytes": 5, "sha256": "0cab1c9617404faf2b24e221e189ca5945813e14d3f766345b09ca13bbe28ffc"}}})"));
 }
 
-TEST(Manifest, KeepsTheDigitsOfAPresetThatDoubleHasNotGot) {
+TEST(Manifest, KeepsMoreDigitsThanDouble) {
     const auto json = json_of_toml("a = [90.0000000000000000000000001, 90.0, 90, 1e-6]\nb = {c = \"x\", d = true}");
     EXPECT_EQ(json.dump(), R"({"a":["90.0000000000000000000000001",90.0,90,1e-06],"b":{"c":"x","d":true}})");
     const auto preset =

@@ -30,11 +30,11 @@ Preset preset_from(const std::string& toml, const std::vector<Override>& overrid
     return read_preset({"test", "test.toml", toml}, overrides);
 }
 
-std::string fault_of(const std::string& toml, const std::vector<Override>& overrides = {}) {
+std::string error_of(const std::string& toml, const std::vector<Override>& overrides = {}) {
     try {
         make_scene(preset_from(toml, overrides));
-    } catch (const Error& fault) {
-        return fault.what();
+    } catch (const Error& error) {
+        return error.what();
     }
     return "";
 }
@@ -64,8 +64,8 @@ double true_error(const SideSpec& spec, const Side& side, bool rounded = false) 
     return worst;
 }
 
-TEST(Accuracy, WhoseStepsNobodyCouldCountIsRefused) {
-    EXPECT_NE(fault_of("[system]\nmodel = \"constraints\"\ngravity_m_per_s2 = 1e50\naccuracy = 1e-6\n")
+TEST(Accuracy, TooManyStepsAreRefused) {
+    EXPECT_NE(error_of("[system]\nmodel = \"constraints\"\ngravity_m_per_s2 = 1e50\naccuracy = 1e-6\n")
                   .find("steps a sample"),
               std::string::npos);
 }
@@ -79,7 +79,7 @@ TEST(Accuracy, IsInterruptedWhileAFastDriveIsStepped) {
     EXPECT_THROW(for (int sample = 0; sample < 2; ++sample) run.next(limit.reached()), Error);
 }
 
-TEST(Choice, MeetsTheAccuracyAndKnowsItOnScenesOfEveryKindDrawnByLot) {
+TEST(Choice, MeetsTheAccuracyAndEstimatesTheErrorOnRandomScenes) {
     const bool all = std::getenv("DOPPEL_ALL_SCENES");
     drawn::Lot lot(20261121);
     double most_optimistic = 0;
@@ -95,8 +95,8 @@ TEST(Choice, MeetsTheAccuracyAndKnowsItOnScenesOfEveryKindDrawnByLot) {
             Side side;
             try {
                 side = choose_side(spec, seconds, {10, 1});
-            } catch (const Error& fault) {
-                EXPECT_EQ(fault.code(), ExitCode::bad_input) << kind.name << ": " << fault.what();  // out of reach
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // out of reach
                 continue;
             }
             ++reached;
@@ -151,8 +151,8 @@ TEST(Choice, NeverTakesMoreWorkForLessAccuracy) {
                 if (choice.horizon < 360) break;  // from here on rounding decides
                 EXPECT_GE(choice.work, before) << system << ", " << accuracy;
                 before = choice.work;
-            } catch (const Error& fault) {
-                EXPECT_EQ(fault.code(), ExitCode::bad_input) << fault.what();
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ExitCode::bad_input) << error.what();
                 EXPECT_LT(accuracy, 1e-6) << system;
             }
         }
@@ -188,12 +188,12 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
     EXPECT_GT(error, choice.accuracy);  // no horizon of caution alone
 }
 
-TEST(Choice, LeavesTheUprightNoSoonerThanItsRoundingDoes) {
+TEST(Choice, KeepsTheUprightAsLongAsRoundingAllows) {
     // one link released at the double nearest to π: what it lacks grows like cosh(√(g/l) t)
     const auto scene = make_scene(preset_from(
         "[scene]\nduration_s = 20\n[system]\nlinks = 1\nangle_deg = 180\nomega_deg_per_s = 0\naccuracy = 1e-3"));
     const double lacking = 1.2246467991473532e-16, rounding = pi * 0x1p-53, rate = std::sqrt(9.8);
-    const double exact = std::acosh(0.8e-3 / (lacking + rounding)) / rate;  // eight tenths of what is asked
+    const double exact = std::acosh(0.8e-3 / (lacking + rounding)) / rate;  // eight tenths of what is asked for
     EXPECT_NEAR(scene.time(scene.a.choice->horizon), exact, 0.1);           // measured 0.02; 9.22 s
 }
 
@@ -213,7 +213,7 @@ TEST(Choice, TakesTheCheapestWayThatTheTableAllows) {
     EXPECT_LT(tight.a.choice->estimated_error, loose.a.choice->estimated_error);
 }
 
-TEST(Choice, TakesMethodsThatServeTheSystem) {
+TEST(Choice, TakesMethodsThatSupportTheSystem) {
     const auto methods = [](const std::string& system) {
         const auto side = make_side(preset_from("[system]\nintegrator = \"dop853\"\n" + system).a, {10, 1});
         return fmt::format("{}", fmt::join(methods_for(side.motion), " "));
@@ -226,7 +226,7 @@ TEST(Choice, TakesMethodsThatServeTheSystem) {
     EXPECT_EQ(methods("model = \"mechanism\""), "dop853 dopri5 adams taylor");
 }
 
-TEST(Choice, IsOneForSidesThatDifferInWhatMovesAlone) {
+TEST(Choice, IsSharedBySidesThatDifferOnlyInTheSystem) {
     const auto scene = [](const std::string& sides) {
         return make_scene(preset_from("[scene]\nduration_s = 20\n[system]\naccuracy = 1e-6\n" + sides));
     };
@@ -249,7 +249,7 @@ TEST(Choice, IsOneForSidesThatDifferInWhatMovesAlone) {
 TEST(Choice, IsOneForAllPairsOfASweep) {
     const auto alike = [](const std::string& system) {
         auto pair = preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-6\n" + system);
-        step_all_alike(pair, pair, never);
+        use_common_method(pair, pair, never);
         EXPECT_FALSE(pair.a.accuracy || pair.b.accuracy) << system;
         EXPECT_EQ(pair.a.tolerance, pair.b.tolerance) << system;
         return fmt::format("{} {}", pair.a.integrator, text_of(*pair.a.tolerance));
@@ -259,10 +259,10 @@ TEST(Choice, IsOneForAllPairsOfASweep) {
     EXPECT_EQ(alike("rod_mass_kg = 1"), "dop853 " + text_of(parse_quad("1e-14")));
     EXPECT_EQ(alike("precision = \"quad\""), "taylor " + text_of(parse_quad("1e-30")));
     auto far = preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-15");
-    EXPECT_THROW(step_all_alike(far, far, never), Error);
+    EXPECT_THROW(use_common_method(far, far, never), Error);
     // a side with a method of its own keeps it
     auto mixed = preset_from("[system]\naccuracy = 1e-6\n[b]\nintegrator = \"rk4\"");
-    step_all_alike(mixed, mixed, never);
+    use_common_method(mixed, mixed, never);
     EXPECT_EQ(mixed.a.integrator, "taylor");
     EXPECT_EQ(mixed.b.integrator, "rk4");
 }
@@ -290,7 +290,7 @@ TEST(Choice, GivesTolerancesOfOneOrThreeOfAPowerOfTen) {
     EXPECT_EQ(digits, (std::set<char>{'1', '3'}));
 }
 
-TEST(Choice, StandsInPlaceOfIntegratorAndStep) {
+TEST(Choice, ReplacesIntegratorAndStep) {
     const std::string euler =
         "[scene]\nduration_s = 1\n[system]\nintegrator = \"euler\"\nstep_s = \"1/1200\"\n[b]\nstep_s = \"1/2400\"";
     const auto by_accuracy = preset_from(euler, {parse_set("system.accuracy=1e-5")});
@@ -305,30 +305,30 @@ TEST(Choice, StandsInPlaceOfIntegratorAndStep) {
     EXPECT_NE(resolved_toml(mixed).find("accuracy = 1e-05\n"), std::string::npos) << resolved_toml(mixed);
 }
 
-TEST(Choice, SaysWhatIsWithinReach) {
-    EXPECT_EQ(fault_of("[system]\naccuracy = 1e-6\nstep_s = 0.001"),
+TEST(Choice, NamesAPossibleAccuracy) {
+    EXPECT_EQ(error_of("[system]\naccuracy = 1e-6\nstep_s = 0.001"),
               "test.toml:2:1: [system] accuracy chooses integrator, step and tolerance; remove it, or step_s");
-    EXPECT_EQ(fault_of("[system]\naccuracy = 2"), "test.toml:2:1: [system] accuracy must be at most 1 rad; it is 2");
-    EXPECT_EQ(fault_of("[system]\naccuracy = 0"), "test.toml:2:1: [system] accuracy must be > 0; it is 0");
-    const auto beyond = fault_of("[scene]\nduration_s = 30\n[system]\naccuracy = 1e-15");
-    EXPECT_EQ(beyond.find("test: side a: accuracy = 1e-15 rad is beyond double here: it would hold for "), 0u)
+    EXPECT_EQ(error_of("[system]\naccuracy = 2"), "test.toml:2:1: [system] accuracy must be at most 1 rad; it is 2");
+    EXPECT_EQ(error_of("[system]\naccuracy = 0"), "test.toml:2:1: [system] accuracy must be > 0; it is 0");
+    const auto beyond = error_of("[scene]\nduration_s = 30\n[system]\naccuracy = 1e-15");
+    EXPECT_EQ(beyond.find("test: side a: accuracy = 1e-15 rad is beyond double here: it would be kept for "), 0u)
         << beyond;
     EXPECT_NE(beyond.find("; precision = \"quad\" allows more"), std::string::npos) << beyond;
     // what it says is within reach for a swing, is
     const auto at = beyond.find("possible: ") + 10;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);
-    EXPECT_EQ(fault_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "");
+    EXPECT_EQ(error_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "");
     // of a regular motion, to the end as well
     const std::string gentle = "[scene]\nduration_s = 30\n[system]\nangle_deg = [30, 0]\naccuracy = ";
-    const auto to_end = fault_of(gentle + "1e-16");
+    const auto to_end = error_of(gentle + "1e-16");
     const auto end = to_end.find(" to the end;"), start = to_end.rfind(' ', end - 1);
     ASSERT_NE(end, std::string::npos) << to_end;
-    EXPECT_EQ(fault_of(gentle + to_end.substr(start, end - start)), "") << to_end;
+    EXPECT_EQ(error_of(gentle + to_end.substr(start, end - start)), "") << to_end;
     // a spring whose ends meet has no direction: that is the method's fault, not the accuracy's
-    EXPECT_NE(fault_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
+    EXPECT_NE(error_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
                   .find("fails within 0.0083 s: taylor:"),
               std::string::npos);
-    EXPECT_EQ(fault_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
+    EXPECT_EQ(error_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
 }
 
 }  // namespace method_choice_test

@@ -44,8 +44,8 @@ struct Found {
         auto table = document.table(top, "sweep");
         try {
             key.emplace(table, "parameter", path, preset);
-        } catch (const Error& fault) {
-            message = fault.what();
+        } catch (const Error& error) {
+            message = error.what();
         }
     }
     Preset with(double value, double difference = 0) {
@@ -122,7 +122,7 @@ TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
     refused("gravity", "system.gravity_m_per_s2");
     refused("system.gravity", "there are links, mass_kg, length_m, angle_deg, omega_deg_per_s, rod_mass_kg, ");
     refused("system.model", "is not a number");
-    refused("system.mass_kg[2]", "whose last is [1]");
+    refused("system.mass_kg[2]", "whose last element is [1]");
     refused("system.mass_kg[x]", "must end like");
     refused("system.gravity_m_per_s2[0]", "is a number, not an array");
     refused("system.force.wind.mass_kg", "names no particle, constraint or force");

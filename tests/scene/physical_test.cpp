@@ -37,7 +37,7 @@ TEST(Physical, ABobOnARodIsOneBodyAboutTheirCentre) {
     EXPECT_EQ(p.inertia[1], 0);
 }
 
-TEST(Physical, NothingOfItIsNothing) {
+TEST(Physical, WithoutPropertiesIsThePointMassChain) {
     EXPECT_FALSE(scene_of("butterfly").a.motion.physical);
     const auto none = make_scene(preset_from("[system]\nrod_mass_kg = 0\njoint_viscous_N_m_s = [0, 0]"));
     EXPECT_FALSE(none.a.motion.physical);
@@ -57,7 +57,7 @@ TEST(Physical, ItsResolvedPresetIsTheSameScene) {
     }
 }
 
-TEST(Physical, CaptionsSayWhatSetsTheSidesApart) {
+TEST(Physical, CaptionsStateTheDifference) {
     const auto scene = make_scene(
         preset_from("[system.pivot]\namplitude_m = 0.1\n[b]\njoint_viscous_N_m_s = 0.5\n[b.pivot]\nfrequency_hz = 3"));
     const auto words = side_captions(scene);
@@ -105,9 +105,9 @@ double error_at_end(const Preset& preset) {
     auto truth = scene.a.motion;
     truth.method = "taylor";
     truth.tolerance = parse_quad("1e-15");
-    auto asked = scene.a.motion;
+    auto requested = scene.a.motion;
     const std::atomic<bool> never = false;
-    const auto one = make_motion(asked), other = make_motion(truth);
+    const auto one = make_motion(requested), other = make_motion(truth);
     double worst = 0;
     const long last = scene.a.choice->horizon;
     for (long n = 0; n < last; ++n) {
@@ -120,7 +120,7 @@ double error_at_end(const Preset& preset) {
     return worst;
 }
 
-TEST(Physical, AnAccuracyKeepsItsWord) {
+TEST(Physical, AnAccuracyIsMet) {
     // random scenes of this kind; DOPPEL_ALL_SCENES=1: fifty
     const int scenes = std::getenv("DOPPEL_ALL_SCENES") ? 50 : 6;
     std::mt19937 random(7);

@@ -40,24 +40,24 @@ TEST(PresetErrors, AreShortAndUtf8WhateverTheValue) {
 }
 
 TEST(Overrides, NameTheOptionInPlaceOfALine) {
-    const auto fault = [](const std::vector<std::string>& arguments) {
+    const auto error = [](const std::vector<std::string>& arguments) {
         const auto [code, message] = error_of([&] { scene_of("butterfly", arguments); });
         EXPECT_EQ(code, ExitCode::bad_input);
         return message;
     };
-    EXPECT_EQ(fault({"b.mass_kg=[1, -1]"}), "--set b.mass_kg: [b] mass_kg[1] must be > 0; it is -1");
-    EXPECT_EQ(fault({"system.lenght_m=[1, 1]"}),
+    EXPECT_EQ(error({"b.mass_kg=[1, -1]"}), "--set b.mass_kg: [b] mass_kg[1] must be > 0; it is -1");
+    EXPECT_EQ(error({"system.lenght_m=[1, 1]"}),
               R"(--set system.lenght_m: [system] has no "lenght_m"; did you mean "length_m"?)");
-    EXPECT_EQ(fault({"nonsense"}), R"(--set must be table.key=VALUE; it is "nonsense")");
-    EXPECT_EQ(fault({"video.crf=1", "video.crf=2"}), "video.crf is given twice: --set video.crf and --set video.crf");
-    EXPECT_EQ(fault({"foo.bar=3"}),
+    EXPECT_EQ(error({"nonsense"}), R"(--set must be table.key=VALUE; it is "nonsense")");
+    EXPECT_EQ(error({"video.crf=1", "video.crf=2"}), "video.crf is given twice: --set video.crf and --set video.crf");
+    EXPECT_EQ(error({"foo.bar=3"}),
               R"(--set foo.bar: a preset has no "foo"; it has a, b, scene, subtitle, system, title, video)");
-    EXPECT_EQ(fault({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
-    EXPECT_EQ(fault({"system.links=3", "system={}"}),
+    EXPECT_EQ(error({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
+    EXPECT_EQ(error({"system.links=3", "system={}"}),
               "--set system: would remove --set system.links, which was given before; give the table first");
-    EXPECT_EQ(fault({"title.x=1"}), R"(--set title.x: "title" is not a table)");
-    EXPECT_NE(fault({"video.theme=2dark"}).find("a string needs quotes: 'video.theme=\"2dark\"'"), std::string::npos);
-    EXPECT_EQ(fault({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");
+    EXPECT_EQ(error({"title.x=1"}), R"(--set title.x: "title" is not a table)");
+    EXPECT_NE(error({"video.theme=2dark"}).find("a string needs quotes: 'video.theme=\"2dark\"'"), std::string::npos);
+    EXPECT_EQ(error({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");
 }
 
 TEST(Overrides, OfAWholeTableComesBeforeThoseOfItsKeys) {
@@ -75,7 +75,7 @@ TEST(Overrides, GoOnTopOfThePreset) {
     EXPECT_EQ(scene.samples, 240);
 }
 
-TEST(FindPreset, AFigureOrAFilmIsAdvisedByWhatFindsIt) {
+TEST(FindPreset, AdvisesTheCommandForFiguresAndFilms) {
     const auto message = [](const PresetText& source) { return error_of([&] { read_preset(source); }).second; };
     EXPECT_EQ(message(find_preset("fig6")),
               "presets/figures/fig6.toml: this is a figure, not a film; draw it with: doppel figure fig6");

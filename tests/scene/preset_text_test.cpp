@@ -78,10 +78,10 @@ TEST(PresetText, ANameThatWouldLeadElsewhereIsRefused) {
     const std::vector<std::pair<std::string, std::string>> cases{
         {"..", "leads out of it"},
         {".", "leads out of it"},
-        {"a\nb", "holds the control character U+000A"},
-        {"a\x7f", "holds the control character U+007F"},
-        {"a\xc2\x9b", "holds the control character U+009B"},
-        {"a\xe2\x80\xae", "holds the control character U+202E"},
+        {"a\nb", "contains the control character U+000A"},
+        {"a\x7f", "contains the control character U+007F"},
+        {"a\xc2\x9b", "contains the control character U+009B"},
+        {"a\xe2\x80\xae", "contains the control character U+202E"},
         {"a\xff", "is not UTF-8"},
         {std::string(longest_preset_name + 1, 'n'), "has 192 bytes; at most 191 are possible"}};
     for (const auto& [name, words] : cases) {
@@ -206,15 +206,15 @@ TEST(PresetText, WhatIsDrawnHasLettersOfAFont) {
     const std::string rest =
         ", which the built-in font lacks; it has Latin and Greek letters and signs of mathematics; no font of this "
         "system has them; give a font file in [video.fonts] text";
-    const std::string lacks = "holds \"\xcd\xb8\" (U+0378)" + rest;
+    const std::string lacks = "contains \"\xcd\xb8\" (U+0378)" + rest;
     EXPECT_EQ(refusal("\ntitle = \"a \xcd\xb8\""), "x.toml:2:1: title " + lacks);
     EXPECT_EQ(refusal("title = \"\xcd\xb8\xcd\xb9 \xcd\xb8\""),
-              "x.toml:1:1: title holds \"\xcd\xb8\" (U+0378), \"\xcd\xb9\" (U+0379)" + rest);
-    EXPECT_EQ(
-        refusal("title = \"مر\""),
-        "x.toml:1:1: title holds \"م\" (U+0645) of a script that Doppel cannot draw (joined or right-to-left letters)");
+              "x.toml:1:1: title contains \"\xcd\xb8\" (U+0378), \"\xcd\xb9\" (U+0379)" + rest);
+    EXPECT_EQ(refusal("title = \"مر\""),
+              "x.toml:1:1: title contains \"م\" (U+0645) of a script that Doppel cannot draw (joined or right-to-left "
+              "letters)");
     EXPECT_EQ(refusal("title = \"a\\u007fb\""),
-              "x.toml:1:1: title holds the control character U+007F, which cannot be drawn");
+              "x.toml:1:1: title contains the control character U+007F, which cannot be drawn");
     EXPECT_EQ(refusal("[[system.particle]]\nname = \"\xcd\xb8\""), "x.toml:2:1: [[system.particle]] 1 name " + lacks);
     const auto named = [](const std::string& text) {
         return read_preset({"\xcd\xb8", "x.toml", text, "x.toml"}).title;

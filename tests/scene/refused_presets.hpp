@@ -69,7 +69,8 @@ inline const std::vector<RefusedPreset> refused_system{
     RefusedPreset{"[system]\nmodel = \"constraints\"\nintegrator = \"gauss6\"",
                   R"(presets/x.toml:3:1: [system] integrator "gauss6" supports angles, not model = "constraints")"},
     RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nmodel = \"angles\"",
-                  "presets/x.toml:2:1: [system] stabilise is for constraints; in angles rods have constant length"},
+                  "presets/x.toml:2:1: [system] stabilise is for constraints; with angles as coordinates rods have "
+                  "constant length"},
     RefusedPreset{
         "[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
         R"(presets/x.toml:2:1: [system] stabilise is not needed with "rattle6", which keeps the constraints itself)"},
@@ -163,7 +164,7 @@ inline const std::vector<RefusedPreset> refused_video{
     RefusedPreset{"[video]\ntrail_s = -1",
                   "presets/x.toml:2:1: [video] trail_s must be from 0 (none) to 3600; it is -1"},
     RefusedPreset{"[video]\ndistance_range = [1, 2]",
-                  "presets/x.toml:2:1: [video] distance_range must rise by 1 to 60 powers of ten; it is [1, 2]"}};
+                  "presets/x.toml:2:1: [video] distance_range must increase by 1 to 60 powers of ten; it is [1, 2]"}};
 
 // The text is that of [video]; the message follows the place of the key and "[video] ".
 
@@ -180,7 +181,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
         R"([video] panels may contain "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "distnce" is none of them)"},
     RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
                   R"([video] panels must contain "pendulums" for the layout "overlay")"},
-    RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must rise; it is [1, 1]"},
+    RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must increase; it is [1, 1]"},
     RefusedPreset{"size = [1280, 720]\nlayout = \"portrait\"",
                   R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},
     RefusedPreset{"size = [301, 200]",

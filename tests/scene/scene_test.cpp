@@ -20,7 +20,7 @@ TEST(Presets, AreAllReadable) {
     }
 }
 
-TEST(Presets, HaveTheStartsTheyPromise) {
+TEST(Presets, HaveTheirDocumentedStarts) {
     const auto start = [](const char* name) {
         const auto scene = scene_of(name);
         return std::pair{scene.preset.a, scene.preset.b};
@@ -36,7 +36,7 @@ TEST(Presets, HaveTheStartsTheyPromise) {
     EXPECT_EQ(methods.samples, 4500);
 }
 
-TEST(Presets, ComeBackFromTheirResolvedForm) {
+TEST(Presets, ResolvedReadsBackToTheSame) {
     for (const auto& source : builtin_presets()) {
         if (is_figure(source)) continue;
         const auto preset = read_preset(source, sets({"video.fps=60", "video.side_colors=[\"#102030\", \"#a0b0c0\"]"}));
@@ -75,13 +75,13 @@ TEST(Clock, SpeedAndFramesFallOnSamples) {
     EXPECT_EQ(scene_of("butterfly", {"video.fps=60"}).frames.stride, (Rational{2, 1}));
 }
 
-TEST(AutoModel, IsTheSmallestThatServes) {
+TEST(AutoModel, IsTheSmallestThatSupportsTheScene) {
     const auto scene = scene_of("butterfly");
     EXPECT_EQ(scene.a.motion.model, Model::angles);
     EXPECT_NE(scene.a.why.find("closed form"), std::string::npos);
 }
 
-TEST(AutoModel, SaysWhyItIsAnotherOne) {
+TEST(AutoModel, ExplainsAnotherChoice) {
     const auto why = [](const std::vector<std::string>& arguments) {
         const auto scene = scene_of("butterfly", arguments);
         return std::pair{scene.a.motion.model, scene.a.why};
@@ -111,7 +111,7 @@ TEST(Numbers, MeanTheirDecimals) {
     EXPECT_EQ(parse_quad(text_of(Quad(1) / 3)), Quad(1) / 3);
 }
 
-TEST(Numbers, ThatDoubleCannotTellApartAskForQuad) {
+TEST(Numbers, EqualInDoubleNeedQuad) {
     const std::vector<std::string> apart{"b.angle_deg=[90.00000000000000000001, 90]"};
     const auto [code, message] = error_of([&] { scene_of("butterfly", apart); });
     EXPECT_EQ(code, ExitCode::bad_input);
@@ -131,7 +131,7 @@ std::pair<ExitCode, std::string> error_of_sides(const std::string& system, const
     return error_of([&] { make_scene(read_preset({"x", "x.toml", text, "x.toml"})); });
 }
 
-TEST(Numbers, OfAnyKeyThatDoubleCannotTellApartAskForQuad) {
+TEST(Numbers, OfAnyKeyEqualInDoubleNeedQuad) {
     const std::string spring =
         "integrator = \"rk4\"\n[[system.particle]]\nname = \"u\"\n[[system.force]]\nkind = \"spring\"\n"
         "name = \"s\"\nfrom = \"u\"\nto = [0, 2]\n[[system.constraint]]\nkind = \"slot-line\"\nname = \"rail\"\n"
@@ -192,7 +192,7 @@ TEST(Numbers, OfAnyKeyThatDoubleCannotTellApartAskForQuad) {
     EXPECT_EQ(error_of_sides("", "[a.pivot]\nphase_deg = 1", "[b.pivot]\nphase_deg = 2").first, ExitCode::done);
 }
 
-TEST(Numbers, ThatQuadCannotTellApartAreRefused) {
+TEST(Numbers, EqualInQuadAreRefused) {
     // 1 ulp of degrees in quad is less than one of radians
     const auto [code, message] =
         error_of_sides("", "angle_deg = [125, 90]", "angle_deg = [125.00000000000000000000000000000001, 90]", "quad");
@@ -216,7 +216,7 @@ TEST(Scene, OfAsManyLinksAsThereMayBeIsMadeAtOnce) {
     EXPECT_LT(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, 2);  // measured 0.19 s; was 31
 }
 
-TEST(Rivals, TheCommandLineDropsWhatThePresetSaysForAnotherKind) {
+TEST(Rivals, TheCommandLineReplacesKeysOfAnotherKind) {
     // butterfly has step_s = "1/30000"
     const auto adaptive = scene_of("butterfly", {"system.integrator=\"taylor\""});
     EXPECT_FALSE(adaptive.preset.a.step_s);
@@ -254,7 +254,7 @@ TEST(Sides, MayDifferInModelMethodAndStep) {
     EXPECT_LT(std::abs(last.b.bobs[0].x - last.a.bobs[0].x), 0.001);  // measured 0.0002
 }
 
-TEST(PairRun, TellsWhereAMethodBrokeDown) {
+TEST(PairRun, ReportsWhereAMethodFailed) {
     const auto scene = scene_of(
         "butterfly", {"b.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000", "b.model=\"constraints\""});
     const auto [code, message] = error_of([&] {
@@ -292,7 +292,7 @@ from = "bead"
 to = [1, 0]
 )";
 
-TEST(Size, OfOneParticleIsThatOfWhatHoldsIt) {
+TEST(Size, OfOneParticleIsThatOfItsConstraint) {
     const auto scene = scene_from("[system]\nintegrator = \"rk4\"\nstep_s = \"1/1200\"" + bead);
     EXPECT_DOUBLE_EQ(scene.a.reach, 1);
     EXPECT_DOUBLE_EQ(scene.a.energy_unit, 2 * 9.8);
@@ -313,7 +313,7 @@ TEST(Size, OfOneParticleMakesItsErrorsThoseOfTheSamePendulum) {
     EXPECT_LT(particle.a.choice->estimated_error, 1e-6);
 }
 
-TEST(SideRun, BreaksDownAtTenTimesAllTheEnergyThereIs) {
+TEST(SideRun, FailsAtTenTimesTheTotalEnergy) {
     // it starts with E = 0: as much kinetic energy as its potential energy is below that of the pivot
     const double rate = std::sqrt(2 * 9.8 * std::cos(0.3)), degree = pi / 180;
     const auto scene = scene_from(fmt::format(R"(
@@ -329,22 +329,22 @@ step_s = "1/50"
                                               0.3 / degree, rate / degree));
     const std::atomic<bool> never = false;
     const auto motion = make_motion(scene.a.motion);
-    EXPECT_NEAR(motion->observe().energy, 0, 1e-14);             // measured 1.8e-15
-    const double most = 10 * (2 * 9.8 * 1 + 0.5 * rate * rate);  // the potential range, and the energy of motion
+    EXPECT_NEAR(motion->observe().energy, 0, 1e-14);                // measured 1.8e-15
+    const double maximum = 10 * (2 * 9.8 * 1 + 0.5 * rate * rate);  // the potential range, and the energy of motion
     long sample = 0;
-    for (; motion->observe().energy_change <= most; ++sample) motion->advance(never);
+    for (; motion->observe().energy_change <= maximum; ++sample) motion->advance(never);
     SideRun run(scene, scene.a, 'a');
     for (long n = 0; n < sample; ++n) run.next(never);
     try {
         run.next(never);
         ADD_FAILURE();
-    } catch (const RunFailure& fault) {
-        EXPECT_EQ(fault.sample, sample);
+    } catch (const RunFailure& error) {
+        EXPECT_EQ(error.sample, sample);
     }
 }
 
-TEST(Distance, OutOfRangeIsToldOfTheSideAndTheQuantity) {
-    const auto fault = [](const std::vector<std::string>& arguments) {
+TEST(Distance, OverflowIsReportedWithSideAndQuantity) {
+    const auto error = [](const std::vector<std::string>& arguments) {
         const auto scene = scene_of("butterfly", arguments);
         PairRun pair(scene);
         const std::atomic<bool> never = false;
@@ -356,16 +356,16 @@ TEST(Distance, OutOfRangeIsToldOfTheSideAndTheQuantity) {
         return start;
     };
     using Fault = std::pair<ExitCode, std::string>;
-    EXPECT_EQ(fault({"system.length_m=1e300"}),
+    EXPECT_EQ(error({"system.length_m=1e300"}),
               Fault(ExitCode::bad_input,
                     "butterfly: side b: the place in y, m, of mass 1 is 5.23599e+295 at t = 0 s, and -6.12323e+283 on "
                     "the other side: the square of their difference exceeds 1.8e308"));
-    EXPECT_EQ(fault({"a.mass_kg=[1, 1e200]"}),
+    EXPECT_EQ(error({"a.mass_kg=[1, 1e200]"}),
               Fault(ExitCode::bad_input,
                     "butterfly: side a: the mass, kg, of mass 2 is 1e+200 at t = 0 s, and 1 on the other side: the "
                     "square of their difference exceeds 1.8e308"));
-    EXPECT_EQ(fault({"system.mass_kg=1e200"}).first, ExitCode::done);
-    EXPECT_EQ(fault({}).first, ExitCode::done);
+    EXPECT_EQ(error({"system.mass_kg=1e200"}).first, ExitCode::done);
+    EXPECT_EQ(error({}).first, ExitCode::done);
 }
 
 TEST(SideRun, NamesTheVelocityThatIsNoNumber) {
@@ -415,17 +415,17 @@ TEST(Particles, AreInTheOrderOfTheOtherSide) {
     const auto particle = [](const std::string& side, const std::string& name, int x) {
         return fmt::format("[[{}.particle]]\nname = \"{}\"\nposition_m = [{}, 0]\n", side, name, x);
     };
-    const auto fault = [&](const std::string& first, const std::string& second) {
+    const auto error = [&](const std::string& first, const std::string& second) {
         return error_of([&] {
                    scene_from(particle("a", "sun", 0) + particle("a", "moon", 1) + particle("b", first, 0) +
                               particle("b", second, 2));
                })
             .second;
     };
-    EXPECT_NE(fault("moon", "sun").find("particle must be in the order of the other side: moon, sun"),
+    EXPECT_NE(error("moon", "sun").find("particle must be in the order of the other side: moon, sun"),
               std::string::npos)
-        << fault("moon", "sun");
-    EXPECT_EQ(fault("sun", "moon"), "nothing was thrown");
+        << error("moon", "sun");
+    EXPECT_EQ(error("sun", "moon"), "nothing was thrown");
 }
 
 TEST(Ensemble, GoesFromOneSideToTheOtherInEqualSteps) {
@@ -440,7 +440,7 @@ TEST(Ensemble, GoesFromOneSideToTheOtherInEqualSteps) {
     }
 }
 
-TEST(Damping, IsNoErrorOfTheEnergy) {
+TEST(Damping, IsNotAnEnergyError) {
     const auto scene = scene_from(R"(
 [scene]
 duration_s = 1

@@ -91,15 +91,17 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
          "[scene] duration_s must be a number or a fraction such as \"1/30000\"; it is \"long\""},
         {"scene.duration_s=9s", "\"9s\" is not a TOML value"},
         {"title=a \"b", "a string needs quotes"},
-        {"system.mass_kg[2]=1", "[system] mass_kg[2] is beyond the list, whose last is [1]"},
+        {"system.mass_kg[2]=1", "[system] mass_kg[2] is beyond the list, whose last element is [1]"},
         {"system.mass_kg[x]=1", "is written like system.mass_kg[1], the second"},
         {"system.mass_kg[0]=a", "[system] mass_kg[0] must be a number; it is a string (\"a\")"},
         {"system.mass_kg[0]=-1", "[system] mass_kg[0] must be > 0; it is -1"},
-        {"system.center_m[0]=1", "[system] center_m[0] is of a list that the preset has not; give all of it"},
-        {"video.contact_sheet[1]=1", "[video] contact_sheet[1] is of a list that the preset has not; give all of it"},
+        {"system.center_m[0]=1",
+         "[system] center_m[0] is an element of a list that the preset does not have; give the whole list"},
+        {"video.contact_sheet[1]=1",
+         "[video] contact_sheet[1] is an element of a list that the preset does not have; give the whole list"},
         {"video.size[0]=1", "[video] size[0] must be from 64 to 16384; it is 1"},
-        {"system.model[0]=1", "[system] model[0] is of no list of numbers"},
-        {"system.gravity_m_per_s2[0]=1", "[system] gravity_m_per_s2[0] is of no list of numbers"},
+        {"system.model[0]=1", "[system] model[0] is not an element of a list of numbers"},
+        {"system.gravity_m_per_s2[0]=1", "[system] gravity_m_per_s2[0] is not an element of a list of numbers"},
     };
     for (const auto& [given, words] : cases) {
         const auto& set = given;  // clang 14 captures no structured binding

@@ -51,7 +51,7 @@ TEST(SideTrack, BeginsAtItsTime) {
     EXPECT_NEAR(later.bobs[1].theta, same.bobs[1].theta, 1e-12);
 }
 
-TEST(SideTrack, LiesBesideThePresetOrHere) {
+TEST(SideTrack, IsFoundBesideThePresetOrInTheCurrentFolder) {
     const auto folder = fs::path(DOPPEL_TEST_OUTPUT) / "side-track";
     fs::create_directories(folder);
     fs::copy_file(fs::path(DOPPEL_SOURCE_DIR) / "presets/data/double-pendulum-track/piece-02.csv", folder / "mine.csv",
@@ -86,7 +86,7 @@ TEST(SideTrack, CaptionsTellWhichIsMeasured) {
 }
 
 /// "measured": what the fit left of this piece, 0.6 mrad rms in the first 2 s (docs/fit.md).
-TEST(SideTrack, ThePresetKeepsNearItsTwin) {
+TEST(SideTrack, TheSimulationStaysCloseToTheTrack) {
     const auto scene = scene_of("measured");
     PairRun run(scene);
     const std::atomic<bool> never = false;

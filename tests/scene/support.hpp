@@ -25,8 +25,8 @@ template <class Action>
 std::pair<ExitCode, std::string> error_of(Action&& action) {
     try {
         action();
-    } catch (const Error& fault) {
-        return {fault.code(), fault.what()};
+    } catch (const Error& error) {
+        return {error.code(), error.what()};
     }
     return {ExitCode::done, "nothing was thrown"};
 }

@@ -21,7 +21,7 @@ double bend(const Bobs<double>& bobs) {
     return std::sqrt(sum / static_cast<double>(bobs.size() - 1));
 }
 
-TEST(Whip256, IsSmoothUntilItCracksAndPartsThen) {
+TEST(Whip256, IsSmoothUntilItCracksAndThenDiverges) {
     const auto scene = scene_of("whip-256");
     PairRun pair(scene);
     const std::atomic<bool> stop = false;

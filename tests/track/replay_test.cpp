@@ -25,7 +25,7 @@ Errors errors_of(const std::string& text, std::array<double, 2> offset = {}) {
     const auto spec = swinging_rods({1, 240});
     const auto truth = make_motion(spec), shown = make_replay(spec, replay_from(track_of(text), std::nullopt, offset));
     Errors worst;
-    const auto keep = [](double& most, double error) { most = std::max(most, std::abs(error)); };
+    const auto keep = [](double& maximum, double error) { maximum = std::max(maximum, std::abs(error)); };
     for (int k = 0; k <= 480; ++k) {
         if (k > 0) truth->advance(never_stop), shown->advance(never_stop);
         const auto a = truth->observe(), b = shown->observe();
@@ -50,13 +50,13 @@ TEST(Replay, ShowsTheMotionThatWasMeasured) {
     EXPECT_LT(worst.rate, 0.15);   // measured 0.097; from sample to sample it would be 0.2
 }
 
-TEST(Replay, SubtractsWhatEncodersShowAtRest) {
+TEST(Replay, SubtractsEncoderOffsets) {
     const auto text = csv_of_motion(swinging_rods(), 1002, 0, 0.05);
     EXPECT_GT(errors_of(text).angle, 0.049);
     EXPECT_LT(errors_of(text, {0.05, -0.05}).angle, 1e-5);
 }
 
-TEST(Replay, LeavesOutWhatIsFarOff) {
+TEST(Replay, LeavesOutliersOut) {
     auto text = csv_of_motion(swinging_rods(), 1002);
     const auto row = text.find("\n0.4,");
     ASSERT_NE(row, std::string::npos);
@@ -81,15 +81,15 @@ TEST(Replay, BeginsWhereItIsToldAndEndsWithItsPiece) {
     try {
         shown->advance(never_stop);
         FAIL() << "it went on";
-    } catch (const Error& fault) {
-        EXPECT_EQ(fault.code(), ExitCode::method_failed);
-        EXPECT_STREQ(fault.what(), "the track ends 0.802 s after its start");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::method_failed);
+        EXPECT_STREQ(error.what(), "the track ends 0.802 s after its start");
     }
     for (const double gap : {1.2, -1.0, 3.0}) try {
             replay_from(track, gap, {});
             ADD_FAILURE() << gap;
-        } catch (const Error& fault) {
-            EXPECT_EQ(fault.what(),
+        } catch (const Error& error) {
+            EXPECT_EQ(error.what(),
                       fmt::format("no sample at {} s: the track goes from 0 to 2.402 s, in 2 pieces", gap));
         }
 }

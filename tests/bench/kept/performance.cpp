@@ -82,8 +82,8 @@ Performance read_performance(const std::filesystem::path& path) {
                                     .rounds = one.at("rounds"),
                                     .counters = one.value("counters", std::map<std::string, double>())};
         return all;
-    } catch (const nlohmann::json::exception& fault) {
-        throw bad_input("{}: {}", path.string(), fault.what());
+    } catch (const nlohmann::json::exception& error) {
+        throw bad_input("{}: {}", path.string(), error.what());
     }
 }
 
@@ -105,11 +105,11 @@ void write_performance(const std::filesystem::path& path, const Performance& all
     write_page(path, json.dump(1) + "\n");
 }
 
-std::vector<Fall> falls(const Performance& kept, const Performance& now, double most) {
+std::vector<Fall> falls(const Performance& kept, const Performance& now, double maximum) {
     std::vector<Fall> all;
     for (const auto& [name, one] : now.benchmarks) {
         const auto before = kept.benchmarks.find(name);
-        if (before != kept.benchmarks.end() && one.ratio * (1 - most) > before->second.ratio)
+        if (before != kept.benchmarks.end() && one.ratio * (1 - maximum) > before->second.ratio)
             all.push_back({name, before->second.ratio, one.ratio});
     }
     return all;

@@ -44,8 +44,8 @@ struct Fall {
     std::string name;
     double before, now;
 };
-/// Those by more than `most` of the speed: 0.15 where a benchmark has less than 0.85 of the kept one's. What only one of
-/// both has is left out.
-std::vector<Fall> falls(const Performance& kept, const Performance& now, double most);
+/// Those by more than `most` of the speed: 0.15 where a benchmark has less than 0.85 of the kept one's. What only one
+/// of both has is left out.
+std::vector<Fall> falls(const Performance& kept, const Performance& now, double maximum);
 
 }  // namespace doppel

@@ -11,13 +11,13 @@
 
 namespace doppel {
 
-/// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds` in one advance();
-/// each further one begins at the release again.
+/// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds` in one
+/// advance(); each further one begins at the release again.
 template <int N>
 class ChainSolver : public Motion {
 public:
-    static constexpr long most_steps = 2'000'000;  // then a method has given up
-    static constexpr double first_step = 0.01;     // s, for libraries that want to be told
+    static constexpr long max_steps = 2'000'000;  // then a method has given up
+    static constexpr double first_step = 0.01;    // s, for libraries that want to be told
 
     using State = std::conditional_t<N == Eigen::Dynamic, std::vector<double>,
                                      std::array<double, static_cast<std::size_t>(N == Eigen::Dynamic ? 0 : 2 * N)>>;
@@ -71,8 +71,8 @@ private:
 
 /// A peer whose solver is a class template over the number of links, made from (chain, seconds, setting, more …).
 template <template <int> class Solver, class... More>
-ExternalMethod peer_of(std::string name, bool adaptive, double least, double most, More... more) {
-    return {std::move(name), adaptive, least, most,
+ExternalMethod peer_of(std::string name, bool adaptive, double minimum, double maximum, More... more) {
+    return {std::move(name), adaptive, minimum, maximum,
             [more...](const Pendulum<double>& chain, double seconds, double setting) -> std::unique_ptr<Motion> {
                 if (chain.links() == 2) return std::make_unique<Solver<2>>(chain, seconds, setting, more...);
                 if (chain.links() == 3) return std::make_unique<Solver<3>>(chain, seconds, setting, more...);

@@ -16,15 +16,15 @@ public:
           system_{ChainSolver<N>::slope, nullptr, this->y_.size(), &this->rate_},
           driver_(gsl_odeiv2_driver_alloc_y_new(&system_, type, this->first_step, tolerance, tolerance)) {
         if (!driver_) throw method_failed("gsl: no driver for tolerance = {:.3g}", tolerance);
-        gsl_odeiv2_driver_set_nmax(driver_.get(), this->most_steps);
+        gsl_odeiv2_driver_set_nmax(driver_.get(), this->max_steps);
     }
 
 private:
     void integrate() override {
         double t = 0;
         gsl_odeiv2_driver_reset_hstart(driver_.get(), this->first_step);
-        const int fault = gsl_odeiv2_driver_apply(driver_.get(), &t, this->seconds_, this->y_.data());
-        if (fault != GSL_SUCCESS) throw method_failed("gsl: {} at t = {:.3g} s", gsl_strerror(fault), t);
+        const int error = gsl_odeiv2_driver_apply(driver_.get(), &t, this->seconds_, this->y_.data());
+        if (error != GSL_SUCCESS) throw method_failed("gsl: {} at t = {:.3g} s", gsl_strerror(error), t);
         this->steps_ = static_cast<long>(driver_->n);
     }
 

@@ -71,16 +71,16 @@ int main(int argc, char** argv) {
         app.get_option("PRESET")->required(false)->expected(1);
         try {
             app.parse(argc, argv);
-        } catch (const CLI::ParseError& fault) {
-            if (fault.get_exit_code() == 0) return app.exit(fault);
-            return failed(ExitCode::bad_input, fmt::format("{}; see doppel-peers --help", fault.what()).c_str());
+        } catch (const CLI::ParseError& error) {
+            if (error.get_exit_code() == 0) return app.exit(error);
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel-peers --help", error.what()).c_str());
         }
         if (options.presets.empty()) options.presets = {"speed-accuracy"};
         make_figure(options);
         return static_cast<int>(ExitCode::done);
-    } catch (const Error& fault) {
-        return failed(fault.code(), fault.what());
-    } catch (const std::exception& fault) {
-        return failed(ExitCode::io_failed, fault.what());
+    } catch (const Error& error) {
+        return failed(error.code(), error.what());
+    } catch (const std::exception& error) {
+        return failed(ExitCode::io_failed, error.what());
     }
 }

@@ -30,14 +30,14 @@ private:
     void integrate() override {
         if constexpr (requires { stepper_.reset(); }) stepper_.reset();
         const auto count = [this](const auto&, double) {
-            if (this->steps_++ == this->most_steps)
-                throw method_failed("odeint: {} steps are not enough", this->most_steps);
+            if (this->steps_++ == this->max_steps)
+                throw method_failed("odeint: {} steps are not enough", this->max_steps);
         };
         try {
             this->steps_ = static_cast<long>(odeint::integrate_adaptive(
                 std::ref(stepper_), system_of(this->rate_), this->y_, 0.0, this->seconds_, this->first_step, count));
-        } catch (const odeint::odeint_error& fault) {
-            throw method_failed("odeint: {}", fault.what());
+        } catch (const odeint::odeint_error& error) {
+            throw method_failed("odeint: {}", error.what());
         }
     }
 

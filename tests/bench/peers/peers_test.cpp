@@ -65,18 +65,18 @@ ExternalMethod peer_named(std::string_view name) {
 /// The least error on the way down the study, as soon as it is within `wanted`.
 double converged(const ExternalMethod& peer, const Problem& problem, double wanted) {
     const auto exact = truth(problem);
-    double least = pi;
-    for (double setting = peer.most; setting >= 0.99 * peer.least; setting = next_setting(peer, setting)) {
+    double minimum = pi;
+    for (double setting = peer.maximum; setting >= 0.99 * peer.minimum; setting = next_setting(peer, setting)) {
         try {
             const auto solver = peer.make(problem.chain, problem.seconds, setting);
             solver->advance(never);
-            least = std::min(least, angle_error(state_of(*solver), exact));
-        } catch (const Error& fault) {
-            EXPECT_EQ(fault.code(), ExitCode::method_failed) << peer.name;
+            minimum = std::min(minimum, angle_error(state_of(*solver), exact));
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::method_failed) << peer.name;
         }
-        if (least <= wanted) break;
+        if (minimum <= wanted) break;
     }
-    return least;
+    return minimum;
 }
 
 TEST(Peers, ConvergeToOurs) {
@@ -122,14 +122,14 @@ TEST(Peers, CountWhatTheyAskFor) {
     }
 }
 
-TEST(Peers, SayWhereTheyGiveUp) {
+TEST(Peers, ReportWhereTheyFail) {
     for (const auto& [name, setting] : {std::pair("odeint adams 8", 0.1), {"GSL rkf45", 0.1}}) {
         const auto solver = peer_named(name).make(problems()[2].chain, 5, setting);
         try {
             solver->advance(never);
             ADD_FAILURE() << name;
-        } catch (const Error& fault) {
-            EXPECT_EQ(fault.code(), ExitCode::method_failed) << name;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::method_failed) << name;
         }
     }
 }

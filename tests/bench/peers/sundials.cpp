@@ -25,8 +25,8 @@ struct FreedMemory {
     void operator()(void* memory) const { free(&memory); }
 };
 
-void check(int fault, const char* what) {
-    if (fault < 0) throw method_failed("sundials: {} answers {}", what, fault);
+void check(int error, const char* what) {
+    if (error < 0) throw method_failed("sundials: {} answers {}", what, error);
 }
 
 /// The context and the vector that every solver of SUNDIALS needs.
@@ -64,7 +64,7 @@ public:
         check(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
         check(CVodeSetUserData(cvode, &this->rate_), "CVodeSetUserData");
         check(CVodeSetNonlinearSolver(cvode, iteration_.get()), "CVodeSetNonlinearSolver");
-        check(CVodeSetMaxNumSteps(cvode, this->most_steps), "CVodeSetMaxNumSteps");
+        check(CVodeSetMaxNumSteps(cvode, this->max_steps), "CVodeSetMaxNumSteps");
     }
 
 private:
@@ -91,7 +91,7 @@ public:
         check(ERKStepSStolerances(arkode, tolerance, tolerance), "ERKStepSStolerances");
         check(ERKStepSetUserData(arkode, &this->rate_), "ERKStepSetUserData");
         check(ERKStepSetOrder(arkode, 8), "ERKStepSetOrder");
-        check(ERKStepSetMaxNumSteps(arkode, this->most_steps), "ERKStepSetMaxNumSteps");
+        check(ERKStepSetMaxNumSteps(arkode, this->max_steps), "ERKStepSetMaxNumSteps");
     }
 
 private:

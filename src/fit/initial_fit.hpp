@@ -14,6 +14,6 @@ std::vector<Shot> divide(const Track& track);
 /// not are halved; others are joined as far as one leads through the next. A stretch so chaotic that an initial error
 /// would grow more than a hundredfold remains divided. Throws Error: exit 3 if no double pendulum moves like the track,
 /// 130.
-Fit begin_fit(const FitJob& job);
+Fit initial_fit(const FitJob& job);
 
 }  // namespace doppel

@@ -15,26 +15,26 @@
 namespace doppel {
 
 /// Sort key of an error: line and column in the file, then errors without a line, then command line options by number.
-struct FaultPlace {
+struct ErrorPlace {
     static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max() / 2;
     std::size_t line = no_line, column = 0;
-    auto operator<=>(const FaultPlace&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 takes it for 0
+    auto operator<=>(const ErrorPlace&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 takes it for 0
 };
 
 /// An error in a key (exit 2). If the key is only wrong together with another key of the same table, that key is
 /// `beside`; it may be the wrong one. An empty `beside` stands for any key of the group.
-class TomlFault : public Error {
+class KeyError : public Error {
 public:
-    TomlFault(const std::string& message, FaultPlace place, std::optional<std::string> beside = {})
+    KeyError(const std::string& message, ErrorPlace place, std::optional<std::string> beside = {})
         : Error(ExitCode::bad_input, message), place_(place), beside_(std::move(beside)) {}
 
-    FaultPlace place() const { return place_; }
+    ErrorPlace place() const { return place_; }
     const std::optional<std::string>& beside() const { return beside_; }
     /// The same error, caused together with other keys.
-    TomlFault with(std::string keys) const { return {what(), place_, std::move(keys)}; }
+    KeyError with(std::string keys) const { return {what(), place_, std::move(keys)}; }
 
 private:
-    FaultPlace place_;
+    ErrorPlace place_;
     std::optional<std::string> beside_;
 };
 
@@ -42,30 +42,30 @@ private:
 /// together. Keys outside of tables, group "", belong to all groups. An error of several keys is dropped if one of the
 /// other keys has an error itself. Of errors with the same other key, only the first is kept, because that key may be
 /// wrong.
-class Faults {
+class KeyErrors {
 public:
-    explicit Faults(const std::vector<Override>& overrides);
+    explicit KeyErrors(const std::vector<Override>& overrides);
 
     /// The place of a value that this command line option gave.
-    FaultPlace of_option(const std::string& origin) const;
+    ErrorPlace of_option(const std::string& origin) const;
     struct Entry {
         std::string message;
-        FaultPlace place;
+        ErrorPlace place;
         std::string group, key;
         std::optional<std::string> beside;
     };
-    void add(Entry fault) { faults_.push_back(std::move(fault)); }
+    void add(Entry error) { errors_.push_back(std::move(error)); }
     bool concern(std::string_view group) const;
     /// Throws one Error (exit 2) with all remaining errors, without duplicates, sorted by place. Returns if there is
     /// none.
     void throw_if_any() const;
 
 private:
-    bool may_follow(const Entry& fault) const;
-    static bool may_be_one(const Entry& fault, const Entry& other);
+    bool may_be_caused(const Entry& error) const;
+    static bool may_have_one_cause(const Entry& error, const Entry& other);
 
     std::vector<std::string> options_;
-    std::vector<Entry> faults_;
+    std::vector<Entry> errors_;
 };
 
 }  // namespace doppel

@@ -1,4 +1,4 @@
-#include "fit/beginning.hpp"
+#include "fit/initial_fit.hpp"
 
 #include "base/error.hpp"
 #include "fit/flow.hpp"
@@ -17,48 +17,48 @@ double length_of(const Track& track, const Shot& shot) {
 
 /// Adds `count` equal parts of a stretch, with estimated starts; fewer if there are gaps.
 void add_parts(std::vector<Shot>& parts, const Track& track, const Shot& all, long count) {
-    constexpr std::size_t least_samples = 8;
+    constexpr std::size_t min_samples = 8;
     const auto& times = track.pieces[all.piece].time_s;
     auto part = all;
     for (long number = 1; number <= count; ++number) {
         const double share = static_cast<double>(number) / static_cast<double>(count);
         const auto end = std::lower_bound(times.begin(), times.end(), times[all.first] + length_of(track, all) * share);
         part.last = number == count ? all.last : static_cast<std::size_t>(end - times.begin());
-        if (part.last < part.first + least_samples && number < count) continue;  // a gap
-        part.start = guessed_start(track, part.piece, part.first);
+        if (part.last < part.first + min_samples && number < count) continue;  // a gap
+        part.start = estimated_start(track, part.piece, part.first);
         parts.push_back(part);
         part.first = part.last;
     }
 }
 
-/// Each stretch in `most` parts, or a half, a quarter … of that number if the parts would be too short.
-std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, long most) {
-    constexpr double least_samples = 8, least_s = 0.15;
+/// Each stretch in `maximum` parts, or a half, a quarter … of that number if the parts would be too short.
+std::vector<Shot> parts_of(const Track& track, const std::vector<Shot>& wholes, long maximum) {
+    constexpr double min_samples = 8, min_s = 0.15;
     std::vector<Shot> parts;
     for (const auto& whole : wholes) {
         const double longest =
-            std::min(length_of(track, whole) / least_s, static_cast<double>(whole.size()) / least_samples);
-        auto count = most;
+            std::min(length_of(track, whole) / min_s, static_cast<double>(whole.size()) / min_samples);
+        auto count = maximum;
         while (count > 1 && static_cast<double>(count) > longest) count /= 2;
         add_parts(parts, track, whole, count);
     }
     return parts;
 }
 
-/// Whether the motion of one shot follows the samples of the next one to its end, and an initial error grows at most a
+/// Whether the motion of one shot follows the samples of the next one to its end. An initial error may grow at most a
 /// hundredfold up to there. Beyond that the cost has many minima, and the normal equations lose their digits.
-bool leads(const Track& track, const Fit& fit, const Shot& one, const Shot& next) {
-    constexpr double near = 0.3, most_growth = 100;  // rad; growth of an angle, per angle or per rate in natural units
+bool leads_to(const Track& track, const Fit& fit, const Shot& one, const Shot& next) {
+    constexpr double near = 0.3, max_growth = 100;  // rad; growth of an angle, per angle or per rate in natural units
     const auto& piece = track.pieces[one.piece];
     Flow<> flow(fit.model, fit.parameters, one.start, fit.step_s);
     const double rate = std::sqrt(fit.parameters[gravity_2]);
     for (auto i = next.first; i < next.last; ++i) {
         const double t = piece.time_s[i] - piece.time_s[one.first];
         if (!flow.reach(t)) return false;
-        for (std::size_t arm = 0; arm < 2; ++arm) {
-            const auto angle = flow.angle(arm, t);
-            if (!piece.is_outlier[arm][i] && std::abs(angle[0] - piece.angle[arm][i]) > near) return false;
-            if (std::hypot(angle.segment<2>(1).norm(), rate * angle.segment<2>(3).norm()) > most_growth) return false;
+        for (std::size_t link = 0; link < 2; ++link) {
+            const auto angle = flow.angle(link, t);
+            if (!piece.is_outlier[link][i] && std::abs(angle[0] - piece.angle[link][i]) > near) return false;
+            if (std::hypot(angle.segment<2>(1).norm(), rate * angle.segment<2>(3).norm()) > max_growth) return false;
         }
     }
     return true;
@@ -69,7 +69,7 @@ void join(const Track& track, Fit& fit) {
     std::vector<Shot> joined;
     for (auto next = fit.shots.begin(); next != fit.shots.end();) {
         auto& one = joined.emplace_back(std::move(*next++));
-        if (next != fit.shots.end() && next->whole == one.whole && leads(track, fit, one, *next))
+        if (next != fit.shots.end() && next->whole == one.whole && leads_to(track, fit, one, *next))
             one.last = next++->last;
     }
     fit.shots = std::move(joined);
@@ -78,11 +78,11 @@ void join(const Track& track, Fit& fit) {
 /// Halves the shots that do not follow their samples; new starts are estimated.
 void halve_lost(const Track& track, Fit& fit) {
     constexpr double lost = 0.1;  // rad, rms
-    constexpr std::size_t least_samples = 16;
+    constexpr std::size_t min_samples = 16;
     std::vector<Shot> halved;
     for (const auto& shot : fit.shots) {
         const bool is_lost = shot.sums.squares > lost * lost * static_cast<double>(shot.sums.count);
-        if (is_lost && shot.size() >= least_samples)
+        if (is_lost && shot.size() >= min_samples)
             add_parts(halved, track, shot, 2);
         else
             halved.push_back(shot);
@@ -110,17 +110,18 @@ Parameters regressed(const Track& track, const std::atomic<bool>& stop) {
 }
 
 /// Fits stretches in parts, which are joined where one leads to the next.
-std::optional<Fit> fitted_in_parts(const FitJob& job, const std::vector<Shot>& wholes, long most,
+std::optional<Fit> fitted_in_parts(const FitJob& job, const std::vector<Shot>& wholes, long maximum,
                                    const Parameters& guess) {
     const auto& track = job.track;
-    std::optional<Fit> fit{{.model = model_of(false, 0), .parameters = guess, .shots = parts_of(track, wholes, most)}};
+    std::optional<Fit> fit{
+        {.model = model_of(false, 0), .parameters = guess, .shots = parts_of(track, wholes, maximum)}};
     fit->scale = {std::max(3 * track.noise[0], 1e-3), std::max(3 * track.noise[1], 1e-3)};
-    for (auto parts = 2 * most; parts > 0; parts /= 2) {
+    for (auto parts = 2 * maximum; parts > 0; parts /= 2) {
         fit->is_evaluated = false;  // it is of other shots, or another model
-        fit = fit_model(job, *std::move(fit), {.most_passes = 10, .step_share = 0, .relative = 1e-3});
+        fit = fit_model(job, *std::move(fit), {.max_passes = 10, .step_share = 0, .relative = 1e-3});
         if (!fit || parts == 1) break;
         halve_lost(track, *fit);
-        if (parts <= most) join(track, *fit);
+        if (parts <= maximum) join(track, *fit);
         fit->model = model_of(false, 3);
     }
     return fit;
@@ -144,12 +145,12 @@ std::vector<Shot> divide(const Track& track) {
     return wholes;
 }
 
-Fit begin_fit(const FitJob& job) {
+Fit initial_fit(const FitJob& job) {
     const auto wholes = divide(job.track);
     const auto guess = regressed(job.track, job.stop);
     constexpr long quarters = 4, shortest = 16;
-    for (auto most = quarters; most <= shortest; most *= 2)  // the motion may stay finite over shorter parts
-        if (auto fit = fitted_in_parts(job, wholes, most, guess)) return *fit;
+    for (auto maximum = quarters; maximum <= shortest; maximum *= 2)  // the motion may stay finite over shorter parts
+        if (auto fit = fitted_in_parts(job, wholes, maximum, guess)) return *fit;
     throw no_motion(job.track);
 }
 
