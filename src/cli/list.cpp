@@ -86,7 +86,7 @@ void list_as_json() {
 
 /// A table of methods: value of `integrator`, order, step size or tolerance, models, properties.
 void list_methods() {
-    print_line("{:<20} {:>5}  {:<10} {:<32} {}", "integrator", "order", "goes by", "models", "properties");
+    print_line("{:<20} {:>5}  {:<10} {:<32} {}", "integrator", "order", "setting", "models", "properties");
     for (const auto& method : methods())
         print_line("{:<20} {:>5}  {:<10} {:<32} {}: {}", method.name,
                    method.order == 0 ? "any" : fmt::format("{}", method.order),
