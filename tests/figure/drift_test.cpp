@@ -121,19 +121,19 @@ TEST(Drift, SummarisesTheResultInOneLine) {
 }
 
 TEST(Drift, RefusesImpossibleSettings) {
-    const auto expect_fault = [](const std::string& argument, const std::string& words) {
+    const auto expect_error_text = [](const std::string& argument, const std::string& words) {
         const auto [code, message] = error_of([&] { figure_of("drift", {argument}); });
         EXPECT_EQ(code, ExitCode::bad_input) << argument;
         EXPECT_NE(message.find(words), std::string::npos) << message;
     };
-    expect_fault("series.methods=[]", "must name at least one");
-    expect_fault("series.methods=[\"rk5\"]", "\"rk5\" is none");
-    expect_fault("series.projected=[\"gauss4\"]", "\"gauss4\" does not");
-    expect_fault("series.points_per_decade=0", "points_per_decade");
-    expect_fault("series.duration_s=5", "must be from 10 to");
-    expect_fault("series.evaluations_per_s=1", "must be from 10 to");
-    expect_fault("series.points=3", "points_per_decade");
-    expect_fault("system.step_s=0.1", "step_s");
+    expect_error_text("series.methods=[]", "must name at least one");
+    expect_error_text("series.methods=[\"rk5\"]", "\"rk5\" is none");
+    expect_error_text("series.projected=[\"gauss4\"]", "\"gauss4\" does not");
+    expect_error_text("series.points_per_decade=0", "points_per_decade");
+    expect_error_text("series.duration_s=5", "must be from 10 to");
+    expect_error_text("series.evaluations_per_s=1", "must be from 10 to");
+    expect_error_text("series.points=3", "points_per_decade");
+    expect_error_text("system.step_s=0.1", "step_s");
 }
 
 }  // namespace drift_test

@@ -305,7 +305,7 @@ TEST(WorkPrecision, ResolvedReadsBackToTheSame) {
 }
 
 TEST(WorkPrecision, RefusesWrongSettings) {
-    const auto expect_fault = [](const std::vector<std::string>& arguments, const std::string& words) {
+    const auto expect_error_text = [](const std::vector<std::string>& arguments, const std::string& words) {
         try {
             figure_of("speed-accuracy", arguments);
             ADD_FAILURE() << words << ": no fault";
@@ -314,21 +314,25 @@ TEST(WorkPrecision, RefusesWrongSettings) {
             EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
         }
     };
-    expect_fault({"chart.cost=\"money\""}, "cost");
-    expect_fault({"work_precision.problems=[\"P5\"]"}, "\"P5\" is not");
-    expect_fault({"work_precision.problems=[]"}, "at least one");
-    expect_fault({"work_precision.problems=[\"P1\", \"P1\"]"}, "twice");
-    expect_fault({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"}, "combined with \"scene\"");
-    expect_fault({"work_precision.scene=\"fig7\""}, "is a figure");
-    expect_fault({"work_precision.duration_s=3"}, "duration_s");
-    expect_fault({"work_precision.models=[\"angels\"]"}, "\"angels\" is not");
-    expect_fault({"work_precision.methods=[\"magic\"]"}, "\"magic\" is not");
-    expect_fault({"work_precision.methods=[\"rattle\"]", "work_precision.models=[\"angles\"]"}, "that it supports");
-    expect_fault({"work_precision.scene=\"springs\"", "work_precision.models=[\"angles\"]"}, "supports \"mechanism\"");
-    expect_fault({"work_precision.scene=\"rods\"", "work_precision.models=[\"mechanism\"]"}, "supports \"angles\"");
-    expect_fault({"work_precision.scene=\"measured\""}, "joints with joint_coulomb_N_m stick");
-    expect_fault({"work_precision.repeats=0"}, "repeats");
-    expect_fault({"work_precision.tolerance=1"}, "tolerance");
+    expect_error_text({"chart.cost=\"money\""}, "cost");
+    expect_error_text({"work_precision.problems=[\"P5\"]"}, "\"P5\" is not");
+    expect_error_text({"work_precision.problems=[]"}, "at least one");
+    expect_error_text({"work_precision.problems=[\"P1\", \"P1\"]"}, "twice");
+    expect_error_text({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"},
+                      "combined with \"scene\"");
+    expect_error_text({"work_precision.scene=\"fig7\""}, "is a figure");
+    expect_error_text({"work_precision.duration_s=3"}, "duration_s");
+    expect_error_text({"work_precision.models=[\"angels\"]"}, "\"angels\" is not");
+    expect_error_text({"work_precision.methods=[\"magic\"]"}, "\"magic\" is not");
+    expect_error_text({"work_precision.methods=[\"rattle\"]", "work_precision.models=[\"angles\"]"},
+                      "that it supports");
+    expect_error_text({"work_precision.scene=\"springs\"", "work_precision.models=[\"angles\"]"},
+                      "supports \"mechanism\"");
+    expect_error_text({"work_precision.scene=\"rods\"", "work_precision.models=[\"mechanism\"]"},
+                      "supports \"angles\"");
+    expect_error_text({"work_precision.scene=\"measured\""}, "joints with joint_coulomb_N_m stick");
+    expect_error_text({"work_precision.repeats=0"}, "repeats");
+    expect_error_text({"work_precision.tolerance=1"}, "tolerance");
 }
 
 }  // namespace work_precision_test

@@ -94,7 +94,7 @@ TEST(FitShooting, EndsSoonAfterItIsStopped) {
 }
 
 /// Sums that are not finite, as of a motion that nearly ran away, once kept a loop for ever.
-TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
+TEST(FitHierarchy, LeavingOutEndsWhereSumsAreNotFinite) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     auto fit = fit_at(model_of(false, 2), lab_arms(), track);
     evaluate_fit({track, no_stop}, fit);
@@ -104,7 +104,7 @@ TEST(FitLadder, LeavingOutEndsWhereSumsAreNotFinite) {
 }
 
 /// What is left out by one step is near what a fit without it finds.
-TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
+TEST(FitHierarchy, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     const auto all = fitted(model_of(false, 1), lab_arms(), track);
     const auto quick = stepped(all, 0, 2, 2);
@@ -118,7 +118,7 @@ TEST(FitLadder, LeavesOutAsAFitWithoutWould) {
     }
 }
 
-TEST(FitLadder, ChoosesTheModelThatMadeTheTrack) {
+TEST(FitHierarchy, ChoosesTheModelThatMadeTheTrack) {
     auto rigid = lab_arms(false);
     rigid[viscous_1] = 0.1, rigid[viscous_2] = 0.05;
     auto result = answered(simulated(rigid, Drag::own, {.noise = 1e-3}));

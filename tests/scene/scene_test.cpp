@@ -216,7 +216,7 @@ TEST(Scene, OfAsManyLinksAsThereMayBeIsMadeAtOnce) {
     EXPECT_LT(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, 2);  // measured 0.19 s; was 31
 }
 
-TEST(Rivals, TheCommandLineReplacesKeysOfAnotherKind) {
+TEST(ExclusiveKeys, TheCommandLineReplacesKeysOfAnotherKind) {
     // butterfly has step_s = "1/30000"
     const auto adaptive = scene_of("butterfly", {"system.integrator=\"taylor\""});
     EXPECT_FALSE(adaptive.preset.a.step_s);

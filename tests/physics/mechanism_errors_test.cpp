@@ -8,7 +8,7 @@
 #include <variant>
 
 namespace doppel {
-namespace mechanism_fault_test {
+namespace mechanism_errors_test {
 
 using namespace counted;
 
@@ -37,7 +37,7 @@ void expect_faults(const std::vector<BadPart>& bad_parts) {
     }
 }
 
-TEST(MechanismFault, OfParticles) {
+TEST(MechanismErrors, OfParticles) {
     EXPECT_EQ(error_of({}), "the mechanism has no particles; it needs at least one");
     const auto changed = [](auto change) {
         auto parts = four_bars();
@@ -51,7 +51,7 @@ TEST(MechanismFault, OfParticles) {
               "particle 3: its velocity is (inf, 0) m/s; both must be finite numbers");
 }
 
-TEST(MechanismFault, OfParts) {
+TEST(MechanismErrors, OfParts) {
     expect_faults({
         {Rod<double>{one, std::size_t{4}, 1},
          "constraint 6 (rod 1–5): there is no particle 5; the mechanism has 1 to 4"},
@@ -78,7 +78,7 @@ TEST(MechanismFault, OfParts) {
     });
 }
 
-TEST(MechanismFault, OfAStartOffTheConstraints) {
+TEST(MechanismErrors, OfAStartOffTheConstraints) {
     expect_faults({
         {Anchor<double>{two, P(0.5, 0.8)},
          "constraint 6 (anchor of particle 2): the particle starts at (0.6, 0.8) m, 0.1 m from its anchor (0.5, 0.8) "
@@ -94,7 +94,7 @@ TEST(MechanismFault, OfAStartOffTheConstraints) {
     });
 }
 
-TEST(MechanismFault, OfRedundantConstraints) {
+TEST(MechanismErrors, OfRedundantConstraints) {
     expect_faults({
         {Rod<double>{one, two, 1},
          "constraint 6 (rod 1–2) is redundant: it follows from constraint 2; leave it out, or start elsewhere"},
@@ -107,7 +107,7 @@ TEST(MechanismFault, OfRedundantConstraints) {
 }
 
 // A start may be off by 1e-9 of the size, whatever that is.
-TEST(MechanismFault, IsMeasuredByTheSizeOfTheMechanism) {
+TEST(MechanismErrors, IsMeasuredByTheSizeOfTheMechanism) {
     for (const double size : {0.01, 1.0, 100.0}) {
         const auto off_by = [&](double share) {
             return error_of({.particles = {{1, P(0, -size * (1 + share)), P(0, 0)}},
@@ -119,7 +119,7 @@ TEST(MechanismFault, IsMeasuredByTheSizeOfTheMechanism) {
     }
 }
 
-TEST(MechanismFault, OfAStartThatLeavesTheConstraints) {
+TEST(MechanismErrors, OfAStartThatLeavesTheConstraints) {
     auto parts = four_bars();
     parts.particles[0].velocity = P(0, 0.5);
     EXPECT_EQ(error_of(parts),
@@ -143,7 +143,7 @@ Assembly<double> parallelogram() {
             .forces = {Gravity<double>{}}};
 }
 
-TEST(MechanismFault, OfASingularConfigurationHoweverLongTheSteps) {
+TEST(MechanismErrors, OfASingularConfigurationHoweverLongTheSteps) {
     check(parallelogram());
     for (const double step : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
         Mechanism<double> model(parallelogram());
@@ -164,7 +164,7 @@ TEST(MechanismFault, OfASingularConfigurationHoweverLongTheSteps) {
     EXPECT_NEAR(model.energy(after(model, slower, 20000, 5e-4)), start, 3e-9);  // measured 5e-10
 }
 
-TEST(MechanismFault, OfAMotionThatDiverges) {
+TEST(MechanismErrors, OfAMotionThatDiverges) {
     auto parts = four_bars();
     parts.forces.push_back(Spring<double>{two, P(0, 2), 1e9, 0.5});
     Mechanism<double> model(parts);
@@ -173,7 +173,7 @@ TEST(MechanismFault, OfAMotionThatDiverges) {
     EXPECT_NE(message.find("the motion diverged; use a smaller step"), std::string::npos) << message;
 }
 
-TEST(MechanismFault, OfRodsWithLargeErrors) {
+TEST(MechanismErrors, OfRodsWithLargeErrors) {
     // two hinged rods are never singular; so far out that both ends are one, the second has no direction left
     const Pendulum<double> p{{1, 1}, {1, 1}, {1, 2}, {0, 0}, 9.8};
     const auto parts = parts_of(p);
@@ -186,7 +186,7 @@ TEST(MechanismFault, OfRodsWithLargeErrors) {
                             "2.2e+20 times the longest rod: the motion diverged; use a smaller step"}));
 }
 
-TEST(MechanismFault, IsNotReportedForAValidStart) {
+TEST(MechanismErrors, IsNotReportedForAValidStart) {
     // what rounding leaves at the start of a bead at the origin is measured by where its slot is
     EXPECT_EQ(error_of({.particles = {{1, P(0, 0)}},
                         .constraints = {SlotLine<double>{one, P(0.1, 0.3), P(1, 3)}},
@@ -194,5 +194,5 @@ TEST(MechanismFault, IsNotReportedForAValidStart) {
               no_fault);
 }
 
-}  // namespace mechanism_fault_test
+}  // namespace mechanism_errors_test
 }  // namespace doppel

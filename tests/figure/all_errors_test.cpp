@@ -29,7 +29,7 @@ Lines faults_of(const std::string& kind, const std::string& text, const std::vec
     return {};
 }
 
-TEST(AllFaultsOfAFigure, AreInTheOrderOfFileAndThenCommandLine) {
+TEST(AllErrorsOfAFigure, AreInTheOrderOfFileAndThenCommandLine) {
     EXPECT_EQ(
         faults_of("grid",
                   "duration_s = \"long\"\n[chart]\nscale = 9\nsice = 1\n[grid.x]\nto = inf\nstep = 0\n[b]\nlabel = "
@@ -40,7 +40,7 @@ TEST(AllFaultsOfAFigure, AreInTheOrderOfFileAndThenCommandLine) {
                "13:1: [system] model mus", "--set grid.x.frm: [grid."}));
 }
 
-TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
+TEST(AllErrorsOfAFigure, OfEveryKindAreFound) {
     const auto figures = {"grid", "series", "section", "work-precision"};
     for (const auto* kind : figures) {
         std::string table = kind;
@@ -53,7 +53,7 @@ TEST(AllFaultsOfAFigure, OfEveryKindAreFound) {
               (Lines{"4:1: [[curve]] 1 c", "6:1: [a] links mus", "8:1: [[curve]] 2 h"}));
 }
 
-TEST(AllFaultsOfAFigure, OmitErrorsThatAnotherMayCause) {
+TEST(AllErrorsOfAFigure, OmitErrorsThatAnotherMayCause) {
     EXPECT_EQ(faults_of("grid", "[grid]\nquantity = 1\nexponent_duration_s = 3\n"),
               (Lines{"4:1: [grid] quantity mus"}));
     EXPECT_EQ(faults_of("grid", "[grid.x]\nfrom = 10\nto = 5\nstep = \"x\"\n"), (Lines{"6:1: [grid.x] step must "}));

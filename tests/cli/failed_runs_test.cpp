@@ -12,7 +12,7 @@
 #include <sstream>
 
 namespace doppel {
-namespace fault_test {
+namespace failed_runs_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -316,5 +316,5 @@ TEST(FailedRuns, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
     }
 }
 
-}  // namespace fault_test
+}  // namespace failed_runs_test
 }  // namespace doppel

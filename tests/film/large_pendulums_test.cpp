@@ -12,7 +12,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace hero_test {
+namespace large_pendulums_test {
 
 constexpr std::array films{"butterfly", "calm",     "fan",        "horizon",     "loop",     "damped",
                            "kapitza",   "rods",     "mass-ratio", "phase-dance", "raindrop", "slow-parting",
@@ -73,11 +73,11 @@ void expect_in_place_at_all_sizes(const Scene& scene, const std::string& name) {
     }
 }
 
-TEST(Hero, CirclesAreLargeCentralAndFreeOfText) {
+TEST(LargePendulums, CirclesAreLargeCentralAndFreeOfText) {
     for (const char* film : films) expect_in_place_at_all_sizes(scene_of(film), film);
 }
 
-TEST(Hero, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
+TEST(LargePendulums, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
     EXPECT_EQ(scene_of("butterfly", {"video.layout=\"portrait\""}).preset.video.size, (Size{1080, 1920}));
     const auto scene = at_size(scene_of("pendulum-portrait"), {1080, 1920});
     const auto layout = make_layout(scene);
@@ -92,7 +92,7 @@ TEST(Hero, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
     }
 }
 
-TEST(Hero, LongHeadingsLeaveTheCircleWhereItIs) {
+TEST(LargePendulums, LongHeadingsLeaveTheCircleWhereItIs) {
     // more words than fit in a line: smaller, or in two lines, but never beside a circle moved aside
     auto one_link = one_link_at("90", "90");
     one_link.emplace_back("b.gravity_m_per_s2=9.80665");
@@ -179,5 +179,5 @@ TEST(Fan, ShowsListedMembersLargeWithALegend) {
     for (const auto* words : {"θ₁ =", "120°", "120.01°", "170.5°"}) EXPECT_TRUE(says(layout.words, words)) << words;
 }
 
-}  // namespace hero_test
+}  // namespace large_pendulums_test
 }  // namespace doppel

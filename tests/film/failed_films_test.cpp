@@ -7,12 +7,12 @@
 #include <thread>
 
 namespace doppel {
-namespace run_faults_test {
+namespace failed_films_test {
 
 namespace fs = std::filesystem;
 using test::fresh_folder;
 
-TEST(RunFaults, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
+TEST(FailedFilms, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     const auto out = fresh_folder();
     const auto scene = scene_of("butterfly", {"system.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000",
                                               "video.size=[64, 64]", "system.model=\"constraints\""});
@@ -37,7 +37,7 @@ TEST(RunFaults, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
 }
 
-TEST(RunFaults, OfAnAdaptiveMethodNamesTheSmallestSuccessfulStep) {
+TEST(FailedFilms, OfAnAdaptiveMethodNamesTheSmallestSuccessfulStep) {
     const auto failure = [](const std::vector<std::string>& arguments) {
         auto all = arguments;
         all.emplace_back("scene.duration_s=2");
@@ -52,7 +52,7 @@ TEST(RunFaults, OfAnAdaptiveMethodNamesTheSmallestSuccessfulStep) {
     EXPECT_NE(hopeless.second.find("the first step failed"), std::string::npos) << hopeless.second;
 }
 
-TEST(RunFaults, StopsDuringTheSimulationBeforeTheFirstFrame) {
+TEST(FailedFilms, StopsDuringTheSimulationBeforeTheFirstFrame) {
     // 100 million samples of a mechanism, whose view depends on all of them
     const auto scene = scene_of("springs", {"scene.duration_s=800000", "video.size=[64, 64]"});
     const auto out = fresh_folder();
@@ -70,14 +70,14 @@ TEST(RunFaults, StopsDuringTheSimulationBeforeTheFirstFrame) {
     EXPECT_TRUE(fs::is_empty(out));
 }
 
-TEST(RunFaults, SimulatesInAdvanceOnlyIfAPictureDependsOnIt) {
+TEST(FailedFilms, SimulatesInAdvanceOnlyIfAPictureDependsOnIt) {
     const std::vector<std::string> arguments{"scene.duration_s=800000", "video.size=[64, 64]",
                                              "video.panels=[\"distance\"]", "video.distance_range=[1e-5, 10]"};
     EXPECT_EQ(render(scene_of("springs", arguments), {.out = fresh_folder(), .first = 0, .last = 1}).frames, 1);
     EXPECT_FALSE(depends_on_motion(scene_of("whip-256"))) << "a still of its start takes no run of seconds";
 }
 
-TEST(RunFaults, WhatIsTooLargeToKeepIsSimulatedAgain) {
+TEST(FailedFilms, WhatIsTooLargeToKeepIsSimulatedAgain) {
     const auto scene = scene_of("fan", {"scene.duration_s=0.5", "video.members=3", "video.fps=50"});
     struct Seen {
         std::vector<double> numbers;
@@ -106,7 +106,7 @@ TEST(RunFaults, WhatIsTooLargeToKeepIsSimulatedAgain) {
     EXPECT_GT(kept.bounds.strips[0].count, 40) << "to the end";
 }
 
-TEST(RunFaults, LeavesNoFrameOfAFailedSequence) {
+TEST(FailedFilms, LeavesNoFrameOfAFailedSequence) {
     // many threads still write large pictures when the method fails, and nothing better is looked for
     const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1000",
                                               "scene.duration_s=2", "video.size=[1280, 720]", "video.format=\"png\""});
@@ -118,7 +118,7 @@ TEST(RunFaults, LeavesNoFrameOfAFailedSequence) {
     }
 }
 
-TEST(RunFaults, RefusesFramesThatAreNotThereAndAPosterOutsideThem) {
+TEST(FailedFilms, RefusesFramesThatAreNotThereAndAPosterOutsideThem) {
     const auto out = fresh_folder();
     const auto scene = small_scene({"video.poster_s=0.25"});
     const auto expect_refused = [&](long first, long last, const std::string& expected) {
@@ -136,5 +136,5 @@ TEST(RunFaults, RefusesFramesThatAreNotThereAndAPosterOutsideThem) {
     render(scene, {.out = out, .pictures = false, .first = 0, .last = 30});  // no picture, no poster to miss
 }
 
-}  // namespace run_faults_test
+}  // namespace failed_films_test
 }  // namespace doppel

@@ -10,7 +10,7 @@
 #include <optional>
 
 namespace doppel {
-namespace truth_test {
+namespace drawn_positions_test {
 
 // Where the truth is known, the picture is measured against it, not against an older picture.
 
@@ -34,7 +34,7 @@ Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
     return blob;
 }
 
-TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
+TEST(DrawnPositions, BobsAreWherePhysicsSaysInTheirColour) {
     // released at rest from 37/−61 with unequal rods: sample 0 is known in closed form
     const auto scene = scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]",
                                               "system.length_m=[1.3, 0.6]", "video.trail_s=0"});
@@ -62,7 +62,7 @@ TEST(Truth, BobsAreWherePhysicsSaysInTheirColour) {
     }
 }
 
-TEST(Truth, BobsHaveAnAreaLikeTheirMass) {
+TEST(DrawnPositions, BobsHaveAnAreaLikeTheirMass) {
     const auto scene = scene_of("butterfly", {"system.mass_kg=[2, 0.5]", "video.trail_s=0"});
     const auto picture = frame_of(scene, 0);
     const auto layout = make_layout(scene);
@@ -81,7 +81,7 @@ std::vector<int> rows_of(const Picture& picture, int x, const Area& area, Color 
     return rows;
 }
 
-TEST(Truth, AxisTicksFallOnDecades) {
+TEST(DrawnPositions, AxisTicksFallOnDecades) {
     const auto scene = scene_of("butterfly", {"video.distance_range=[1e-5, 1e1]"});
     const auto picture = frame_of(scene, 0);
     const auto layout = make_layout(scene);
@@ -98,7 +98,7 @@ TEST(Truth, AxisTicksFallOnDecades) {
     EXPECT_GE(rows.size(), 2u);
 }
 
-TEST(Truth, TraceIsAtTheDistanceItShows) {
+TEST(DrawnPositions, TraceIsAtTheDistanceItShows) {
     // mirror twins: the distance stays what it is at the start as long as both rest, d = 2 (x1, x2) here, 10^0.65
     const auto scene = scene_of("butterfly", {"b.angle_deg=[-90, -90]", "video.distance_range=[1e-3, 1e3]"});
     const auto picture = frame_of(scene, 0);
@@ -111,7 +111,7 @@ TEST(Truth, TraceIsAtTheDistanceItShows) {
     EXPECT_NEAR(dot.y, y, 0.5);  // measured 0.2
 }
 
-TEST(Truth, TimesAfterThePredictabilityLimitAreShaded) {
+TEST(DrawnPositions, TimesAfterThePredictabilityLimitAreShaded) {
     const auto scene = scene_of("horizon", {"scene.duration_s=35"});
     ASSERT_TRUE(scene.horizon());
     const auto picture = frame_of(scene, 0);
@@ -128,7 +128,7 @@ TEST(Truth, TimesAfterThePredictabilityLimitAreShaded) {
     EXPECT_FALSE(scene_of("butterfly").horizon());
 }
 
-TEST(Truth, ADivergingRunStaysInItsPanel) {
+TEST(DrawnPositions, ADivergingRunStaysInItsPanel) {
     // Euler with giant steps tears the rods: bobs and trails leave the panel, and must not be drawn over the rest
     const auto scene =
         scene_of("butterfly", {"system.model=\"constraints\"", "system.step_s=\"1/120\"", "video.size=[640, 360]"});
@@ -155,5 +155,5 @@ TEST(Truth, ADivergingRunStaysInItsPanel) {
             ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, calm.at(x, y))) << x << " " << y;
 }
 
-}  // namespace truth_test
+}  // namespace drawn_positions_test
 }  // namespace doppel

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace doppel {
-namespace all_faults_test {
+namespace all_errors_test {
 
 using Lines = std::vector<std::string>;
 
@@ -30,7 +30,7 @@ Lines starts(Lines lines, std::size_t letters) {
     return lines;
 }
 
-TEST(AllFaults, AreInTheOrderOfFileAndThenCommandLine) {
+TEST(AllErrors, AreInTheOrderOfFileAndThenCommandLine) {
     const auto errors = faults_of(R"([video]
 fps = -2
 theme = "blue"
@@ -60,7 +60,7 @@ mas_kg = 3
 }
 
 /// Neither is wrong where the key beside it is right.
-TEST(AllFaults, OmitErrorsThatAnotherMayCause) {
+TEST(AllErrors, OmitErrorsThatAnotherMayCause) {
     const auto alone = [](const std::string& text) {
         const auto errors = faults_of(text);
         EXPECT_EQ(errors.size(), 1u) << text << testing::PrintToString(errors);
@@ -82,7 +82,7 @@ TEST(AllFaults, OmitErrorsThatAnotherMayCause) {
 }
 
 /// The key that decides is there, and right. Where two do not go with it, it may be the one that is wrong.
-TEST(AllFaults, IncludeErrorsOfSeveralKeys) {
+TEST(AllErrors, IncludeErrorsOfSeveralKeys) {
     EXPECT_EQ(starts(faults_of("[system]\nlinks = 3\nmass_kg = [1, 2]\nfoo = 1\nlength_m = [1]"), 20),
               (Lines{"3:1: [system] mass_k", "4:1: [system] has no"}));
     EXPECT_EQ(starts(faults_of("[video]\nformat = \"mp4\"\ncrf = 60\ncodec = \"av1\"\nfps = 0"), 18),
@@ -93,7 +93,7 @@ TEST(AllFaults, IncludeErrorsOfSeveralKeys) {
               (Lines{"2:1: [a] links m", "4:1: [video] siz"}));
 }
 
-TEST(AllFaults, AreReportedOnceAndAtMostTwenty) {
+TEST(AllErrors, AreReportedOnceAndAtMostTwenty) {
     std::string text = "[video]\n";
     for (int i = 0; i < 23; ++i) text += "key" + std::to_string(i) + " = 1\n";
     const auto errors = faults_of(text + "size = 3\n[video.fonts]\ntext = 1\n");
@@ -104,5 +104,5 @@ TEST(AllFaults, AreReportedOnceAndAtMostTwenty) {
     EXPECT_EQ(faults_of("[video.fonts]\ntext = 1\n").size(), 1u);
 }
 
-}  // namespace all_faults_test
+}  // namespace all_errors_test
 }  // namespace doppel
