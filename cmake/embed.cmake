@@ -1,6 +1,6 @@
 # embed(MODULE PATTERN…)
 # Builds the files that match into the module, so that the program needs none of them at run time. The module finds them in
-# std::span<const doppel::EmbeddedFile> doppel::ROOM_files(), declared in "embedded/MODULE.hpp", under their paths without the
+# std::span<const doppel::EmbeddedFile> doppel::MODULE_files(), declared in "embedded/MODULE.hpp", under their paths without the
 # first folder: "figures/links.toml" of presets/figures/links.toml.
 function(embed module)
     set(files)

@@ -5,6 +5,7 @@
 #include "figure/computation.hpp"
 #include "film/estimate.hpp"
 #include "film/film.hpp"
+#include "film/page.hpp"
 #include "scene/captions.hpp"
 #include "scene/forecast.hpp"
 #include "scene/method_choice.hpp"
@@ -29,8 +30,11 @@ long frames_of(const Scene& scene) {
 }
 
 /// "H.264 veryfast, crf 18, yuv420p", "PNG sequence", "GIF".
-std::string format_words(const VideoSpec& video) {
+std::string format_words(const Scene& scene) {
+    const auto& video = scene.preset.video;
     const auto& row = video.format_row();
+    if (video.format == FilmFormat::html)
+        return fmt::format("{} of about {}", row.title, bytes_text(estimated_page_bytes(scene)));
     if (!row.is_encoded()) return std::string(row.title);
     return fmt::format("{} {}, crf {}, {}", row.title, video.preset, video.crf, name_of(video.pixel_format));
 }
@@ -175,7 +179,7 @@ void print(const SceneCheck& check) {
     const bool is_of_samples = every.is_whole() && every.numerator > 1;
     const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
-               video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(video));
+               video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(scene));
     print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
                check.render_s ? fmt::format("{:.2g} s to render", *check.render_s)
                               : "time to render unknown: " + check.why_not);
@@ -242,7 +246,7 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     json["fps"] = scene.fps.value();
     json["size"] = {video.size.width, video.size.height};
     json["format"] = name_of(video.format);
-    json["encoding"] = format_words(video);
+    json["encoding"] = format_words(scene);
     json["simulate_s"] = check.simulation.seconds;
     json["render_s"] = check.render_s ? Json(*check.render_s) : Json(nullptr);
     json["times_are_least"] = check.simulation.at_least;

@@ -4,6 +4,7 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
+#include "output/page.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
 
@@ -132,7 +133,7 @@ bool compare(const CompareOptions& options) {
     const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
     if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
     const auto junit = place_of_report(options.junit, junit_start);
-    const auto html = place_of_report(options.html, compare_page_start);
+    const auto html = place_of_report(options.html, page_start("compare"));
     Comparison comparison{options.expected, options.actual, {}};
     std::optional<Error> first_fault;
     if (folders) {

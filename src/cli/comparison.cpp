@@ -1,9 +1,10 @@
 #include "cli/comparison.hpp"
 
 #include "base/embedded.hpp"
-#include "base/error.hpp"
+#include "base/read_file.hpp"
 #include "base/text.hpp"
 #include "embedded/cli.hpp"
+#include "output/page.hpp"
 #include "output/png.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +90,7 @@ std::string header(const Comparison& comparison) {
     count(Match::missing, "bad", "missing");
     count(Match::unreadable, "bad", "not readable");
     return fmt::format(
-        "<header>\n<p class=\"kind\">Golden comparison</p>\n<h1>{}</h1>\n<ul class=\"counts\">\n{}</ul>\n"
+        "<header>\n<p class=\"kind quiet\">Golden comparison</p>\n<h1>{}</h1>\n<ul class=\"counts\">\n{}</ul>\n"
         "<dl><dt>Expected</dt><dd><code>{}</code></dd><dt>Actual</dt><dd><code>{}</code></dd></dl>\n</header>\n",
         markup(heading(comparison)), counts, markup(comparison.expected), markup(comparison.actual));
 }
@@ -120,15 +121,17 @@ std::string reasons(const ComparedPicture& picture) {
     return items;
 }
 
-/// All of a section at one scale.
 std::string figure(std::string_view kind, std::string_view caption, const ComparedPicture& picture, Size size,
                    const std::string& url) {
     return fmt::format(
         "<figure><figcaption>{1}</figcaption><button type=\"button\" aria-expanded=\"false\" title=\"Enlarge\">"
-        "<img class=\"{0}\" alt=\"{1}: {2}\" width=\"{3}\" height=\"{4}\" style=\"--part:{6:.4g}\" src=\"{5}\"/>"
-        "</button></figure>\n",
-        kind, caption, markup(picture.name), size.width, size.height, url,
-        1.0 * size.width / std::max(picture.size.width, picture.actual_size.width));
+        "<img class=\"{0}\" alt=\"{1}: {2}\" width=\"{3}\" height=\"{4}\" src=\"{5}\"/></button></figure>\n",
+        kind, caption, markup(picture.name), size.width, size.height, url);
+}
+
+/// Of the very bytes of a file.
+std::string url_of(const std::filesystem::path& png) {
+    return data_url("image/png", read_whole_file(png, {"a picture is a PNG", max_bytes}));
 }
 
 /// A picture that differs; `shown` with its pixels.
@@ -143,17 +146,16 @@ std::string section(const ComparedPicture& picture, std::size_t number, bool sho
                     height > width ? " upright" : "", number, markup(picture.name), reasons(picture));
     if (!shown) return html + "<p class=\"quiet\">Not shown: the page would be too large.</p>\n</section>\n";
     html += fmt::format("<div class=\"three{}\">\n", same_size ? "" : " two");
-    html += figure("expected", "Expected", picture, picture.size, data_url(picture.expected));
-    html += figure("actual", "Actual", picture, picture.actual_size, data_url(picture.actual));
+    html += figure("expected", "Expected", picture, picture.size, url_of(picture.expected));
+    html += figure("actual", "Actual", picture, picture.actual_size, url_of(picture.actual));
     if (!same_size) return html + "</div>\n</section>\n";
     const auto difference = amplified_difference(read_png(picture.expected), read_png(picture.actual));
-    html += figure("difference", "Difference ×16", picture, picture.size, data_url(difference));
-    const auto shape = fmt::format("style=\"--width:{};--height:{}\" hidden=\"\"", width, height);
+    html += figure("difference", "Difference ×16", picture, picture.size, data_url("image/png", png_bytes(difference)));
     return html + fmt::format(
-                      "</div>\n<div class=\"names\" {0}><span>Expected</span><span>Actual</span></div>\n"
-                      "<div class=\"slider\" {0}><input type=\"range\" min=\"0\" max=\"100\" step=\"0.25\" "
-                      "value=\"50\" aria-label=\"Expected over actual: {1}\"/><i></i></div>\n</section>\n",
-                      shape, markup(picture.name));
+                      "</div>\n<div class=\"names\" hidden=\"\"><span>Expected</span><span>Actual</span></div>\n"
+                      "<div class=\"slider\" hidden=\"\"><input type=\"range\" min=\"0\" max=\"100\" step=\"0.25\" "
+                      "value=\"50\" aria-label=\"Expected over actual: {}\"/><i></i></div>\n</section>\n",
+                      markup(picture.name));
 }
 
 /// Pictures without pixels to show: those that cannot be compared, with the reason, or those that pass.
@@ -180,30 +182,20 @@ std::string list(const Comparison& comparison, bool passing) {
 }  // namespace
 
 void write_compare_page(const std::filesystem::path& place, const Comparison& comparison) {
-    const auto files = cli_files();
-    const auto file = std::ranges::find(files, "cli/compare.html", &EmbeddedFile::name);
-    if (file == files.end()) throw io_failed("the page of compare was not built in");
-    const auto title = file->contents.find("{title}"), body = file->contents.find("{body}");
-    OutputFile page(place);
-    std::size_t written = 0;
-    const auto write = [&](std::string_view text) {
-        page.write(text);
-        written += text.size();
-    };
-    write(file->contents.substr(0, title));
-    write(markup(heading(comparison)));
-    write(file->contents.substr(title + 7, body - title - 7));
-    write(header(comparison) + contents(comparison) + "<main>\n" + list(comparison, false));
+    auto body = header(comparison) + contents(comparison) + "<main>\n" + list(comparison, false);
     for (std::size_t i = 0; i < comparison.pictures.size(); ++i)
         if (comparison.pictures[i].match == Match::differs)
-            write(section(comparison.pictures[i], i + 1, written < max_bytes));
-    write(list(comparison, true));
-    write(
-        fmt::format("</main>\n<footer><p>A picture passes where it differs no more than graphics drivers do: in few "
-                    "pixels, by little. Doppel {} ({})</p></footer>",
-                    version(), revision()));
-    write(file->contents.substr(body + 6));
-    page.close();
+            body += section(comparison.pictures[i], i + 1, body.size() < max_bytes);
+    body += list(comparison, true);
+    body += fmt::format(
+        "</main>\n<footer><p>A picture passes where it differs no more than graphics drivers do: in few "
+        "pixels, by little. Doppel {} ({})</p></footer>",
+        version(), revision());
+    write_file(place, page_text({.kind = "compare",
+                                 .title = heading(comparison),
+                                 .body = std::move(body),
+                                 .styles = {embedded_file(cli_files(), "cli/compare.css")},
+                                 .scripts = {embedded_file(cli_files(), "cli/compare.js")}}));
 }
 
 }  // namespace doppel

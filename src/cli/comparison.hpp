@@ -32,9 +32,8 @@ struct Comparison {
     std::string summary() const;
 };
 
-/// What the reports begin with.
+/// What the report begins with.
 inline constexpr std::string_view junit_start = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- Doppel compare -->";
-inline constexpr std::string_view compare_page_start = "<!DOCTYPE html>\n<!-- Doppel compare -->";
 
 /// JUnit's XML, as test servers read it: a test case a picture; a picture that differs or is missing is a failure, one
 /// that cannot be read an error. Throws Error (exit 4) where it cannot be written.

@@ -139,20 +139,22 @@ void make_figures(const FigureCommandOptions& options) {
 void add_figure(CLI::App& app) {
     auto options = std::make_shared<FigureCommandOptions>();
     auto& command =
-        *app.add_subcommand("figure", "Draws figures: PNG, PDF or SVG, CSV and manifest; \"all\" draws every one");
+        *app.add_subcommand("figure", "Draws figures: PNG, PDF, SVG or HTML, CSV, manifest; \"all\" draws every one");
     command.footer(
         "Examples:\n"
         "  doppel figure fig2-right --set grid.right=exponent\n"
         "  doppel figure fig2-right -o - > fig2-right.png\n"
         "  doppel figure all --out figures --scale 2\n"
         "  doppel figure fig2-right --format pdf --set chart.width_cm=8.6\n"
+        "  doppel figure fig2-right --format html    # point at a curve to read its numbers\n"
         "  doppel figure flip-map --shard 3/8        # a part, on one of eight machines\n"
         "  doppel figure flip-map --merge            # all parts in DIR/flip-map/ together\n"
         "  doppel figure flip-map --tiles --set grid.x.points=8192 --set grid.y.points=8192\n"
         "The same command resumes an interrupted figure.");
     add_run_options(command, *options, "Threads; default: one a core; same numbers for any N");
     add_value(command, "--size", options->size, "WxH", "Size of the layout, px");
-    add_choice(command, "--format", options->format, "FORMAT", "Format of the picture", {"png", "pdf", "svg"});
+    add_choice(command, "--format", options->format, "FORMAT",
+               "Format of the picture; html: a page that tells the numbers", {"png", "pdf", "svg", "html"});
     add_value(command, "--scale", options->scale, "N", "Scale: 2 draws four pixels for each pixel of the layout")
         ->check(CLI::Range(0.25, 8.0));
     add_value(command, "--shard", options->shard, "I/N", "Compute part I of N only, for --merge");

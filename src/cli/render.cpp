@@ -111,7 +111,8 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     const Destination to(options.out, scenes.size(),
                          run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
     run_options.out = to.folder();
-    work_on_all(scenes, options.progress, run_options.pictures ? "frames" : "samples", to.streamed(),
+    const bool counts_frames = run_options.pictures && video.format != FilmFormat::html;
+    work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed(),
                 [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
 }
 
@@ -162,7 +163,8 @@ void add_render(CLI::App& app) {
     add_value(command, "--from", options->from, "SECONDS", "Start time, s");
     add_value(command, "--to", options->to, "SECONDS", "End time, s, not included: --to 20 makes 20 s");
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px, even");
-    add_choice(command, "--format", options->format, "FORMAT", "Of the film; png: a sequence",
+    add_choice(command, "--format", options->format, "FORMAT",
+               "Of the film; png: a sequence; html: a page to use in a browser",
                {format_names.begin(), format_names.end()});
     add_choice(command, "--quality", options->quality, "QUALITY",
                "draft: a quarter of the pixels; standard: as the preset; best: slow", {"draft", "standard", "best"});

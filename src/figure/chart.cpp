@@ -9,6 +9,7 @@ namespace {
 constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
 constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/chart_parts.hpp), layout px
 constexpr double paths_scale = 4;                 // for output made of paths
+constexpr double page_scale = 2;                  // for a page, whose picture may be pixels
 constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL supports, which reports its own limit
 
 Size scaled(double width, double height, double scale) {
@@ -25,7 +26,7 @@ ChartLayout layout_of(const ChartSpec& chart) {
         width = *chart.width_cm * pt_per_cm / pt, height = high * pt_per_cm / pt;
         scale = chart.dpi / cm_per_inch * *chart.width_cm / width;
     }
-    if (chart.format != PictureFormat::png) scale = paths_scale;
+    if (chart.format != PictureFormat::png) scale = chart.format == PictureFormat::html ? page_scale : paths_scale;
     ChartLayout layout{
         .picture = scaled(width, height, scale), .scale = static_cast<float>(scale), .width_pt = width * pt};
     if (chart.width_cm) layout.unit = 1;

@@ -38,7 +38,8 @@ void chart_fields(Visit& visit, Chart& chart) {
     const auto of_paper = [&](std::string_view what) {
         return Condition{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
     };
-    visit({"format", "format of the picture: pixels, or text and lines for a paper"}, chart.format);
+    visit({"format", "format of the picture: pixels, text and lines for a paper, or a page that tells the numbers"},
+          chart.format);
     visit(size_field, chart.size);
     visit(theme_field, chart.theme);
     visit({.key = "width_cm",

@@ -2,6 +2,7 @@
 
 #include "output/csv.hpp"
 #include "plot/plot.hpp"
+#include "scene/preset.hpp"
 
 #include <algorithm>
 #include <array>
@@ -144,6 +145,14 @@ public:
 
     /// For map figures, in which each panel shows one map; otherwise nothing.
     virtual std::optional<MapCells> map() const { return std::nullopt; }
+
+    /// For a map or a sweep over release angles of chains of one to three ideal links: the keys of the axes, x first, and one
+    /// pair of the figure.
+    struct Releases {
+        std::vector<std::string> keys;
+        Preset pair;
+    };
+    virtual std::optional<Releases> releases() const { return std::nullopt; }
 
     /// All settings that the numbers depend on, as tables of the preset (TOML).
     const std::string& resolved() const { return settings_; }

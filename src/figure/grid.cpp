@@ -173,6 +173,19 @@ std::optional<MapCells> Grid::map() const {
     return MapCells{static_cast<int>(groups_[0].x.count), static_cast<int>(y_.count), groups_.size(), cell_numbers_};
 }
 
+std::optional<Experiment::Releases> Grid::releases() const {
+    constexpr std::size_t most_links = 3;
+    if (pair_.a.is_mechanism() || !pair_.a.physical.is_none() || pair_.a.links() > most_links) return std::nullopt;
+    Releases releases{{}, pair_at({0, 0, 0})};
+    for (const auto* axis : {&x_, &y_}) {
+        if (!axis->exists()) continue;
+        if (!axis->angle) return std::nullopt;
+        releases.keys.push_back(axis->key.starts_with("theta") ? fmt::format("system.angle_deg[{}]", *axis->angle)
+                                                               : axis->key);
+    }
+    return releases;
+}
+
 void Grid::compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
     for (std::size_t done = 1; !numbers.empty(); first += done, numbers = numbers.subspan(done)) {
         done = 1;

@@ -89,6 +89,7 @@ public:
     double units(std::size_t trial) const override;
     std::string subtitle() const override { return subtitle_; }
     std::optional<MapCells> map() const override;
+    std::optional<Releases> releases() const override;
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override;
     bool fits(std::size_t trial, std::span<const double> numbers) const override;
     std::vector<std::string> columns() const override;

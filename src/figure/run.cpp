@@ -5,6 +5,7 @@
 #include "base/machine.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
+#include "figure/page.hpp"
 #include "figure/tiles.hpp"
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
@@ -55,14 +56,20 @@ Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
 
 namespace {
 
-/// Throws Error (exit 2) if the map cells of the trials in `header` exceed the memory, or the disk space of `folder`.
+/// Throws Error (exit 2) if the map cells of the trials in `header` exceed the memory, or the disk space of `folder`,
+/// or what a page holds.
 /// Other figures need no check.
 void require_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
     const auto map = figure.experiment->map();
     if (!map) return;
     const double share = static_cast<double>(header.last() - header.first()) / static_cast<double>(header.trials);
     const auto numbers = static_cast<double>(map->numbers);
-    const double cells = share * map->columns * map->rows * static_cast<double>(map->panels);
+    constexpr double most_on_page = 1e6;
+    const double all = 1.0 * map->columns * map->rows * static_cast<double>(map->panels);
+    if (figure.chart.format == PictureFormat::html && !tiles && all > most_on_page)
+        throw bad_input("{}: a page shows maps of at most {} cells; this one has {}; take fewer, or --tiles",
+                        figure.name, grouped(std::lround(most_on_page)), grouped(std::lround(all)));
+    const double cells = share * all;
     const auto refuse = [&](const char* what, double needed, double there) {
         return bad_input("{}: {} × {} cells take {} of {}, and there are {}; take fewer", figure.name,
                          grouped(map->columns), grouped(map->rows), bytes_text(needed), what, bytes_text(there));
@@ -129,9 +136,7 @@ public:
                                                             theme_named(figure.chart.theme), files, jobs_, stop_)
                                               : Json();
             if (!options_.tiles) {
-                const auto page = compose_figure(figure, trials);
-                write_picture(figure, page, files);
-                for (const auto& note : page.notes) warnings.push_back(note);
+                warnings = write_picture(figure, trials, files);
                 check_stop();
                 const auto csv = figure.name + ".csv";
                 Csv table(files.file(csv), figure.experiment->columns());
@@ -150,10 +155,17 @@ public:
     }
 
 private:
-    void write_picture(const FigurePreset& figure, const Page& drawn, Transaction& files) {
+    /// Returns what there was no room for.
+    std::vector<std::string> write_picture(const FigurePreset& figure, const KnownTrials& trials, Transaction& files) {
         const auto format = figure.chart.format;
-        const double width_pt = layout_of(figure.chart).width_pt;
         const auto name = fmt::format("{}.{}", figure.name, name_of(format));
+        if (format == PictureFormat::html) {
+            write_file(files.file(name), figure_page(figure, page_of(figure, trials), theme_named(figure.chart.theme)));
+            files.finished(name);
+            return {};
+        }
+        const auto drawn = compose_figure(figure, trials);
+        const double width_pt = layout_of(figure.chart).width_pt;
         const auto metadata =
             metadata_of(figure.title, figure.name, fmt::format("how it was made is in {}.json", figure.name));
         if (format == PictureFormat::png)
@@ -162,6 +174,7 @@ private:
         else
             write_file(files.file(name), page_file(drawn, format, width_pt, metadata));
         files.finished(name);
+        return drawn.notes;
     }
 
     void check_stop() const { throw_if_set(stop_); }

@@ -1,9 +1,12 @@
 #include "figure/tiles.hpp"
 
 #include "base/embedded.hpp"
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
 #include "embedded/figure.hpp"
+#include "figure/page.hpp"
+#include "output/page.hpp"
 #include "output/png.hpp"
 
 #include <algorithm>
@@ -33,45 +36,34 @@ std::vector<Picture> levels_of(Picture cells) {
     return levels;
 }
 
-Json axis_json(const PlotAxis& axis) {
-    return {{"label", axis.label}, {"from", *axis.low}, {"to", *axis.high}, {"logarithmic", axis.logarithmic}};
+std::string hexadecimal(Color color) {
+    const auto bytes = bytes_of(color);
+    return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
 }
 
-/// The bar of colours with its numbers.
-std::string scale_markup(const HeatMap& map, const Theme& theme) {
-    const auto hexadecimal = [](Color color) {
-        const auto bytes = bytes_of(color);
-        return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
-    };
+/// The bar of colours from its lower end, and its numbers: [share of the bar, text].
+Json scale_json(const HeatMap& map, const Theme& theme) {
     constexpr int stops = 64;
     MapScale scale(map);
-    std::string colors, numbers;
-    for (int i = 0; i <= stops; ++i)
-        colors += (i == 0 ? "" : ",") + hexadecimal(scale.color(static_cast<double>(i) / stops));
+    Json colors = Json::array(), numbers = Json::array();
+    for (int i = 0; i <= stops; ++i) colors.push_back(hexadecimal(scale.color(static_cast<double>(i) / stops)));
     scale.axis.to = 380;  // px on the page
     for (const auto& tick : chart_ticks(scale.axis, {.size = 14, .across = false}, map.threshold))
-        if (!tick.text.empty())
-            numbers +=
-                fmt::format("<span style=\"--at:{:.1f}%\">{}</span>", 100 * scale.axis.share(tick.value), tick.text);
-    auto text = fmt::format("{}<div id=\"scale\" style=\"--colors:{}\">{}</div>", markup(map.label), colors, numbers);
-    if (map.none_label.empty()) return text;
-    return fmt::format("{}<div id=\"none\" style=\"border-color:{}\">{}</div>", text,
-                       hexadecimal(map.none_is_bad ? theme.bad : theme.none), markup(map.none_label));
+        if (!tick.text.empty()) numbers.push_back({scale.axis.share(tick.value), tick.text});
+    return {{"colors", colors}, {"numbers", numbers}, {"none", hexadecimal(map.none_is_bad ? theme.bad : theme.none)}};
 }
 
-/// The page, in which {title}, {subtitle}, {scale} and {map} stand for what it shows.
-std::string page_text(const std::array<std::pair<std::string_view, std::string>, 4>& values) {
-    const auto files = figure_files();
-    const auto file = std::ranges::find(files, "figure/tiles.html", &EmbeddedFile::name);
-    if (file == files.end()) throw io_failed("the page of tiles was not built in");
-    std::string text;
-    for (std::string_view rest = file->contents; !rest.empty();) {
-        const auto value = std::ranges::find_if(values, [&](const auto& v) { return rest.starts_with(v.first); });
-        const auto taken = value == values.end() ? std::min(rest.find('{', 1), rest.size()) : value->first.size();
-        text += value == values.end() ? rest.substr(0, taken) : std::string_view(value->second);
-        rest.remove_prefix(taken);
-    }
-    return text;
+std::string body_of(const FigurePreset& figure, const HeatMap& map) {
+    return fmt::format(R"html(<header><h1 dir="auto">{}</h1><p dir="auto">{}</p></header>
+<main>
+<canvas tabindex="0" aria-label="map: drag to move, scroll to zoom"></canvas>
+<p id="at"></p>
+<nav><button title="closer (+)" data-by="2">+</button><button title="farther (−)" data-by="0.5">−</button><button title="all (0)" data-by="0">▢</button></nav>
+</main>
+<aside>{}<div id="scale"></div><div id="none"{}>{}</div></aside>
+<footer>Drag to move, scroll or pinch to zoom, arrows and + − 0 on the keyboard. The address keeps the place.</footer>)html",
+                       markup(figure.title), markup(figure.subtitle), markup(map.label),
+                       map.none_label.empty() ? " hidden=\"\"" : "", markup(map.none_label));
 }
 
 }  // namespace
@@ -80,6 +72,8 @@ void require_map(const FigurePreset& figure) {
     const auto map = figure.experiment->map();
     if (!map || map->panels > 1)
         throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
+    if (figure.chart.format == PictureFormat::html)
+        throw bad_input("{0}: --tiles writes {0}.html itself; the format must be png, pdf or svg", figure.name);
 }
 
 Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
@@ -101,14 +95,19 @@ Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& th
         });
     }
     files.finished(name);
-    const Json map{{"folder", in_address(name)},   {"tile", tile},           {"levels", levels.size() - 1},
-                   {"columns", plot.map->columns}, {"rows", plot.map->rows}, {"x", axis_json(plot.x)},
-                   {"y", axis_json(plot.y)}};
-    write_file(files.file(html),
-               page_text({{{"{title}", markup(figure.title)},
-                           {"{subtitle}", markup(figure.subtitle)},
-                           {"{scale}", scale_markup(*plot.map, theme)},
-                           {"{map}", in_script(map.dump(-1, ' ', false, Json::error_handler_t::replace))}}}));
+    const auto axis = [](const PlotAxis& of) { return axis_json(of.label, {*of.low, *of.high, 0, 1, of.logarithmic}); };
+    const Json map{{"folder", in_address(name)},  {"tile", tile},
+                   {"levels", levels.size() - 1}, {"columns", plot.map->columns},
+                   {"rows", plot.map->rows},      {"x", axis(plot.x)},
+                   {"y", axis(plot.y)},           {"scale", scale_json(*plot.map, theme)}};
+    write_file(files.file(html), page_text({.kind = "tiles",
+                                            .title = figure.title,
+                                            .body = body_of(figure, *plot.map),
+                                            .styles = {embedded_file(figure_files(), "figure/tiles.css")},
+                                            .scripts = {embedded_file(figure_files(), "figure/axes.js"),
+                                                        embedded_file(figure_files(), "figure/tiles.js")},
+                                            .data = map,
+                                            .has_pictures_beside = true}));
     files.finished(html);
     return {
         {"folder", name}, {"size_px", tile}, {"levels", levels.size()}, {"cells", {plot.map->columns, plot.map->rows}}};

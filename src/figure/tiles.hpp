@@ -12,7 +12,7 @@ namespace doppel {
 /// keys, without a network. Returns what the manifest says of it. Throws Error: exit 4; 130 soon after `stop` is set.
 Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
                  const std::atomic<bool>& stop);
-/// Throws Error (exit 2) where the figure is no map, or several.
+/// Throws Error (exit 2) where the figure is no map, or several, or its own format writes a page.
 void require_map(const FigurePreset& figure);
 
 }  // namespace doppel

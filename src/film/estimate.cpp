@@ -136,6 +136,7 @@ double estimated_render(const Scene& scene, const SimulationEstimate& simulation
     const auto samples = static_cast<double>(scene.samples);
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
     const double sample_s = motions_s / samples;
+    if (scene.preset.video.format == FilmFormat::html) return motions_s;
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
     if (simulation.at_least || sample_s * static_cast<double>(one_frame) > patience_s) return motions_s;

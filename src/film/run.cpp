@@ -3,6 +3,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"
+#include "film/page.hpp"
 #include "film/pair_table.hpp"
 #include "film/recording.hpp"
 #include "output/transaction.hpp"
@@ -120,7 +121,10 @@ Part part_of_frames(const Scene& scene, const RunOptions& options) {
 Part part_of(const Scene& scene, const RunOptions& options) {
     const bool by_time = options.from_s || options.to_s;
     const auto part = by_time ? part_between(scene, options) : part_of_frames(scene, options);
-    const auto poster = options.pictures ? poster_frame(scene) : std::nullopt;
+    const bool is_page = options.pictures && scene.preset.video.format == FilmFormat::html;
+    if (is_page && part.begin > Moment{})
+        throw bad_input("a page shows {} from the start: --from and --frames must begin at 0", scene.preset.name);
+    const auto poster = options.pictures && !is_page ? poster_frame(scene) : std::nullopt;
     if (poster && (*poster < part.first || *poster >= part.last))
         throw bad_input("--frames {}:{}: the poster of {}, poster_s = {}, is frame {}; --frames {}:{} includes it",
                         part.first, part.last, scene.preset.name, scene.preset.video.poster_s->value(), *poster,
@@ -138,10 +142,9 @@ void check_run(const Scene& scene, const RunOptions& options) {
 std::vector<std::string> run_files(const Scene& scene, bool pictures) {
     const auto& [name, video] = std::pair(scene.preset.name, scene.preset.video);
     std::vector<std::string> files;
-    if (pictures)
-        files.push_back(video.format == FilmFormat::png ? "frames/"
-                                                        : fmt::format("{}.{}", name, name_of(video.format)));
+    if (pictures) files.push_back(video.format == FilmFormat::png ? "frames/" : name + extension(video.format));
     files.push_back(name + ".csv");
+    if (video.format == FilmFormat::html) pictures = false;
     if (pictures && video.poster_s) files.push_back(name + ".poster.png");
     if (pictures && video.contact_sheet) files.push_back(name + ".contact.png");
     files.push_back(name + ".json");
@@ -155,13 +158,17 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     record.first_sample = part.first_sample();
     record.last_sample = part.last_sample();
     record.samples = record.last_sample - record.first_sample + 1;
-    const long total = options.pictures ? part.last - part.first : record.samples;
+    const bool is_page = options.pictures && scene.preset.video.format == FilmFormat::html;
+    const bool is_film = options.pictures && !is_page;
+    const long total = is_film ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
     parts.require(scene.preset.name + ".json");
     Recording recording(scene, part.end, options.pictures, stop);
     std::optional<Film> film;
-    if (options.pictures && !recording.fails())
+    std::optional<FilmPage> page;
+    if (is_film && !recording.fails())
         film.emplace(scene, recording.bounds(), options, part.first, parts, record, stop);
+    if (is_page && !recording.fails()) page.emplace(scene, recording.bounds(), parts);
     const auto csv_name = scene.preset.name + ".csv";
     PairTable table(parts.file(csv_name), scene, options.columns);
     long frame = part.first, done = 0;
@@ -170,9 +177,10 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             const auto& state = snapshot.pair;
             throw_if_set(stop);
             if (film) film->add(snapshot);
+            if (page) page->add(snapshot);
             if (state.share == 0 && state.sample >= record.first_sample) {
                 table.add(snapshot, recording.record().outcome.start_distance);
-                if (!options.pictures) report({++done, total});
+                if (!is_film) report({++done, total});
             }
             if (!film || frame == part.last || state.moment() != scene.frames.at(frame)) return;
             film->write_frame(frame++);
@@ -186,6 +194,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     }
     const auto finish = [&] {
         if (film) film->finish();
+        if (page) page->finish();
         if (film && scene.preset.video.contact_sheet)
             film->write(".contact.png", contact_sheet_of(scene, recording, part.first, part.last, options.gl, stop));
         table.finish();

@@ -107,12 +107,8 @@ float StripLayer::draw_limits(DisplayList& list) const {
 void StripLayer::frame(DisplayList& list) const {
     const auto now = curves();
     const auto& area = strip_.area;
-    for (auto words : strip_caption(strip_.kind, state_.scene, layout_, now, state_.outcome.start_distance == 0,
-                                    strip_.cell.width())) {
-        if (words.anchor.y > caption_line(layout_) * (static_cast<float>(strip_.lines) - 0.5f)) break;  // no space left
-        words.anchor = {strip_.cell.left + words.anchor.x, strip_.baseline + words.anchor.y};
+    for (auto& words : placed_caption(strip_, state_.scene, layout_, now, state_.outcome.start_distance == 0))
         list.push_back(std::move(words));
-    }
     if (const auto since = state_.outcome.divergence.since(); since && is_of_pair()) {
         DisplayList below;
         float foot = draw_limits(below);

@@ -179,6 +179,15 @@ std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layou
     return labels;
 }
 
+std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, const Layout& layout,
+                                  const std::vector<StripCurve>& curves, bool is_alike) {
+    auto words = strip_caption(strip.kind, scene, layout, curves, is_alike, strip.cell.width());
+    const float room = caption_line(layout) * (static_cast<float>(strip.lines) - 0.5f);
+    std::erase_if(words, [&](const Label& label) { return label.anchor.y > room; });
+    for (auto& label : words) label.anchor = {strip.cell.left + label.anchor.x, strip.baseline + label.anchor.y};
+    return words;
+}
+
 int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width) {
     PairState any;
     for (const auto& [seen, side] : {std::pair{&any.a, &scene.a}, {&any.b, &scene.b}}) {

@@ -37,6 +37,10 @@ float above_curves(const Layout& layout);
 std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
                                  const std::vector<StripCurve>& curves, bool starts_equal, float width);
 
+/// The caption at its place in the picture, as far as the strip has space.
+std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, const Layout& layout,
+                                  const std::vector<StripCurve>& curves, bool starts_equal);
+
 /// The number of lines that a caption takes for any values.
 int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width);
 

@@ -54,7 +54,8 @@ std::optional<FormatError> size_error(const VideoOptions& options, const FormatR
     if (std::min(width, height) < 1 || std::max(width, height) > row.largest_side)
         return FormatError{"size",
                            fmt::format("must be from 1 to {} of {}; it is {}", row.largest_side, row.title, given)};
-    if (options.format != FilmFormat::png && !libav_takes(options.size))
+    const bool is_by_libav = options.format != FilmFormat::png && options.format != FilmFormat::html;
+    if (is_by_libav && !libav_takes(options.size))
         return FormatError{"size", fmt::format("exceeds what libav encodes as {}; it is {}; {} is possible{}",
                                                row.title, given, words_of(largest_similar(options.size)),
                                                options.format == FilmFormat::mp4
@@ -72,7 +73,7 @@ std::optional<FormatError> alpha_error(const VideoOptions& options, const Format
     const auto error = [](std::string_view key, std::string_view value) {
         return FormatError{
             "transparent",
-            fmt::format("needs a format with opacity: png, apng, or webm (VP9, yuv420p); the {} is \"{}\"", key,
+            fmt::format("needs a format with opacity: png, apng, html, or webm (VP9, yuv420p); the {} is \"{}\"", key,
                         value)};
     };
     if (!options.transparent) return std::nullopt;

@@ -12,10 +12,10 @@
 
 namespace doppel {
 
-/// The output format of a film; png: one picture for each frame.
-enum class FilmFormat { mp4, webm, gif, apng, png };
+/// The output format of a film; png: one picture for each frame; html: a page that draws it.
+enum class FilmFormat { mp4, webm, gif, apng, png, html };
 /// The names in presets and on the command line. They are also libav's container names and the file extensions.
-inline constexpr std::array<std::string_view, 5> format_names{"mp4", "webm", "gif", "apng", "png"};
+inline constexpr std::array<std::string_view, 6> format_names{"mp4", "webm", "gif", "apng", "png", "html"};
 
 /// Chroma subsampling and bits per sample for H.264, VP9 and AV1.
 enum class PixelFormat { yuv420, yuv444, yuv420_10 };
@@ -50,6 +50,7 @@ inline constexpr std::array film_formats{
     FormatRow{FilmFormat::apng, "", "animated PNG", 65535, 0, true,
               "an animated PNG has 16 bits for each number of a fraction", 0, 65535},
     FormatRow{FilmFormat::png, "", "PNG sequence", 65535, 0, true},
+    FormatRow{FilmFormat::html, "", "HTML page", 65535, 0, true},
 };
 
 /// The codecs to choose from; empty if the format has only one.
@@ -82,7 +83,7 @@ struct FormatError {
 std::optional<FormatError> format_error(const VideoOptions& options);
 std::optional<FormatError> rate_error(const VideoOptions& options);
 
-/// ".mp4", ".webm", ".gif", ".apng".
+/// ".mp4", ".webm", ".gif", ".apng", ".html".
 inline std::string extension(FilmFormat format) {
     return "." + std::string(format_names[static_cast<std::size_t>(format)]);
 }

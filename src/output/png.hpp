@@ -42,13 +42,4 @@ std::string png_text_chunks(const Metadata& metadata);
 /// `jobs` threads, or one for each core if it is 0; fewer if pictures of this size would take too much memory.
 int png_threads(int jobs, Size size);
 
-/// The URL "data:image/png;base64,…" of a PNG file. Throws Error (exit 4) if it cannot be read.
-std::string data_url(const std::filesystem::path& png);
-
-/// The same for a picture.
-std::string data_url(const Picture& picture, const PngOptions& options = {});
-
-/// The URL "data:TYPE;base64,…" for these bytes.
-std::string data_url(std::string_view type, std::string_view bytes);
-
 }  // namespace doppel

@@ -52,7 +52,7 @@ std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const 
 
 void check_video(const VideoOptions& options) {
     check_options(options);
-    if (options.format == FilmFormat::png) return;
+    if (options.format == FilmFormat::png || options.format == FilmFormat::html) return;
     encoding_of(options);
     if (options.format == FilmFormat::gif) check_gif_filters();
 }

@@ -114,7 +114,8 @@ void choose_encoder(const VideoOptions& options, Encoding& encoding) {
             encoding.png_chunks = png_text_chunks(options.metadata);
             break;
         case FilmFormat::png:
-            throw std::logic_error("a sequence has no encoder");
+        case FilmFormat::html:
+            throw std::logic_error("no encoder writes this format");
     }
 }
 

@@ -29,9 +29,14 @@ std::string sha256_of(const Next& next) {
     av_sha_init(sha.get(), 256);
     for (std::string_view block = next(); !block.empty(); block = next())
         av_sha_update(sha.get(), reinterpret_cast<const std::uint8_t*>(block.data()), block.size());
-    std::array<std::uint8_t, 32> digest;
-    av_sha_final(sha.get(), digest.data());
-    return fmt::format("{:02x}", fmt::join(digest, ""));
+    std::string digest(32, '\0');
+    av_sha_final(sha.get(), reinterpret_cast<std::uint8_t*>(digest.data()));
+    return digest;
+}
+
+std::string hexadecimal(const std::string& digest) {
+    const std::vector<std::uint8_t> bytes(digest.begin(), digest.end());
+    return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 /// The contents of a manifest of Doppel; null if the file is none.
@@ -109,14 +114,18 @@ bool made_by(const fs::path& path, std::string_view program) {
 std::string sha256_of_file(const fs::path& path) {
     const Stream file = open_file(path);
     std::array<char, std::size_t{1} << 16> block;
-    auto sum = sha256_of(
+    const auto sum = sha256_of(
         [&] { return std::string_view(block.data(), std::fread(block.data(), 1, block.size(), file.get())); });
     if (std::ferror(file.get())) throw cannot(path, "read");
-    return sum;
+    return hexadecimal(sum);
+}
+
+std::string sha256_digest(std::string_view text) {
+    return sha256_of([&] { return std::exchange(text, {}); });
 }
 
 std::string sha256_of_text(std::string_view text) {
-    return sha256_of([&] { return std::exchange(text, {}); });
+    return hexadecimal(sha256_digest(text));
 }
 
 }  // namespace doppel

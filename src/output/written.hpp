@@ -38,5 +38,7 @@ bool made_by(const std::filesystem::path& path, std::string_view program = "Dopp
 std::string sha256_of_file(const std::filesystem::path& path);
 /// SHA-256 of a text.
 std::string sha256_of_text(std::string_view text);
+/// Its 32 bytes.
+std::string sha256_digest(std::string_view text);
 
 }  // namespace doppel

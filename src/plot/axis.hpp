@@ -29,6 +29,12 @@ struct Axis {
     float at(double value) const;
 };
 
+/// The axes of a panel, with their ranges.
+struct PlotRanges {
+    Axis x, y;
+    std::optional<Axis> right;
+};
+
 /// "10⁻⁴"; 0.1, 1 and 10 are written as such.
 std::string power_of_ten(int exponent);
 

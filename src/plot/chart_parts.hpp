@@ -32,12 +32,6 @@ struct LabelNeeds {
     friend bool operator==(const LabelNeeds&, const LabelNeeds&) = default;
 };
 
-/// The ranges of a panel's axes.
-struct PlotRanges {
-    Axis x, y;
-    std::optional<Axis> right;
-};
-
 /// The requested ranges. Missing ends are fitted to the contents with a small margin (none around a map, or below
 /// zero).
 PlotRanges fitted_ranges(const Plot& plot);
@@ -98,8 +92,9 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 Gutters united(const Gutters& a, const Gutters& b);
 
 /// Draws the panel in its cell, with the space `given` for the labels of curves. Returns the space that these labels
-/// need. Draws nothing if the axis labels leave no space.
-LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
+/// need. Draws nothing if the axis labels leave no space. Sets the pixels of the axes in
+/// `ranges`.
+LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, const Gutters& around,
                       const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list);
 
 struct PanelGrid {
@@ -109,8 +104,8 @@ struct PanelGrid {
 /// The figure's number of columns, or the one that makes the panels largest.
 PanelGrid grid_of(const Figure& figure, const Area& body);
 
-/// Draws all panels of the figure, and the colour bar that they share.
-void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list);
+/// Draws all panels of the figure, and the colour bar that they share. Returns the axes of each, with their pixels.
+std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list);
 
 /// A curve in pixels, clipped to its panel.
 struct DrawnCurve {

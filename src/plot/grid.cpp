@@ -98,7 +98,7 @@ PanelGrid grid_of(const Figure& figure, const Area& body) {
     return best;
 }
 
-void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
+std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
     const PanelGrid grid = grid_of(figure, body);
     if (const HeatMap* map = shared_map(figure)) {
         const float gutter = bar_gutter(*map, body.height(), style);
@@ -142,7 +142,7 @@ void draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageLi
             left = right + across;
             if ((i + 1) % columns == 0) left = body.left, top = bottom + down;
         }
-        if (needs == given) return;
+        if (needs == given) return ranges;
         given = needs;
         list.resize(before);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
+#include "plot/axis.hpp"
 #include "render/display_list.hpp"
 #include "render/typeface.hpp"
 
@@ -13,8 +14,8 @@
 
 namespace doppel {
 
-/// The file format of a page: pixels (png), or paths and text.
-enum class PictureFormat { png, pdf, svg };
+/// The file format of a page: pixels (png), paths and text, or a figure that tells its numbers (figure/page.hpp).
+enum class PictureFormat { png, pdf, svg, html };
 
 /// A picture stretched to a rectangle, whose edges are rounded to whole pixels; nearest neighbour.
 struct Image {
@@ -51,13 +52,14 @@ struct Page {
     PageList items;
     Typeface typeface = {};               // fonts of its text
     std::vector<std::string> notes = {};  // what was left out for lack of space
+    std::vector<PlotRanges> panels = {};  // the axes of a figure's panels
 };
 
 /// Draws the page with Cairo: the same on every machine except for rounding. Throws Error: exit 4 if memory is
 /// exhausted, 130 soon after `stop` is set.
 Picture picture_of(const Page& page, const std::atomic<bool>& stop = false);
 
-/// The page as a PDF 1.5 or an SVG, `width_pt` (1/72 inch) wide: paths as paths, images unscaled, glows as rings. A PDF
+/// The page as a PDF 1.5 or, for any other format, an SVG, `width_pt` (1/72 inch) wide: paths as paths, images unscaled, glows as rings. A PDF
 /// contains the glyphs it needs, and its text can be searched; in an SVG letters are paths. Of the metadata, both store
 /// title, comment and encoder. Throws Error (exit 4) if memory is exhausted.
 std::string page_file(const Page& page, PictureFormat format, double width_pt, const Metadata& metadata);

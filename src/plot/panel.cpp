@@ -18,16 +18,12 @@ Axis placed(Axis axis, float from, float to) {
 /// The data that all drawing in a panel needs.
 struct Panel {
     const Plot& plot;
-    Axis x, y, right;
+    const PlotRanges& ranges;
     Area area;
+    const Axis &x = ranges.x, &y = ranges.y;
 
-    const Axis& y_of(const Curve& curve) const { return curve.right ? right : y; }
+    const Axis& y_of(const Curve& curve) const { return curve.right && ranges.right ? *ranges.right : y; }
 };
-
-Panel make_panel(const Plot& plot, const PlotRanges& ranges, const Area& area) {
-    return {plot, placed(ranges.x, area.left, area.right), placed(ranges.y, area.bottom, area.top),
-            placed(ranges.right.value_or(Axis{}), area.bottom, area.top), area};
-}
 
 /// Dashed lines.
 void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, PageList& list) {
@@ -102,7 +98,7 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     return made;
 }
 
-LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& cell, const Gutters& around,
+LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, const Gutters& around,
                       const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list) {
     Area area{std::round(cell.left + around.left), std::round(cell.top + around.top(style)),
               std::round(cell.right - around.right), std::round(cell.bottom - around.bottom)};
@@ -115,14 +111,17 @@ LabelNeeds draw_panel(const Plot& plot, const PlotRanges& ranges, const Area& ce
         area = {area.left + right, area.top + down, area.left + right + side, area.top + down + side};
     }
     if (area.width() < 8 || area.height() < 8) return given;
-    const Panel panel = make_panel(plot, ranges, area);
+    ranges.x = placed(ranges.x, area.left, area.right);
+    ranges.y = placed(ranges.y, area.bottom, area.top);
+    if (ranges.right) ranges.right = placed(*ranges.right, area.bottom, area.top);
+    const Panel panel{plot, ranges, area};
     if (plot.map) {
         list.push_back(map_cells(*plot.map, panel.x, panel.y, area, style.theme));
         const float after =
-            plot.right ? 0.55f * style.tick + widest(y_ticks(panel.right, *plot.right, style), style.tick) : 0;
+            plot.right ? 0.55f * style.tick + widest(y_ticks(*ranges.right, *plot.right, style), style.tick) : 0;
         if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);
     }
-    draw_axes(plot, panel.x, panel.y, plot.right ? &panel.right : nullptr, area, held, words, style, list);
+    draw_axes(plot, panel.x, panel.y, plot.right ? &*ranges.right : nullptr, area, held, words, style, list);
     draw_headings(plot, area, held, around.title, around.labels, words, style, list);
     LabelPlacer placer(area);
     draw_rules(panel, style, placer, list);

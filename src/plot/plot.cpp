@@ -102,7 +102,7 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         made.items = {Box{0, 0, width, height, 0, theme.background}};
         page.title.draw({sheet.left, sheet.top}, made.items);
         page.subtitle.draw({sheet.left, sheet.top + page.title.height()}, made.items);
-        if (!figure.panels.empty()) draw_panels(figure, page.body, style, made.items);
+        if (!figure.panels.empty()) made.panels = draw_panels(figure, page.body, style, made.items);
         float top = page.captions_top;
         for (const TextBlock& caption : page.captions) {
             caption.draw({sheet.left, top}, made.items);

@@ -156,10 +156,7 @@ Font::~Font() = default;
 
 const Font& Font::built_in(Weight weight) {
     const auto load = [](std::string_view name, Weight of) {
-        const auto files = render_files();
-        const auto file = std::ranges::find(files, name, &EmbeddedFile::name);
-        if (file == files.end()) throw io_failed("there is no built-in font {}", name);
-        return Font({}, {}, file->contents, 0, of);
+        return Font({}, {}, embedded_file(render_files(), name), 0, of);
     };
     static const Font regular = load("DejaVuSans.ttf", Weight::regular);
     static const Font bold = load("DejaVuSans-Bold.ttf", Weight::bold);

@@ -6,13 +6,6 @@
 namespace doppel::gl {
 namespace {
 
-std::string_view shader_source(const std::string& name) {
-    for (const EmbeddedFile& file : render_files()) {
-        if (file.name == name) return file.contents;
-    }
-    throw io_failed("the shader {} was not built in", name);
-}
-
 /// The driver's log of a shader or program.
 template <class GetLog>
 std::string log(GetLog get, GLuint number) {
@@ -24,7 +17,7 @@ std::string log(GetLog get, GLuint number) {
 }
 
 void attach(GLuint program, GLenum type, const std::string& name) {
-    const std::string_view source = shader_source(name);
+    const std::string_view source = embedded_file(render_files(), name);
     const char* text = source.data();
     const auto length = static_cast<GLint>(source.size());
     const GLuint shader = CreateShader(type);

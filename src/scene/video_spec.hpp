@@ -67,7 +67,7 @@ inline constexpr auto names_of<PhaseKind> = std::to_array<std::string_view>({"ra
 template <>
 inline constexpr auto names_of<FilmFormat> = format_names;
 template <>
-inline constexpr auto names_of<PictureFormat> = std::to_array<std::string_view>({"png", "pdf", "svg"});
+inline constexpr auto names_of<PictureFormat> = std::to_array<std::string_view>({"png", "pdf", "svg", "html"});
 template <>
 inline constexpr auto names_of<PixelFormat> = pixel_format_names;
 
@@ -200,6 +200,7 @@ struct VideoSpec : Panels {
     std::string codec;  // for webm; empty: the default
     PixelFormat pixel_format = PixelFormat::yuv420;
     bool transparent = false;  // without page and panels
+    int position_bits = 16;    // for html: bits of an embedded place or angle
     std::string preset = "doppel";
     int crf = 18;
     std::optional<Rational> poster_s;                 // save the frame nearest to this time as a picture

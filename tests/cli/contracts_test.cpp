@@ -111,6 +111,7 @@ TEST(Contracts, ListedOutputsAreTheWrittenOnes) {
                                       with({"render", "sheet.toml", "--format", "png"}, small),
                                       with({"still", "calm", "--at", "0.5", "--format", "svg"}, {}),
                                       with(with({"figure", "fig6", "--format", "pdf"}, brief), small),
+                                      with(with({"figure", "fig6", "--format", "html"}, brief), small),
                                       with({"figure", "fig6", "--shard", "2/3"}, brief),
                                       {"figure", "map.toml", "--tiles"}};
     for (const auto& command : commands) {

@@ -63,8 +63,8 @@ TEST(Init, EachKeyCanBeUncommented) {
     const auto refused = refused_keys(bytes_of(folder / "mine.toml"), read, keys);
     EXPECT_GT(keys, 50u);
     // those that are for other values of other keys
-    EXPECT_EQ(refused, (std::set<std::string>{"codec", "integrator", "members", "phase", "phase_link", "speed_ease_s",
-                                              "step_s", "tolerance"}));
+    EXPECT_EQ(refused, (std::set<std::string>{"codec", "integrator", "members", "phase", "phase_link", "position_bits",
+                                              "speed_ease_s", "step_s", "tolerance"}));
 }
 
 TEST(Init, WritesAPresetOfEveryKindOfFigure) {

@@ -147,6 +147,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         // one file alone goes to standard output
         {{"simulate", "calm", "triple", "-o", "-"}, "standard output takes one file; give one preset, not 2"},
         {{"render", "calm", "--format", "png", "-o", "-"}, "a PNG sequence is many files; give --format apng"},
+        {{"figure", "flip-map", "--tiles", "--format", "html"}, "the format must be png, pdf or svg"},
         {{"figure", "flip-map", "--tiles", "-o", "-"}, "standard output takes one picture, and no tiles"},
         {{"figure", "flip-map", "--merge", "-o", "-"}, "no merge of parts in a folder"},
         {{"figure", "flip-map", "--shard", "1/2", "-o", "-"}, "no part for a merge"},

@@ -47,6 +47,7 @@ TEST(Streams, UnprintableNamesOfFilesAreExit75) {
         {"still butterfly --at 0 --size 64x64", "butterfly/butterfly.0s.png"},
         {"figure fig6 --size 160x90", "fig6/fig6.png"},
         {"figure map.toml --tiles", "map/map.html"},
+        {"figure map.toml --format html", "map/map.html"},
         {"init out/mine.toml", "mine.toml"}};
     for (const auto& [command, file] : cases)
         for (const std::string style : {"none", "plain"}) {

@@ -109,7 +109,8 @@ TEST(Chart, KeysOfPaperNeedItsWidth) {
     });
     expect_error(ExitCode::bad_input, {"must be true, false, text or a list of text"},
                  [] { small_sweep({"chart.title=3"}); });
-    expect_error(ExitCode::bad_input, {"\"png\", \"pdf\" or \"svg\""}, [] { small_sweep({"chart.format=\"eps\""}); });
+    expect_error(ExitCode::bad_input, {"\"png\", \"pdf\", \"svg\" or \"html\""},
+                 [] { small_sweep({"chart.format=\"eps\""}); });
 }
 
 TEST(Chart, ResolvedReadsBackToTheSame) {

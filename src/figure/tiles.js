@@ -1,50 +1,14 @@
-<!DOCTYPE html>
-<!-- Doppel tiles -->
-<html lang="en">
-<head>
-<meta charset="utf-8"/>
-<meta name="viewport" content="width=device-width, initial-scale=1"/>
-<meta name="generator" content="Doppel"/>
-<link rel="icon" href="data:,"/>
-<title>{title}</title>
-<style>
-:root { color-scheme: light dark; --page: #fbfbfa; --card: rgb(255 255 255 / .9); --text: #1c1f23; --quiet: #626a73 }
-@media (prefers-color-scheme: dark) { :root { --page: #14171a; --card: rgb(28 32 36 / .9); --text: #e6e8ea; --quiet: #9aa3ad } }
-* { box-sizing: border-box }
-html, body { height: 100%; margin: 0; overflow: hidden; background: var(--page); color: var(--text); font: 15px/1.4 system-ui, "DejaVu Sans", sans-serif }
-body { display: grid; grid-template: auto 1fr auto / 1fr auto }
-header, footer { grid-column: 1 / -1; padding: 12px 20px; color: var(--quiet) }
-h1 { font-size: 22px; color: var(--text) }
-h1, p { margin: 0 }
-main { position: relative; min-width: 0; min-height: 0 }
-canvas { position: absolute; inset: 0; width: 100%; height: 100%; touch-action: none; cursor: grab; outline-offset: -2px }
-#at { position: absolute; left: 70px; top: 12px; padding: 0 9px; background: var(--card); pointer-events: none }
-nav { position: absolute; right: 12px; top: 12px; display: grid; gap: 6px }
-button { width: 34px; height: 34px; border: 0; border-radius: 8px; background: var(--card); color: var(--text); font-size: 18px }
-aside { width: 150px; padding: 0 20px 8px 16px; font-size: 14px; color: var(--quiet) }
-#scale { position: relative; height: min(46vh, 380px); margin: 10px 0 18px; width: 16px; background: linear-gradient(0deg, var(--colors)) }
-#scale span { position: absolute; left: 24px; bottom: var(--at); transform: translateY(50%); white-space: nowrap }
-#none { border-left: 16px solid; padding-left: 8px }
-@media (max-width: 640px) {
-  body { grid-template: auto 1fr auto auto / 1fr }
-  aside { width: auto }
-  #scale { width: 100%; height: 14px; margin: 6px 0 26px; background: linear-gradient(90deg, var(--colors)) }
-  #scale span { left: var(--at); top: 18px; transform: translateX(-50%) }
-}
-</style>
-</head>
-<body>
-<header><h1>{title}</h1><p>{subtitle}</p></header>
-<main>
-<canvas tabindex="0" aria-label="map: drag to move, scroll to zoom"></canvas>
-<p id="at"></p>
-<nav><button title="closer (+)" data-by="2">+</button><button title="farther (−)" data-by="0.5">−</button><button title="all (0)" data-by="0">▢</button></nav>
-</main>
-<aside>{scale}</aside>
-<footer>Drag to move, scroll or pinch to zoom, arrows and + − 0 on the keyboard. The address keeps the place.</footer>
-<script>
 "use strict";
-const map = {map};
+const map = JSON.parse(document.getElementById("data").textContent);
+const scale = document.getElementById("scale");
+scale.style.setProperty("--colors", map.scale.colors.join());
+for (const [share, text] of map.scale.numbers) {
+  const number = scale.appendChild(document.createElement("span"));
+  number.textContent = text;
+  number.style.setProperty("--at", 100 * share + "%");
+}
+document.getElementById("none").style.borderColor = map.scale.none;
+
 const canvas = document.querySelector("canvas"), g = canvas.getContext("2d"), at = document.getElementById("at");
 const margin = { left: 58, bottom: 44 };
 let width = 0, height = 0, density = 1;
@@ -82,9 +46,6 @@ function drawLevel(z) {
     }
 }
 
-const axisValue = ({ from, to, logarithmic }, share) => logarithmic ? from * (to / from) ** share : from + (to - from) * share;
-const axisShare = ({ from, to, logarithmic }, value) => logarithmic ? Math.log(value / from) / Math.log(to / from) : (value - from) / (to - from);
-const written = value => String(value).replace("-", "−");
 // Round numbers from low to high, at most `most`; of several decades powers of ten.
 function ticks(axis, low, high, most) {
   low = Math.max(low, axis.from), high = Math.min(high, axis.to);
@@ -212,6 +173,3 @@ function resize() {
 addEventListener("resize", resize);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
 resize();
-</script>
-</body>
-</html>

@@ -1,0 +1,101 @@
+#include "figure/page.hpp"
+
+#include "base/embedded.hpp"
+#include "base/text.hpp"
+#include "embedded/figure.hpp"
+#include "film/page.hpp"
+#include "output/page.hpp"
+#include "output/png.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace doppel {
+namespace {
+
+/// Of a map its cells, else what its curves show; numbers as text, of which that of no number is "nan".
+Json panel_json(const Plot& plot, const PlotRanges& axes) {
+    Json panel{{"title", plot.title}, {"x", axis_json(plot.x.label, axes.x)}, {"y", axis_json(plot.y.label, axes.y)}};
+    if (axes.right) panel["right"] = axis_json(plot.right->label, *axes.right);
+    auto& curves = panel["curves"] = Json::array();
+    if (const auto& map = plot.map) {
+        const auto values = fmt::format("{:.4g}", fmt::join(map->values, " "));
+        panel["map"] = {{"columns", map->columns},
+                        {"rows", map->rows},
+                        {"label", map->label},
+                        {"none", map->none_label},
+                        {"values", values}};
+        return panel;
+    }
+    for (const auto& curve : plot.curves)
+        if (curve.background == Background::none)
+            curves.push_back({{"label", curve.label},
+                              {"right", curve.right},
+                              {"x", fmt::format("{:.9g}", fmt::join(curve.x, " "))},
+                              {"y", fmt::format("{:.6g}", fmt::join(curve.y, " "))}});
+    return panel;
+}
+
+/// The address of the picture that is smaller: one of paths is large where it shows clouds of points.
+std::string picture_url(const FigurePreset& figure, const Page& page) {
+    const double width_pt = layout_of(figure.chart).width_pt;
+    const auto svg = page_file(page, PictureFormat::svg, width_pt, {{"title", figure.title}});
+    const auto png = png_bytes(picture_of(page));
+    return svg.size() <= png.size() ? data_url("image/svg+xml", svg) : data_url("image/png", png);
+}
+
+}  // namespace
+
+Json axis_json(const std::string& label, const Axis& axis) {
+    return {{"label", label},     {"from", axis.low}, {"to", axis.high}, {"logarithmic", axis.logarithmic},
+            {"start", axis.from}, {"end", axis.to}};
+}
+
+std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& theme) {
+    std::string heading, captions;
+    if (!drawn.title.empty())
+        heading = fmt::format("<header><h1 dir=\"auto\">{}</h1><p dir=\"auto\">{}</p></header>\n", markup(drawn.title),
+                              markup(drawn.subtitle));
+    for (const auto& caption : drawn.captions) captions += fmt::format("<p dir=\"auto\">{}</p>\n", markup(caption));
+    drawn.title = drawn.subtitle = "";  // they are text of the page
+    drawn.captions.clear();
+    const auto layout = layout_of(figure.chart);
+    const auto page = compose(drawn, layout.picture, theme, layout.scale, layout.unit);
+    const auto [width, height] =
+        std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
+    Json panels = Json::array();
+    for (std::size_t i = 0; i < drawn.panels.size(); ++i) panels.push_back(panel_json(drawn.panels[i], page.panels[i]));
+    Json data{{"size", {width, height}}, {"panels", panels}, {"release", Json::array()}};
+    std::optional<HtmlPage> player;
+    if (const auto releases = figure.experiment->releases();
+        releases && (player = film_player(make_scene(releases->pair))))
+        data["release"] = releases->keys, data["film"] = player->data;
+    auto body = fmt::format(R"html({0}<main>
+<div id="frame"><div id="figure" tabindex="0" role="application" aria-label="{1}: arrow keys move through its numbers">
+<img src="{2}" width="{3}" height="{4}" alt="{1}"/>
+<svg viewBox="0 0 {3} {4}" aria-hidden="true"><rect/></svg>
+<output></output>
+</div></div>
+</main>
+<footer>{5}<p>Point at the figure, or use arrow keys, with Shift in larger steps.{6}{7}</p></footer>)html",
+                            heading, markup(figure.title), picture_url(figure, page), width, height, captions,
+                            drawn.panels.size() > 1 ? " Page Up and Page Down change the panel." : "",
+                            !player ? "" : " A click or Enter releases the pendulum there.");
+    const auto file = [](std::string_view name) { return embedded_file(figure_files(), name); };
+    HtmlPage whole{.kind = "figure",
+                   .title = figure.title,
+                   .body = std::move(body),
+                   .styles = {file("figure/page.css")},
+                   .scripts = {file("figure/axes.js"), file("figure/page.js")},
+                   .data = std::move(data),
+                   .is_packed = true};
+    if (player) {
+        whole.body += player->body;
+        whole.styles.insert(whole.styles.end(), player->styles.begin(), player->styles.end());
+        whole.scripts.insert(whole.scripts.end(), player->scripts.begin(), player->scripts.end());
+    }
+    return page_text(whole);
+}
+
+}  // namespace doppel

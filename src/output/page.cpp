@@ -1,0 +1,92 @@
+#include "output/page.hpp"
+
+#include "base/embedded.hpp"
+#include "base/text.hpp"
+#include "embedded/output.hpp"
+#include "output/written.hpp"
+
+extern "C" {
+#include <libavutil/base64.h>
+}
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <new>
+
+namespace doppel {
+namespace {
+
+/// An element of style or script; `sources` of the policy get the hash of what is in it.
+std::string element(std::string_view tag, std::string_view contents, std::string& sources) {
+    if (contents.empty()) return {};
+    const auto lines = fmt::format("\n{}", contents);
+    sources += fmt::format(" 'sha256-{}'", base64(sha256_digest(lines)));
+    return fmt::format("<{0}>{1}</{0}>\n", tag, lines);
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+    std::string text(AV_BASE64_SIZE(bytes.size()), '\0');
+    av_base64_encode(text.data(), static_cast<int>(text.size()), reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                     static_cast<int>(bytes.size()));
+    text.pop_back();  // the zero at its end
+    return text;
+}
+
+std::string data_url(std::string_view type, std::string_view bytes) {
+    return fmt::format("data:{};base64,{}", type, base64(bytes));
+}
+
+std::string deflated(std::string_view bytes) {
+    constexpr int level = 9;
+    const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(libdeflate_alloc_compressor(level));
+    if (!compressor) throw std::bad_alloc();
+    std::string packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
+    packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));
+    return base64(packed);
+}
+
+std::string page_start(std::string_view kind) {
+    return fmt::format("<!DOCTYPE html>\n<!-- Doppel {} -->", kind);
+}
+
+std::string page_text(const HtmlPage& page) {
+    std::string styles, style_sources, scripts, script_sources;
+    styles += element("style", embedded_file(output_files(), "output/page.css"), style_sources);
+    for (const auto style : page.styles) styles += element("style", style, style_sources);
+    for (const auto script : page.scripts) scripts += element("script", script, script_sources);
+    std::string data;
+    if (!page.data.is_null()) {
+        const auto json = in_script(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+        data = fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", json);
+        if (page.is_packed)
+            data = fmt::format("<script type=\"text/packed\" id=\"data\">{}</script>\n", deflated(json));
+    }
+    if (page.is_packed) {
+        scripts = element("script", embedded_file(output_files(), "output/unpack.js"), script_sources);
+        for (const auto script : page.scripts)
+            scripts += fmt::format("<script type=\"text/packed\">{}</script>\n", deflated(fmt::format("\n{}", script)));
+    }
+    return fmt::format(R"({}
+<html lang="en">
+<head>
+<meta charset="utf-8"/>
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src{}; style-src{}; img-src data:{}; worker-src blob:; base-uri 'none'; form-action 'none'"/>
+<meta name="viewport" content="width=device-width, initial-scale=1"/>
+<meta name="generator" content="Doppel"/>
+<link rel="icon" href="data:,"/>
+<title>{}</title>
+{}</head>
+<body>
+{}
+{}{}</body>
+</html>
+)",
+                       page_start(page.kind), script_sources, style_sources,
+                       page.has_pictures_beside ? " 'self' file:" : "", markup(page.title), styles, page.body, data,
+                       scripts);
+}
+
+}  // namespace doppel

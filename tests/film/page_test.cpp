@@ -1,0 +1,258 @@
+#include "film/page.hpp"
+
+#include "film/page_json.hpp"
+#include "film/runs.hpp"
+#include "numeric/state.hpp"
+#include "output/packed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <tuple>
+
+namespace doppel {
+namespace page_test {
+
+namespace fs = std::filesystem;
+
+/// A page's text.
+std::string page_of(const std::string& text, const RunOptions& options = {}) {
+    auto scene = scene_of_text(text);
+    auto in = options;
+    in.out = test::fresh_folder();
+    run(scene, in, never_stopped, [](const Progress&) {});
+    return test::bytes_of(in.out / "x" / "x.html");
+}
+
+using test::data_of;
+
+std::string html(const std::string& keys) {
+    return keys + "\n[video]\nformat = \"html\"\n";
+}
+
+/// What an engine of JavaScript prints that runs the page's chain.js and then `program`; nothing where there is no engine.
+std::optional<std::string> printed_by_script(const std::string& program) {
+    const auto folder = test::fresh_folder();
+    const auto script = folder / "script.js";
+    test::write_bytes(script, test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "src/film/page/chain.js") +
+                                  "var write = typeof print === 'function' ? print : console.log;\n" + program);
+    for (const std::string engine : {"qjs", "duk", "node"}) {
+        if (std::system(fmt::format("command -v {} >/dev/null", engine).c_str()) != 0) continue;
+        const auto out = folder / "out.txt";
+        EXPECT_EQ(std::system(fmt::format("{} {} > {}", engine, script.string(), out.string()).c_str()), 0) << engine;
+        return test::bytes_of(out);
+    }
+    return std::nullopt;
+}
+
+struct Chains {
+    const char* name;
+    std::string keys;
+};
+
+class PageChains : public testing::TestWithParam<Chains> {};
+
+/// All angles and rates of both pendulums, and their distance, by the page and by Doppel.
+TEST_P(PageChains, AreComputedToTheLastBit) {
+    const auto scene = scene_of_text(html(GetParam().keys));
+    ASSERT_TRUE(page_computes(scene));
+    const auto chains = Json{chain_json(scene.a.motion), chain_json(scene.b.motion)};
+    const auto text = printed_by_script(fmt::format(
+        "var of = {}, samples = {}, n = of[0].mass.length, none = function () {{}};\n"
+        "var states = of.map(function (p) {{ return chains.run(p, p.method, p.step, p.steps, samples, none); }});\n"
+        "for (var i = 0; i <= samples; ++i) {{\n"
+        "  var line = [], bobs = of.map(function (p, k) {{ return chains.bobs(p, states[k], 2 * n * i); }});\n"
+        "  for (var k = 0; k < 2; ++k) for (var j = 0; j < 2 * n; ++j) line.push(states[k][2 * n * i + j]);\n"
+        "  line.push(chains.distance(of[0], of[1], bobs[0], bobs[1]), chains.energy(of[0], bobs[0]));\n"
+        "  write(line.join(' '));\n"
+        "}}\n",
+        chains.dump(), scene.samples));
+    if (!text && std::getenv("CI")) FAIL() << "no engine of JavaScript: install quickjs or duktape";
+    if (!text) GTEST_SKIP() << "no engine of JavaScript: install quickjs or duktape";
+    std::istringstream lines(*text);
+    PairRun pair(scene);
+    for (long sample = 0; sample <= scene.samples; ++sample) {
+        const auto state = pair.next(never_stopped);
+        std::vector<double> expected, found;
+        for (const auto* seen : {&state.a, &state.b}) {
+            for (const auto& bob : seen->bobs) expected.push_back(bob.theta);
+            for (const auto& bob : seen->bobs) expected.push_back(bob.omega);
+        }
+        expected.insert(expected.end(), {state.distance, state.a.energy});
+        std::string line;
+        ASSERT_TRUE(std::getline(lines, line)) << sample;
+        std::istringstream numbers(line);
+        for (std::string number; numbers >> number;) found.push_back(std::strtod(number.c_str(), nullptr));
+        ASSERT_EQ(found, expected) << "sample " << sample;
+    }
+}
+
+std::string chains_of(const std::string& angles, const std::string& other, const std::string& more) {
+    return "[scene]\nduration_s = 12\n[system]\nangle_deg = " + angles + "\n" + more + "\n[b]\nangle_deg = " + other;
+}
+const std::string one = "links = 1\nmass_kg = [1.3]\nlength_m = [0.8]\nomega_deg_per_s = [400]\n",
+                  two = "mass_kg = [1, 0.3]\nlength_m = [1, 0.7]\n",
+                  three = "links = 3\nmass_kg = [1, 0.4, 2]\nlength_m = [1, 0.7, 1.2]\nomega_deg_per_s = [1, 2, 3]\n";
+
+std::string by(const std::string& method, int hz) {
+    return fmt::format("integrator = \"{}\"\nstep_s = \"1/{}\"", method, hz);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Page, PageChains,
+    testing::Values(Chains{"EulerOfOne", chains_of("[100]", "[100.01]", one + by("euler", 6000))},
+                    Chains{"EulerOfTwo", chains_of("[90, 90]", "[90.003, 90]", by("euler", 30000))},
+                    // h ω is larger than what Euler's method turns by
+                    Chains{"CoarseEulerOfTwo", chains_of("[120, 100]", "[121, 100]", two + by("euler", 1200))},
+                    Chains{"EulerOfThree", chains_of("[120, 0, 40]", "[120.1, 0, 40]", three + by("euler", 6000))},
+                    Chains{"SemiImplicitOfOne", chains_of("[100]", "[101]", one + by("semi-implicit-euler", 2400))},
+                    Chains{"SemiImplicitOfTwo",
+                           chains_of("[120, 90]", "[121, 90]", two + by("semi-implicit-euler", 2400))},
+                    Chains{"SemiImplicitOfThree",
+                           chains_of("[120, 0, 40]", "[120.1, 0, 40]", three + by("semi-implicit-euler", 2400))},
+                    Chains{"Rk4OfOne", chains_of("[100]", "[100.01]", one + by("rk4", 2400))},
+                    Chains{"Rk4OfTwo", chains_of("[120, 100]", "[120.1, 100]", two + by("rk4", 2400))},
+                    Chains{"CoarseRk4OfThree", chains_of("[120, 0, 40]", "[120.1, 0, 40]", three + by("rk4", 480))}),
+    [](const auto& parameter) { return parameter.param.name; });
+
+TEST(Page, HasTheSizeThatCheckSays) {
+    for (const char* name : {"butterfly", "phase-dance", "kapitza", "loop", "horizon"}) {
+        auto preset = find_preset(name);
+        const auto scene = make_scene(read_preset(preset, {{"video.format", "\"html\"", "test"}}));
+        const RunOptions options{.out = test::fresh_folder()};
+        const auto result = run(scene, options, never_stopped, [](const Progress&) {});
+        const auto bytes = static_cast<double>(fs::file_size(options.out / name / (name + std::string(".html"))));
+        EXPECT_LT(bytes, std::string_view(name) == "butterfly" ? 40e3 : 400e3) << name;
+        const double ratio = bytes / estimated_page_bytes(scene);
+        EXPECT_GT(ratio, 0.5) << name;  // measured: 0.7 to 1.2
+        EXPECT_LT(ratio, 1.5) << name;
+    }
+}
+
+/// The numbers of each pendulum's channels, as the page's script reads them.
+std::vector<std::vector<std::vector<double>>> channels_of(const Json& motion, std::size_t count, std::size_t links) {
+    const unsigned bits = motion.at("bits"), bytes = bits > 16 ? 3 : 2, most = (1U << bits) - 1;
+    const double low = motion.at("low"), high = motion.at("high");
+    const auto planes = test::inflated(motion.at("words"));
+    std::vector<unsigned> words(planes.size() / bytes);
+    for (unsigned b = 0; b < bytes; ++b)
+        for (std::size_t i = 0; i < words.size(); ++i)
+            words[i] |= static_cast<unsigned>(static_cast<unsigned char>(planes[b * words.size() + i])) << (8 * b);
+    std::vector<std::vector<std::vector<double>>> pendulums;
+    std::size_t at = 0, before = 0;
+    for (const auto& pendulum : motion.at("pendulums")) {
+        const bool by_angles = pendulum.at("angles"), moves = pendulum.at("pivot"), is_like = pendulum.at("like_last");
+        const auto first = at;
+        auto& channels = pendulums.emplace_back((by_angles ? links : 2 * links) + (moves ? 2 : 0));
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            for (unsigned i = 0, last = 0, change = 0; i < count; ++i, ++at) {
+                if (is_like) words[at] += words[at - before];
+                change = (change + words[at]) & most;
+                last = (last + change) & most;
+                const bool is_angle = by_angles && c < links;
+                channels[c].push_back(is_angle ? std::remainder(last, most + 1.0) * pendulum.at("step").get<double>()
+                                               : low + (high - low) * last / most);
+            }
+        before = at - first;
+    }
+    EXPECT_EQ(at, words.size());
+    return pendulums;
+}
+
+class PageMotion : public testing::TestWithParam<std::tuple<const char*, int>> {};
+
+/// To half a step, and to what a float holds.
+TEST_P(PageMotion, IsHeldInSteps) {
+    const auto& [keys, bits] = GetParam();
+    const auto text = html(std::string("[scene]\nduration_s = 2\n") + keys) + fmt::format("position_bits = {}\n", bits);
+    const auto data = data_of(page_of(text));
+    const auto& motion = data.at("motion");
+    const double range = motion.at("high").get<double>() - motion.at("low").get<double>();
+    const auto channels = channels_of(motion, data.at("samples").get<std::size_t>() + 1, 2);
+    const auto scene = scene_of_text(text);
+    for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
+        const auto i = static_cast<std::size_t>(snapshot.pair.sample);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const auto& pendulum = motion.at("pendulums")[k];
+            const auto& bobs = (k == 0 ? snapshot.pair.a : snapshot.pair.b).bobs;
+            const auto expect_near = [&](std::size_t channel, double number, double step) {
+                EXPECT_LE(std::abs(std::remainder(channels[k][channel][i] - number, 2 * pi)), 0.5 * step + 3e-7) << i;
+            };
+            for (std::size_t b = 0; b < 2; ++b) {
+                if (pendulum.at("angles")) {
+                    expect_near(b, bobs[b].theta, pendulum.at("step").get<double>());
+                    continue;
+                }
+                expect_near(2 * b, bobs[b].x, range / ((1 << bits) - 1));
+                expect_near(2 * b + 1, bobs[b].y, range / ((1 << bits) - 1));
+            }
+        }
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Page, PageMotion,
+    testing::Combine(
+        testing::Values("[system]\nangle_deg = [120, 90]\nintegrator = \"taylor\"\n[b]\nangle_deg = [120.01, 90]\n",
+                        "[system]\nangle_deg = [120, 90]\nintegrator = \"taylor\"\n"
+                        "pivot = { amplitude_m = 0.1, frequency_hz = 2 }\n[b]\nangle_deg = [121, 90]\n",
+                        "[system]\nangle_deg = [120, 90]\nmodel = \"constraints\"\nstep_s = \"1/6000\"\n[b]\nangle_deg "
+                        "= [121, 90]\n"),
+        testing::Values(16, 24)),
+    [](const auto& parameter) {
+        return fmt::format("OfMotion{}In{}Bits", parameter.index / 2, std::get<1>(parameter.param));
+    });
+
+TEST(Page, DoesNoHarmWithAnyWords) {
+    const std::string words = R"(</script><script>harm()</script> \" ' & <b> ñ)";
+    const auto page = page_of("title = \"" + words + "\"\n[scene]\nduration_s = 0.1\n[a]\nlabel = \"" + words + "\"\n" +
+                              html("[b]\nangle_deg = [91, 90]"));
+    EXPECT_EQ(page.find("harm()</script>"), std::string::npos);
+    EXPECT_EQ(page.find("<b>"), std::string::npos);
+    EXPECT_NE(page.find("<h1>&lt;/script&gt;"), std::string::npos);
+    EXPECT_NE(data_of(page).at("title").get<std::string>().find("</script><script>harm()"), std::string::npos);
+}
+
+TEST(Page, IsAWholeFilm) {
+    const auto text = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
+    test::expect_error(ExitCode::bad_input, {"must begin at 0"}, [&] { page_of(text, {.from_s = Rational{1, 1}}); });
+    EXPECT_EQ(data_of(page_of(text, {.to_s = Rational{1, 1}})).at("samples"), 119);
+    EXPECT_EQ(run_files(scene_of_text(text), true), (std::vector<std::string>{"x.html", "x.csv", "x.json"}));
+}
+
+TEST(Page, IsAloneWithPosterAndContactSheetLeftOut) {
+    const auto text =
+        html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]") + "poster_s = 1\ncontact_sheet = [2, 2]\n";
+    EXPECT_EQ(data_of(page_of(text)).at("start_s"), 1);
+}
+
+/// docs/update-gallery makes it.
+TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
+    const auto page = test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "docs/butterfly.html");
+    const std::string start = "<script type=\"text/packed\">";
+    auto at = page.find(start);
+    for (const char* name : {"chain.js", "motion.js", "player.js", "controls.js"}) {
+        ASSERT_NE(at, std::string::npos) << name;
+        const auto script = test::inflated(page.substr(at + start.size(), page.find('<', at + 1) - at - start.size()));
+        EXPECT_EQ(script, "\n" + test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "src/film/page" / name)) << name;
+        at = page.find(start, at + 1);
+    }
+}
+
+/// A wide film has an upright picture, too; the pictures are those of the film.
+TEST(Page, HasThePicturesOfTheFilm) {
+    const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
+    const auto data = data_of(page_of(text));
+    ASSERT_EQ(data.at("pictures").size(), 2u);
+    EXPECT_EQ(data.at("pictures")[0].at("size"), Json({1920, 1080}));
+    EXPECT_EQ(data.at("pictures")[1].at("size"), Json({1080, 1920}));
+    const auto layout = make_layout(scene_of_text(text));
+    EXPECT_NEAR(data.at("pictures")[0].at("panels")[0].at("center")[0], layout.panels[0].center.x, 0.01);
+    EXPECT_EQ(data_of(page_of(text + "size = [720, 1280]\n")).at("pictures").size(), 1u);
+}
+
+}  // namespace page_test
+}  // namespace doppel
