@@ -68,9 +68,13 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
     for (std::size_t i = 0; i < drawn.panels.size(); ++i) panels.push_back(panel_json(drawn.panels[i], page.panels[i]));
     Json data{{"size", {width, height}}, {"panels", panels}, {"release", Json::array()}};
     std::optional<HtmlPage> player;
-    if (const auto releases = figure.experiment->releases();
-        releases && (player = film_player(make_scene(releases->pair))))
-        data["release"] = releases->keys, data["film"] = player->data;
+    if (auto releases = figure.experiment->releases()) {
+        constexpr Rational longest_s{60, 1};
+        auto& duration = releases->pair.duration_s;
+        if (duration.value() > longest_s.value()) duration = longest_s;
+        player = film_player(make_scene(releases->pair));
+        if (player) data["release"] = releases->keys, data["film"] = player->data;
+    }
     auto body = fmt::format(R"html({0}<main>
 <div id="frame"><div id="figure" tabindex="0" role="application" aria-label="{1}: arrow keys move through its numbers">
 <img src="{2}" width="{3}" height="{4}" alt="{1}"/>

@@ -71,25 +71,25 @@ HtmlPage player(const Scene& scene) {
             .is_packed = true};
 }
 
-bool embeds(const Scene& scene, StripKind kind) {
-    return !page_computes(scene) || !page_computes(kind);
-}
-
 }  // namespace
 
 FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& parts)
-    : scene_(scene), bounds_(bounds), place_(parts.file(scene.preset.name + ".html")), parts_(parts) {}
+    : scene_(scene),
+      bounds_(bounds),
+      place_(parts.file(scene.preset.name + ".html")),
+      computes_(page_computes(scene)),
+      parts_(parts) {}
 
 void FilmPage::add(const Snapshot& snapshot) {
     if (snapshot.pair.share > 0) return;
     if (snapshot.pair.sample == 0) start_distance_ = snapshot.pair.distance;
     ++samples_;
-    if (!page_computes(scene_)) add_positions(snapshot);
+    if (!computes_) add_positions(snapshot);
     add_curves(snapshot.pair);
 }
 
 void FilmPage::add_positions(const Snapshot& snapshot) {
-    const auto& [a, b] = std::pair(snapshot.pair.a, snapshot.pair.b);
+    const auto &a = snapshot.pair.a, &b = snapshot.pair.b;
     std::vector<const Bobs<double>*> pendulums;
     for (const auto& member : snapshot.members) pendulums.push_back(&member);
     if (pendulums.empty()) pendulums.push_back(&a.bobs);
@@ -117,10 +117,10 @@ void FilmPage::add_curves(const PairState& state) {
         curves_[channel++].push_back(static_cast<float>(number));
     };
     for (const auto kind : scene_.preset.video.strips)
-        if (embeds(scene_, kind))
+        if (!computes_ || !page_computes(kind))
             for (const auto& curve : strip_curves(kind, scene_, state, start_distance_, themes[0], 1))
                 take(curve.value.value_or(NAN));
-    if (scene_.preset.video.layout != Arrangement::phase || page_computes(scene_)) return;
+    if (scene_.preset.video.layout != Arrangement::phase || computes_) return;
     for (const auto* seen : {&state.a, &state.b}) {
         const auto& bob = seen->bobs[static_cast<std::size_t>(scene_.preset.video.phase_link - 1)];
         for (const double number : {bob.theta, bob.omega, seen->bobs[0].theta}) take(number);
@@ -209,10 +209,12 @@ double estimated_page_bytes(const Scene& scene) {
     double places = 0, numbers = scene.preset.video.layout == Arrangement::phase ? 6 : 0;
     for (std::size_t k = 0; k < shown_motions(scene).size(); ++k)
         places += static_cast<double>(side_of(scene, k).mass.size()) * (is_by_angles(side_of(scene, k)) ? 1 : 2);
-    if (page_computes(scene)) places = numbers = 0;
+    const bool computes = page_computes(scene);
+    if (computes) places = numbers = 0;
     places *= scene.preset.video.position_bits / 16.0;
     for (const auto kind : scene.preset.video.strips)
-        if (embeds(scene, kind)) numbers += kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2;
+        if (!computes || !page_computes(kind))
+            numbers += kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2;
     return script + static_cast<double>(scene.samples) * (place * places + number * numbers);
 }
 

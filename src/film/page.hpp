@@ -35,6 +35,7 @@ private:
     const Scene& scene_;
     const MotionBounds& bounds_;
     const std::filesystem::path place_;
+    const bool computes_;  // the script computes the motion
     Transaction& parts_;
     double start_distance_ = 0;
     long samples_ = 0;                 // added
