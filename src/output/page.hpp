@@ -15,7 +15,7 @@ struct HtmlPage {
     std::string body;                       // markup, without style attributes and inline handlers: they do not work
     std::vector<std::string_view> styles;   // CSS of this kind of page
     std::vector<std::string_view> scripts;  // JavaScript, run in this order; what is empty is left out
-    nlohmann::json data = nullptr;          // what scripts read, of #data; null: none
+    nlohmann::ordered_json data = nullptr;  // what scripts read, of #data; null: none
     bool is_packed = false;                 // scripts and data stand compressed in the page, which the browser unpacks
     bool has_pictures_beside = false;       // files in folders beside it; else all pictures are data: addresses
 };
