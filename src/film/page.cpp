@@ -182,6 +182,7 @@ void FilmPage::finish() {
     const auto& preset = scene_.preset;
     auto data = page_json(scene_, bounds_);
     data["samples"] = samples_ - 1;
+    data["duration_s"] = scene_.time(samples_ - 1);
     if (!positions_.empty()) data["motion"] = motion_json();
     if (!curves_.empty()) data["curves"] = packed_floats(curves_);
     auto page = player(scene_);

@@ -219,7 +219,9 @@ TEST(Page, DoesNoHarmWithAnyWords) {
 TEST(Page, IsAWholeFilm) {
     const auto text = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
     test::expect_error(ExitCode::bad_input, {"must begin at 0"}, [&] { page_of(text, {.from_s = Rational{1, 1}}); });
-    EXPECT_EQ(data_of(page_of(text, {.to_s = Rational{1, 1}})).at("samples"), 119);
+    const auto part = data_of(page_of(text, {.to_s = Rational{1, 1}}));
+    EXPECT_EQ(part.at("samples"), 119);
+    EXPECT_EQ(part.at("duration_s"), 119.0 / 120);
     EXPECT_EQ(run_files(scene_of_text(text), true), (std::vector<std::string>{"x.html", "x.csv", "x.json"}));
 }
 
