@@ -12,14 +12,14 @@
 namespace doppel {
 namespace drawn_positions_test {
 
-// Where the truth is known, the picture is measured against it, not against an older picture.
+// Where an exact result is known, the picture is compared with it, not with an earlier picture.
 
 struct Blob {
     double x = 0, y = 0;  // centroid, px
     long area = 0;        // px
 };
 
-/// The pixels of exactly that colour within `radius` of a place.
+/// The pixels of exactly that colour within `radius` of a point.
 Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
     Blob blob;
     for (int y = static_cast<int>(place.y - radius); y <= static_cast<int>(place.y + radius); ++y)
@@ -35,7 +35,7 @@ Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
 }
 
 TEST(DrawnPositions, BobsAreWherePhysicsSaysInTheirColour) {
-    // released at rest from 37/−61 with unequal rods: sample 0 is known in closed form
+    // released at rest from 37°/−61° with unequal rods: sample 0 is known in closed form
     const auto scene = scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]",
                                               "system.length_m=[1.3, 0.6]", "video.trail_s=0"});
     const auto picture = frame_of(scene, 0);
@@ -55,7 +55,7 @@ TEST(DrawnPositions, BobsAreWherePhysicsSaysInTheirColour) {
                 blob_at(picture, expected, 1.5f * layout.bob_radius, link == 1 ? theme.sides[side] : theme.bob);
             EXPECT_NEAR(found.x, expected.x, 0.3);  // measured 0.049
             EXPECT_NEAR(found.y, expected.y, 0.2);  // measured 0.04
-            // the fully covered pixels of the disc: all but a ring of half a pixel
+            // the fully covered pixels of the disc: all except a ring half a pixel wide
             const double core = pi * std::pow(layout.bob_radius - 0.5, 2);
             EXPECT_NEAR(static_cast<double>(found.area), core, 0.06 * core);  // measured 3 %
         }
@@ -70,10 +70,10 @@ TEST(DrawnPositions, BobsHaveAnAreaLikeTheirMass) {
     const auto heavy = blob_at(picture, panel.at(1, 0), 1.5f * layout.bob_radius, themes[0].bob);
     const auto light = blob_at(picture, panel.at(2, 0), 1.5f * layout.bob_radius, themes[0].sides[0]);
     EXPECT_NEAR(static_cast<double>(heavy.area) / static_cast<double>(light.area), 4,
-                0.4);  // measured 4.2: the smaller loses more to its edge
+                0.4);  // measured 4.2: the smaller disc loses a larger share of its pixels to the edge
 }
 
-/// The rows of the strip in which the pixel at `x` has the colour.
+/// The rows of the strip in which the pixel at `x` has this colour.
 std::vector<int> rows_of(const Picture& picture, int x, const Area& area, Color color) {
     std::vector<int> rows;
     for (int y = static_cast<int>(area.top); y < static_cast<int>(area.bottom); ++y)
@@ -86,7 +86,7 @@ TEST(DrawnPositions, AxisTicksFallOnDecades) {
     const auto picture = frame_of(scene, 0);
     const auto layout = make_layout(scene);
     const auto& strip = layout.strips[0];
-    // between two lines of the time grid nothing but the decades' lines is in the grid's colour
+    // between two lines of the time grid, only the lines of the decades have the grid's colour
     const int x = static_cast<int>(strip.time.at(27)) + 3;
     const auto rows = rows_of(picture, x, strip.area, themes[0].grid);
     ASSERT_FALSE(rows.empty());
@@ -99,7 +99,7 @@ TEST(DrawnPositions, AxisTicksFallOnDecades) {
 }
 
 TEST(DrawnPositions, TraceIsAtTheDistanceItShows) {
-    // mirror twins: the distance stays what it is at the start as long as both rest, d = 2 (x1, x2) here, 10^0.65
+    // mirror images: while both rest, the distance keeps its initial value 2 (x1, x2), here 10^0.65
     const auto scene = scene_of("butterfly", {"b.angle_deg=[-90, -90]", "video.distance_range=[1e-3, 1e3]"});
     const auto picture = frame_of(scene, 0);
     const auto layout = make_layout(scene);
@@ -123,13 +123,13 @@ TEST(DrawnPositions, TimesAfterThePredictabilityLimitAreShaded) {
     const auto& theme = themes[0];
     EXPECT_TRUE(is_color(pixel(-6, *scene.horizon()), theme.background, 2));
     EXPECT_TRUE(is_color(pixel(6, *scene.horizon()), theme.panel, 2));
-    // one that can be predicted to its end has none
+    // a film that is predictable to its end has no horizon
     EXPECT_FALSE(scene_of("horizon", {"scene.duration_s=20"}).horizon());
     EXPECT_FALSE(scene_of("butterfly").horizon());
 }
 
 TEST(DrawnPositions, ADivergingRunStaysInItsPanel) {
-    // Euler with giant steps tears the rods: bobs and trails leave the panel, and must not be drawn over the rest
+    // explicit Euler with very large steps stretches the rods: bobs and trails leave the panel and must be clipped
     const auto scene =
         scene_of("butterfly", {"system.model=\"constraints\"", "system.step_s=\"1/120\"", "video.size=[640, 360]"});
     const auto layout = make_layout(scene);
@@ -146,7 +146,7 @@ TEST(DrawnPositions, ADivergingRunStaysInItsPanel) {
     const auto picture = frame_of(scene, sample - 1), calm = frame_of(scene, 0);
     const auto& left = layout.panels[0].area;
     const auto& right = layout.panels[1].area;
-    // the gap between the panels, and what is above them but for the clock
+    // the gap between the panels, and everything above them except the clock
     for (int y = static_cast<int>(left.top); y < static_cast<int>(left.bottom); ++y)
         for (int x = static_cast<int>(left.right) + 3; x < static_cast<int>(right.left) - 3; ++x)
             ASSERT_TRUE(is_color(picture.at(x, y), themes[0].background, 2)) << x << " " << y;

@@ -1,4 +1,4 @@
-// What an encoder makes of recorded frames. Against a film that is written, read and compared pixel by pixel.
+// Encoding of recorded frames, compared pixel by pixel with a film that is written and read back.
 #include "bench/encoders/encoding_trial.hpp"
 
 #include "output/decoded.hpp"
@@ -22,7 +22,7 @@ RecordedFrames recorded() {
     return frames;
 }
 
-/// Luma of a recorded frame that was taken whole.
+/// Luma of a recorded frame that was stored whole.
 const std::uint8_t* luma(const RecordedFrames& frames, long k) {
     return frames.frames[static_cast<std::size_t>(k)].bytes.data();
 }
@@ -41,7 +41,7 @@ TEST(EncodingTrial, FindsTheNoiseOfAFileThatHoldsTheSame) {
         const double pixels = double(count) * size.width * size.height;
         const auto trial = try_encoding(frames, options);
         EXPECT_NEAR(trial.whole.psnr_db, 10 * std::log10(255 * 255 * pixels / sum), 1e-9) << preset;
-        EXPECT_LT(trial.bytes, std::filesystem::file_size(path)) << preset;  // which has a container, too
+        EXPECT_LT(trial.bytes, std::filesystem::file_size(path)) << preset;  // the file also has a container
         EXPECT_GT(trial.bytes, std::filesystem::file_size(path) / 2) << preset;
         EXPECT_GT(trial.cpu_s, 0);
         EXPECT_EQ(time_encoding(frames, options).bytes, trial.bytes);

@@ -20,7 +20,7 @@ TEST(FailedFilms, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_EQ(code, ExitCode::method_failed);
     EXPECT_NE(message.find("butterfly.failed.csv"), std::string::npos) << message;
 
-    // two files, no video and nothing that looks whole
+    // two files, no video, and no file that looks complete
     EXPECT_EQ(files_in(out / "butterfly"), (std::set<std::string>{"butterfly.failed.csv", "butterfly.failed.json"}));
     const auto manifest = nlohmann::json::parse(std::ifstream(out / "butterfly" / "butterfly.failed.json"));
     const std::string failure = manifest["failed"];
@@ -31,7 +31,7 @@ TEST(FailedFilms, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_EQ(rows, manifest["samples"]["last"].get<long>() + 1);
     EXPECT_GT(rows, 1);
 
-    // a whole run takes them away
+    // a complete run removes them
     render(scene_of("butterfly", {"scene.duration_s=0.1", "video.size=[64, 64]"}), {.out = out});
     EXPECT_FALSE(fs::exists(out / "butterfly" / "butterfly.failed.csv"));
     EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
@@ -53,7 +53,7 @@ TEST(FailedFilms, OfAnAdaptiveMethodNamesTheSmallestSuccessfulStep) {
 }
 
 TEST(FailedFilms, StopsDuringTheSimulationBeforeTheFirstFrame) {
-    // 100 million samples of a mechanism, whose view depends on all of them
+    // 100 million samples of a mechanism, whose view depends on all samples
     const auto scene = scene_of("springs", {"scene.duration_s=800000", "video.size=[64, 64]"});
     const auto out = fresh_folder();
     std::atomic<bool> stop = false;
@@ -66,7 +66,7 @@ TEST(FailedFilms, StopsDuringTheSimulationBeforeTheFirstFrame) {
         error_of([&] { run(scene, {.out = out, .first = 0, .last = 1}, stop, [](const Progress&) {}); });
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     EXPECT_EQ(code, ExitCode::interrupted) << message;
-    EXPECT_LT(taken.count(), 2);  // s; measured 0.06, and half an hour where the survey does not look
+    EXPECT_LT(taken.count(), 2);  // s; measured 0.06, and half an hour if the survey ignores the request to stop
     EXPECT_TRUE(fs::is_empty(out));
 }
 
@@ -107,7 +107,7 @@ TEST(FailedFilms, WhatIsTooLargeToKeepIsSimulatedAgain) {
 }
 
 TEST(FailedFilms, LeavesNoFrameOfAFailedSequence) {
-    // many threads still write large pictures when the method fails, and nothing better is looked for
+    // many threads are still writing large pictures when the method fails
     const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1000",
                                               "scene.duration_s=2", "video.size=[1280, 720]", "video.format=\"png\""});
     for (int round = 0; round < 4; ++round) {

@@ -12,7 +12,7 @@ namespace font_test {
 
 namespace fs = std::filesystem;
 
-/// A film's preset beside a font that is twice as wide.
+/// A film's preset in a folder with a font that is twice as wide.
 fs::path folder_with_font() {
     const auto folder = test::fresh_folder();
     test::write_bytes(folder / "wide.ttf", test::font_of_half_the_units());
@@ -31,7 +31,7 @@ TEST(Fonts, AFilmsTextIsInTheUsersFontAndFits) {
         return std::find_if(labels.begin(), labels.end(), [&](const auto& label) { return label.text == text; })->size;
     };
     const auto labels = labels_of(scene, 60);
-    // what leaves no room shrinks: the subtitle, not the short title
+    // text that does not fit shrinks: the subtitle, not the short title
     EXPECT_LT(size_of(labels, "real time"), 10);
     EXPECT_EQ(size_of(labels, "Two"), 14);
     expect_apart(labels, {480, 270}, "wide", type);  // large letters: twice the height that box_of() takes
@@ -42,7 +42,7 @@ TEST(Fonts, AFilmsTextIsInTheUsersFontAndFits) {
                   .rgba);
 }
 
-/// But for its bold, which the one file does not have.
+/// Except for bold text: the single file has no bold face.
 TEST(Fonts, TheBuiltInFontByItsPathIsTheBuiltInFont) {
     const auto own = fmt::format("video.fonts.text=\"{}/fonts/DejaVuSans.ttf\"", DOPPEL_SOURCE_DIR);
     const std::string size = "video.size=[320, 180]", regular = "video.show=[\"subtitle\", \"clock\"]";

@@ -1,4 +1,4 @@
-// What the reader takes, the sink writes; what the sink refuses, the reader refuses.
+// The sink writes what the reader accepts; the reader rejects what the sink rejects.
 #include "output/fixtures.hpp"
 #include "output/sink.hpp"
 #include "scene/support.hpp"
@@ -41,7 +41,7 @@ TEST(FormatEdges, TheReaderRefusesWhatTheSinkRefuses) {
         Edge{{64, 64}, "50"},
         Edge{{64, 64}, "51", {"GIF"}},
         Edge{{64, 64}, "240", {"GIF"}},
-        Edge{{64, 64}, "241", {"GIF"}},  // more than SVT-AV1 takes
+        Edge{{64, 64}, "241", {"GIF"}},  // more than SVT-AV1 accepts
         Edge{{64, 64}, "1000", {"GIF"}},
         Edge{{64, 64}, "65537/66", {"GIF", "animated PNG"}},
     };

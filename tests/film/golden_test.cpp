@@ -14,7 +14,7 @@ namespace golden_test {
 struct Golden {
     const char* name;  // of the file
     const char* preset;
-    long sample;  // none later than 3 s: what comes after depends on the last bit
+    long sample;  // none later than 3 s: after that the picture depends on the last bit
     std::vector<std::string> sets;
 };
 
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-// The policy itself: what must not pass. A golden that lets one of these through guards nothing.
+// Tests of the comparison itself: these changes must be detected.
 
 Picture sample_frame() {
     static const Picture frame = frame_of(scene_of("butterfly", {"video.size=[480, 270]"}), 120);
@@ -65,20 +65,20 @@ Picture sample_frame() {
 TEST(GoldenPolicy, PassesTheSamePictureAndWhatAnotherDriverDoes) {
     EXPECT_EQ(compare_golden(sample_frame(), sample_frame()).differing, 0);
     auto picture = sample_frame();
-    for (int i = 0; i < 200; ++i) picture.at((i * 37) % 480, (i * 91) % 270)[i % 3] ^= 1;  // a last bit here and there
+    for (int i = 0; i < 200; ++i) picture.at((i * 37) % 480, (i * 91) % 270)[i % 3] ^= 1;  // the last bit of some
     for (int i = 0; i < 4; ++i) picture.at(100 * i + 30, 60 * i + 20)[1] ^= 32;            // and a few edge pixels
     const auto verdict = compare_golden(sample_frame(), picture);
     EXPECT_TRUE(verdict.passes) << verdict.why;
 }
 
-/// What is not the sample frame: channel c of the pixel at (x, y) becomes change(frame, x, y, c).
+/// A changed sample frame: channel c of the pixel at (x, y) becomes change(frame, x, y, c).
 struct Mutation {
     const char* name;
     std::function<double(const Picture&, int, int, int)> change;
-    const char* words = "";  // of the verdict
+    const char* words = "";  // expected in the verdict
 };
 
-/// A channel less `by` within a rectangle.
+/// Reduces a channel by `by` within a rectangle.
 std::function<double(const Picture&, int, int, int)> less(int channel, Rect r, int by) {
     return [=](const Picture& frame, int x, int y, int c) {
         const bool inside = x >= r.left && x < r.right && y >= r.top && y < r.bottom;
@@ -93,7 +93,7 @@ TEST(GoldenPolicy, RejectsWhatIsAnotherPicture) {
         {"another background", [](const auto& f, int x, int y, int c) { return f.at(x, y)[c] + (c < 3 ? 1 : 0); }},
         {"another gamma", [](const auto& f, int x, int y,
                              int c) { return c < 3 ? 255 * std::pow(f.at(x, y)[c] / 255.0, 1.02) : f.at(x, y)[c]; }},
-        // what switching multisampling on or off does: edges that are a mean of their neighbours
+        // the effect of switching multisampling on or off: edges become a mean of their neighbours
         {"other edges", [](const auto& f, int x, int y,
                            int c) { return (3 * f.at(x, y)[c] + f.at(std::min(x + 1, f.size.width - 1), y)[c]) / 4; }},
         {"a blob", less(0, {200, 100, 203, 103}, -60)},
@@ -101,7 +101,7 @@ TEST(GoldenPolicy, RejectsWhatIsAnotherPicture) {
         {"opacity by a level", less(3, {0, 0, 480, 270}, 1), "opacity is off by -1.000/255 on average"},
         {"opacity of half a disc", less(3, {200, 100, 203, 103}, 60), "9 pixels differ by more than 3/255"},
         {"opacity of a pixel", less(3, {3, 3, 4, 4}, 255), "a pixel differs by 255/255"},
-        // a level in a third of a tile's pixels, which none of the other rules sees
+        // one level in a third of a tile's pixels, which no other rule detects
         {"opacity in a tile", less(3, {32, 32, 64, 43}, 1), "tile differs by 0.34/255"}};
     for (const auto& [name, change, words] : mutations) {
         const auto frame = sample_frame();

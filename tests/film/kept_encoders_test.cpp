@@ -1,4 +1,4 @@
-// docs/encoders.csv, as tests/bench/encoders measured it: the default of H.264 is worth its place.
+// docs/encoders.csv, as measured by tests/bench/encoders: no other setting of H.264 is better than the default.
 #include "bench/encoders/encoder_quality.hpp"
 #include "bench/encoders/encoder_settings.hpp"
 #include "film/runs.hpp"
@@ -13,7 +13,7 @@
 namespace doppel {
 namespace kept_encoders_test {
 
-/// A setting on a film, at the quality of the setting that the others are compared with.
+/// A setting on a film, at the quality of the default setting.
 struct Point {
     double cpu, bytes;
 };
@@ -34,8 +34,8 @@ Points kept_points() {
     return points;
 }
 
-/// The settings that take less of both than the default does: 1 % of the bytes, and more of the CPU time than repeats
-/// differ by on a machine that does other things, too.
+/// The settings that need less of both than the default does: 1 % fewer bytes, and less CPU time by more than
+/// repeated measurements differ on a busy machine.
 std::set<std::string> better_than_default(const std::map<std::string, Point>& settings) {
     constexpr double cpu_slack = 0.1, bytes_slack = 0.01;
     const auto [cpu, bytes] = settings.at("doppel");
@@ -67,7 +67,7 @@ TEST(KeptEncoders, NoSettingBeatsTheDefaultInTimeAndSize) {
     for (const auto& [film, settings] : kept_points()) {
         EXPECT_EQ(better_than_default(settings), std::set<std::string>()) << film;
         EXPECT_LT(settings.at("doppel").cpu, 0.6) << film << ", of veryfast";
-        // and one that took less would be found
+        // and a setting that needs less is found
         auto more = settings;
         const auto [cpu, bytes] = settings.at("doppel");
         more["less of both"] = {0.88 * cpu, 0.98 * bytes};

@@ -1,4 +1,4 @@
-// The pendulum comes first: its circle is large and in the middle of its panel, and no words get in its way.
+// The pendulum has priority: its circle is large, centred in its panel, and no text overlaps it.
 #include "film/layer.hpp"
 #include "film/runs.hpp"
 #include "film/words.hpp"
@@ -19,14 +19,14 @@ constexpr std::array films{"butterfly", "calm",     "fan",        "horizon",    
                            "springs",   "measured", "triple",     "two-methods", "whip",     "whip-256"};
 constexpr std::array sizes{Size{1920, 1080}, Size{480, 270}, Size{3840, 2160}, Size{1080, 1920}};
 
-/// A film with fewer samples and another size; how it is stepped is chosen once.
+/// A film with fewer samples and another size; the method and step are chosen once.
 Scene at_size(Scene scene, Size size) {
     scene.preset.video.size = size;
     scene.samples = std::min(scene.samples, 300L);
     return scene;
 }
 
-/// Whether words reach into a circle.
+/// Whether text overlaps a circle.
 bool meets(const Area& box, Point center, float radius) {
     const float dx = std::max({0.0f, box.left - center.x, center.x - box.right}),
                 dy = std::max({0.0f, box.top - center.y, center.y - box.bottom});
@@ -41,7 +41,7 @@ void expect_large_and_central(const Scene& scene, const Layout& layout, const st
         EXPECT_NEAR(panel.center.y, (panel.area.top + panel.area.bottom) / 2, 1) << what;
         EXPECT_EQ(panel.px_per_m, layout.panels[0].px_per_m) << what;
     }
-    if (layout.reach == 0) return;  // of a mechanism that hangs in no circle
+    if (layout.reach == 0) return;  // a mechanism without an enclosing circle
     if (is_tall(video))             // strips have a fifth of the height
         EXPECT_GE(2 * layout.reach, (video.strips.size() > 1 ? 0.36f : 0.4f) * width) << what;
     else
@@ -86,14 +86,14 @@ TEST(LargePendulums, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
     for (const auto& label : labels_of(scene, 240)) {
         EXPECT_GE(box_of(label).top, 110) << label.text;
         EXPECT_LE(box_of(label).bottom, 1920 - 260) << label.text;
-        EXPECT_GE(label.size, 28) << label.text;  // 1.6 times 20, or a bit less where it must fit
+        EXPECT_GE(label.size, 28) << label.text;  // 1.6 times 20, or slightly less where it must fit
         EXPECT_EQ(label.text.find("θ"), std::string::npos) << label.text;
         EXPECT_EQ(label.text.find("tolerance"), std::string::npos) << label.text;
     }
 }
 
 TEST(LargePendulums, LongHeadingsLeaveTheCircleWhereItIs) {
-    // more words than fit in a line: smaller, or in two lines, but never beside a circle moved aside
+    // text too long for one line: smaller, or in two lines, but the circle stays in the middle
     auto one_link = one_link_at("90", "90");
     one_link.emplace_back("b.gravity_m_per_s2=9.80665");
     for (const auto& arguments : std::vector<std::vector<std::string>>{
@@ -122,7 +122,7 @@ TEST(Divergence, NeedsACloseStartAndAWholeSecondAboveTheLimit) {
 }
 
 TEST(Divergence, IsInTheManifest) {
-    // by a method that is right for as long; explicit Euler, off by half a rad from 11 s on, says 14.2
+    // by a method that stays accurate; explicit Euler, 0.5 rad wrong from 11 s on, gives 14.2
     const auto scene = scene_of("butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1e-13"});
     EXPECT_NEAR(manifest_of(scene)["parted_s"].get<double>(), 15.35, 0.01);
     EXPECT_TRUE(manifest_of(scene_of("calm"))["parted_s"].is_null());
@@ -131,7 +131,7 @@ TEST(Divergence, IsInTheManifest) {
 TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
     const auto scene = at_size(scene_of("fan"), {1920, 1080});
     const auto layout = make_layout(scene);
-    std::vector<Box> bar;  // a box a pixel, each up to the end
+    std::vector<Box> bar;  // one box for each pixel, each up to the end
     for (const auto& item : layout.words)
         if (const auto* box = std::get_if<Box>(&item)) bar.push_back(*box);
     ASSERT_GT(bar.size(), 200u);
@@ -144,7 +144,7 @@ TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
     const auto strokes =
         std::ranges::count_if(composer->frame(), [](const Item& item) { return std::holds_alternative<Stroke>(item); });
     EXPECT_GE(strokes, 200) << "a trail each";
-    // many are finer than few
+    // many pendulums have thinner rods than few
     const auto few = make_layout(at_size(scene_of("fan", {"video.members=5"}), {1920, 1080})),
                many = make_layout(at_size(scene_of("fan", {"video.members=200"}), {1920, 1080}));
     EXPECT_NEAR(few.bob_radius / many.bob_radius, 5, 1e-3);  // √(200/8)
@@ -165,14 +165,14 @@ TEST(Fan, ShowsListedMembersLargeWithALegend) {
             return dot && dot->color == layout.style.theme.palette[k];
         });
         EXPECT_TRUE(at_legend) << k;
-        if (k == 1) continue;  // behind the first
+        if (k == 1) continue;  // hidden behind the first
         const double x = std::sin(radians(angles[k])) + std::sin(radians(120.0)),
                      y = -std::cos(radians(angles[k])) - std::cos(radians(120.0));
         const auto at = layout.panels[0].at(x, y);
         EXPECT_TRUE(is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), layout.style.theme.palette[k]))
             << k;
     }
-    // the distance is that of the first and the last
+    // the distance is that between the first and the last
     EXPECT_EQ(scene.preset.a.angle_deg[0], parse_quad("120"));
     EXPECT_EQ(scene.preset.b.angle_deg[0], parse_quad("170.5"));
     expect_in_place_at_all_sizes(scene, "list");

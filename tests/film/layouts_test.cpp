@@ -76,7 +76,7 @@ TEST(Layouts, PhaseHeadIsAtItsAngleAndRate) {
 }
 
 TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
-    // a lone fast upper link with a light lower one: it turns steadily, ω1 hardly changes, and passes 0 once a turn
+    // almost without gravity, both links turn together: ω1 is almost constant, and θ1 passes 0 once a turn
     const std::vector<std::string> arguments{
         "video.layout=\"phase\"",       "video.phase=\"section\"",           "video.phase_link=1",
         "system.gravity_m_per_s2=1e-9", "system.omega_deg_per_s=[360, 360]", "scene.duration_s=3",
@@ -92,7 +92,7 @@ TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
 TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
     const auto scene = scene_of("fan", {"video.members=5", "scene.duration_s=1"});
     ASSERT_EQ(scene.members.size(), 5u);
-    // its ends are the pair, to the last bit
+    // its ends are the pair, bit for bit
     for_each_snapshot(scene, 60, [](const Snapshot& snapshot) {
         EXPECT_EQ(snapshot.members.front().back().x, snapshot.pair.a.bobs.back().x) << snapshot.pair.sample;
         EXPECT_EQ(snapshot.members.back().back().y, snapshot.pair.b.bobs.back().y) << snapshot.pair.sample;
@@ -106,12 +106,12 @@ TEST(Layouts, ExponentSoFarIsTheSlopeOfTheLogarithm) {
     state.sample = 1200;
     EXPECT_NEAR(*growth_rate(scene, state, 1e-4), 0.7, 1e-15);  // measured 0
     EXPECT_FALSE(growth_rate(scene, state, 0));
-    state.sample = 179;  // before a twentieth of 30 s
+    state.sample = 179;  // earlier than 1/20 of 30 s
     EXPECT_FALSE(growth_rate(scene, state, 1e-4));
 }
 
 TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
-    // hanging at rest, two masses of 1 kg: 2 g in the upper rod, g in the lower
+    // hanging at rest, two masses of 1 kg: the tension is 2 g in the upper rod and g in the lower
     const auto scene =
         scene_of("butterfly", {"system.angle_deg=[0, 0]", "b.angle_deg=[0.5, 0]", "scene.duration_s=2",
                                "video.panels=[\"pendulums\", \"rod-force\"]", "video.rod_force_range=[0, 40]"});
@@ -130,13 +130,13 @@ TEST(Layouts, AxesContainTheWholeMotion) {
     struct Pair {
         const char* preset;
         std::vector<std::string> keys;
-        double min_share = 0;  // of the strip's height that the curve of the distance takes
+        double min_share = 0;  // of the strip's height that the curve of the distance covers
     };
     const std::vector<std::string> quick{"scene.duration_s=10", "system.integrator=\"rk4\"",
                                          "system.step_s=\"1/1200\""};
     const std::string energies = "video.panels=[\"energies-a\", \"energies-b\", \"angles\", \"rates\", \"exponent\"]",
                       errors = "video.panels=[\"energy\", \"rod-error\", \"rod-force\"]";
-    // films as they are; chains that start alike, apart, at unlike energies, of unlike masses and lengths; other strips
+    // unchanged films; chains with equal starts, other energies, masses and lengths; other strips
     for (auto [preset, keys, min_share] :
          std::vector<Pair>{{"butterfly", {}, 0.75},
                            {"mass-ratio", {}, 0.6},
@@ -188,7 +188,7 @@ TEST(Layouts, AxesContainTheWholeMotion) {
             }
         }
     }
-    // and stay finite for any preset
+    // the ranges are finite for any preset
     for (const char* key :
          {"system.length_m=[1e200, 1]", "system.mass_kg=[1e300, 1]", "system.mass_kg=[1e-300, 1]",
           "system.gravity_m_per_s2=1e300", "system.length_m=[1e-200, 1e-200]", "b.mass_kg=[1e300, 1]"}) {

@@ -5,10 +5,10 @@
 namespace doppel {
 namespace manifest_test {
 
-// Released level, side b has next to no energy: relative to that, explicit Euler's error says nothing.
+// Released level, side b has almost no energy: the relative error of explicit Euler is meaningless there.
 TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
     const auto side = manifest_of(scene_of("butterfly", {"scene.duration_s=5"}))["b"];
-    const double range = 2 * 9.81 * (1 * 1 + 1 * 2);  // J: 2 g Σ m · height, 1 kg 1 m and 1 kg 2 m above and below
+    const double range = 2 * 9.81 * (1 * 1 + 1 * 2);  // J: 2 g Σ m · height, 1 kg each at 1 m and at 2 m
     EXPECT_NEAR(side["energy_range_J"].get<double>(), range, 0.01 * range);
     const double change = side["worst_energy_change_J"], of_range = side["worst_energy_error_of_range"];
     EXPECT_NEAR(of_range, change / side["energy_range_J"].get<double>(), 1e-15);
@@ -17,7 +17,7 @@ TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
     EXPECT_GT(side["worst_energy_error"].get<double>(), 100 * of_range);
 }
 
-// Runge–Kutta 4 loses energy at steps of 1/10 s, the more the faster the swing.
+// Runge–Kutta 4 loses energy at steps of 1/10 s; faster swings lose more.
 TEST(Manifest, WarnsWhereEnergyIsNotKept) {
     const std::vector<std::string> coarse{"system.integrator=\"rk4\"", "system.step_s=\"1/10\"", "scene.sample_hz=10",
                                           "video.fps=10", "scene.duration_s=20"};
@@ -28,13 +28,13 @@ TEST(Manifest, WarnsWhereEnergyIsNotKept) {
     EXPECT_NE(first.find("the energy of side a changed by "), std::string::npos) << first;
     EXPECT_NE(first.find("1/10 s is too coarse for 20 s"), std::string::npos) << first;
     EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=5"}))["warnings"].empty());
-    // friction takes energy: no error
+    // friction reduces the energy: no error
     EXPECT_TRUE(manifest_of(scene_of("springs", {"scene.duration_s=2"}))["warnings"].empty());
 }
 
 TEST(Manifest, ContainsThePredictabilityLimit) {
     EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=1"}))["horizon_s"]
-                    .is_null());  // its steps were chosen by hand
+                    .is_null());  // its steps are set by the user
     const auto chosen = manifest_of(scene_of("horizon"));
     EXPECT_EQ(chosen["horizon_s"],
               std::min(chosen["a"]["accuracy"]["horizon_s"], chosen["b"]["accuracy"]["horizon_s"]));

@@ -70,7 +70,7 @@ to = [0, 1]
     EXPECT_EQ(scene.preset.b.forces[0].stiffness_N_per_m, 4);
     EXPECT_EQ(scene.preset.b.particles.size(), 1u);
     EXPECT_EQ(scene.preset.b.particles[0].position_m[0], parse_quad("1.001"));
-    // a spring whose rest length is not given is at rest at the start
+    // a spring without a given rest length is relaxed at the start
     const auto& springs = scene.b.motion.parts->forces;
     EXPECT_EQ(std::get<Spring<Quad>>(springs[1]).length, parse_quad("1.001"));
 }
@@ -102,7 +102,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
                       spring = "[[system.force]]\nname = \"pull\"\nkind = \"spring\"\nfrom = \"bead\"\nto = [0, 3]\n",
                       rod = bead + "[[system.constraint]]\nkind = \"rod\"\n";
     const std::pair<std::string, std::string> errors[] = {
-        // sides have the same particles, in one order
+        // both sides have the same particles in the same order
         {two + "[[b.particle]]\nname = \"bob\"\nposition_m = [0, 2]\n[[b.particle]]\nname = \"baed\"",
          R"(presets/x.toml:14:1: [[b.particle]] 2 name must name a particle of both sides; "baed" is only on this side; did you mean "bead"?)"},
         {"[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"",
@@ -110,7 +110,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {"[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\nposition_m = [1, 0]\n"
          "[[b.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"\nposition_m = [1, 0]",
          "presets/x.toml:1:5: [a] particle must be in the order of the other side: two, one"},
-        // two of one name
+        // two particles with the same name
         {bead + "[[system.particle]]\nname = \"bead\"\nposition_m = [0, 1]",
          R"(presets/x.toml:8:1: [[system.particle]] 2 name must be unique; "bead" is used already)"},
         {bead + spring + spring,
@@ -139,7 +139,7 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
          "presets/x.toml:2:1: [system] particle must be written as [[system.particle]] tables; it is a whole "
          "number (3)"}};
     for (const auto& [text, message] : errors) EXPECT_EQ(error(text), message) << text;
-    // those of the mechanism itself name its side
+    // errors of the mechanism itself name its side
     const auto off = error(rod + "from = \"bead\"\nto = [0, 0]\nlength_m = 1.5");
     EXPECT_TRUE(off.starts_with("x: side a: constraint 1 (rod 1–fixed): ")) << off;
 }
@@ -165,7 +165,7 @@ mass_kg = 3.4e-5
     PairRun pair(scene);
     pair.next(never);
     const double distance = pair.next(never).distance;
-    // both masses hang on one line: 8.8e-22 m/s² · cos 79° across it, for 1/120 s
+    // both masses hang on one line: 8.8e-22 m/s² · cos 79° perpendicular to it, for 1/120 s
     const double pull = 6.674e-11 * 3.4e-5 / (1609 * 1609);
     EXPECT_NEAR(distance / (std::sqrt(2.0) * pull * std::cos(radians(79)) / 120), 1, 0.01);  // measured 1.0002
 }

@@ -18,7 +18,6 @@ namespace page_test {
 
 namespace fs = std::filesystem;
 
-/// A page's text.
 std::string page_of(const std::string& text, const RunOptions& options = {}) {
     auto scene = scene_of_text(text);
     auto in = options;
@@ -33,7 +32,7 @@ std::string html(const std::string& keys) {
     return keys + "\n[video]\nformat = \"html\"\n";
 }
 
-/// What an engine of JavaScript prints that runs the page's chain.js and then `program`; nothing where there is no engine.
+/// What a JavaScript engine prints for the page's chain.js followed by `program`; nothing without an engine.
 std::optional<std::string> printed_by_script(const std::string& program) {
     const auto folder = test::fresh_folder();
     const auto script = folder / "script.js";
@@ -55,7 +54,7 @@ struct Chains {
 
 class PageChains : public testing::TestWithParam<Chains> {};
 
-/// All angles and rates of both pendulums, and their distance, by the page and by Doppel.
+/// All angles and rates of both pendulums, and their distance: the page's values against Doppel's.
 TEST_P(PageChains, AreComputedToTheLastBit) {
     const auto scene = scene_of_text(html(GetParam().keys));
     ASSERT_TRUE(page_computes(scene));
@@ -105,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
     Page, PageChains,
     testing::Values(Chains{"EulerOfOne", chains_of("[100]", "[100.01]", one + by("euler", 6000))},
                     Chains{"EulerOfTwo", chains_of("[90, 90]", "[90.003, 90]", by("euler", 30000))},
-                    // h ω is larger than what Euler's method turns by
+                    // h ω exceeds the largest turn for which sine and cosine are updated from step to step
                     Chains{"CoarseEulerOfTwo", chains_of("[120, 100]", "[121, 100]", two + by("euler", 1200))},
                     Chains{"EulerOfThree", chains_of("[120, 0, 40]", "[120.1, 0, 40]", three + by("euler", 6000))},
                     Chains{"SemiImplicitOfOne", chains_of("[100]", "[101]", one + by("semi-implicit-euler", 2400))},
@@ -164,7 +163,7 @@ std::vector<std::vector<std::vector<double>>> channels_of(const Json& motion, st
 
 class PageMotion : public testing::TestWithParam<std::tuple<const char*, int>> {};
 
-/// To half a step, and to what a float holds.
+/// The error is at most half a step plus the rounding to float.
 TEST_P(PageMotion, IsHeldInSteps) {
     const auto& [keys, bits] = GetParam();
     const auto text = html(std::string("[scene]\nduration_s = 2\n") + keys) + fmt::format("position_bits = {}\n", bits);
@@ -231,7 +230,7 @@ TEST(Page, IsAloneWithPosterAndContactSheetLeftOut) {
     EXPECT_EQ(data_of(page_of(text)).at("start_s"), 1);
 }
 
-/// docs/update-gallery makes it.
+/// docs/update-gallery writes the example.
 TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
     const auto page = test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "docs/butterfly.html");
     const std::string start = "<script type=\"text/packed\">";
@@ -244,7 +243,7 @@ TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
     }
 }
 
-/// A wide film has an upright picture, too; the pictures are those of the film.
+/// A wide film also has an upright picture; the pictures equal those of the film.
 TEST(Page, HasThePicturesOfTheFilm) {
     const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
     const auto data = data_of(page_of(text));

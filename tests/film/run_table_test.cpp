@@ -96,7 +96,7 @@ TEST(RunTable, HasTheEnergiesLastWhereTheyAreAskedFor) {
     ASSERT_EQ(lines.size(), plain.size());
     EXPECT_EQ(lines[0], plain[0] + ",a_kinetic_J,a_potential_J,b_kinetic_J,b_potential_J");
     for (std::size_t k = 1; k < lines.size(); ++k) {
-        EXPECT_TRUE(lines[k].starts_with(plain[k] + ",")) << k;  // old columns as they were
+        EXPECT_TRUE(lines[k].starts_with(plain[k] + ",")) << k;  // the original columns are unchanged
         const auto cells = cells_of(lines[k]);
         const auto at = [&](std::size_t from_end) { return std::stod(cells[cells.size() - from_end]); };
         // m g (y1 + y2) of side a, and ½ m v²

@@ -41,7 +41,7 @@ TEST(Run, OfAChangingSpeedHasTheSameTableAndMoreFrames) {
     EXPECT_EQ(render(slow, {.out = out / "slow"}).frames,
               133);  // 0.1 + 0.1 · 2.5 + 0.1 · 4 + 0.1 · 2.5 + 0.1 = 1.1 s …
     EXPECT_EQ(bytes_of(out / "even/butterfly/butterfly.csv"), bytes_of(out / "slow/butterfly/butterfly.csv"));
-    // a part of it has the frames of the whole, and the rows of its samples
+    // a range of frames has the same frames as the whole film, and the rows of its samples
     const auto png = small_scene({"video.speed=[[0, 1], [0.2, 0.25]]", "video.format=\"png\""});
     render(png, {.out = out / "all"});
     const long first = png.frames.first_from({24});
@@ -78,7 +78,7 @@ TEST(Run, OfAnyRateHasTheSameTableAndFramesThatAreTheSameAtAnyOther) {
         for (const long k : {0, 1, 12, 23, 24}) EXPECT_EQ(frame("600", 5 * k), frame("120", k)) << preset << ' ' << k;
         for (const long k : {0, 1, 2, 5, 9, 10}) EXPECT_EQ(frame("50", k), frame("600", 12 * k)) << preset << ' ' << k;
         EXPECT_NE(frame("600", 61), frame("600", 60));
-        // and alone: of sample 16.8, between two
+        // and a single frame: sample 16.8, between two samples
         render(film, {.out = out / "part", .first = 7, .last = 8});
         EXPECT_EQ(frame("part", 7), frame("50", 7)) << preset;
     }

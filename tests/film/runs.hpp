@@ -15,7 +15,7 @@
 
 namespace doppel {
 
-/// So many seconds of butterfly in a little picture.
+/// The film butterfly with this duration in a small picture.
 inline Scene small_scene(std::vector<std::string> more = {}, const std::string& duration_s = "0.5") {
     more.insert(more.begin(), {"video.size=[320, 180]", "scene.duration_s=" + duration_s});
     return scene_of("butterfly", more);
@@ -32,7 +32,7 @@ inline nlohmann::json manifest_of(const Scene& scene, const std::filesystem::pat
     return nlohmann::json::parse(test::bytes_of(out / scene.preset.name / (scene.preset.name + ".json")));
 }
 
-/// Of the files in a folder.
+/// The names of the files in a folder.
 inline std::set<std::string> files_in(const std::filesystem::path& folder) {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -40,7 +40,7 @@ inline std::set<std::string> files_in(const std::filesystem::path& folder) {
     return names;
 }
 
-/// Of a CSV file, without their ends.
+/// The lines of a CSV file, without line ends.
 inline std::vector<std::string> lines_of(const std::filesystem::path& path) {
     std::istringstream text(test::bytes_of(path));
     std::vector<std::string> lines;

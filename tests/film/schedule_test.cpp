@@ -34,7 +34,7 @@ TEST(Schedule, CardsFadeOverHalfASecondAndNeverJump) {
             for (long k = 0; k < count; ++k) {
                 const double now = card_opacity(k, count, 120, fades_in);
                 EXPECT_TRUE(fades_in ? now >= last : now <= last) << k;
-                // a fade of 60 frames is steepest in its middle: 1.5/61 a frame
+                // a fade of 60 frames changes fastest in its middle: 1.5/61 per frame
                 if (count == 240) {
                     EXPECT_LE(std::abs(now - last), 1.5 / 61 + 1e-12) << k;
                 }
@@ -55,12 +55,12 @@ TEST(Schedule, FramesComeInItsOrderAndRangesGiveTheSameOnes) {
     const auto first = frame_of(scene, 0).rgba, last = frame_of(scene, 30).rgba;
     EXPECT_NE(frame(0), first) << "a card hides it";
     for (const long k : {24L, 29L, 30L}) EXPECT_EQ(frame(k), first) << k;
-    // the renderer redraws only what changes; no pixel may depend on it
+    // the renderer redraws only what changes; no pixel may depend on that
     for (const long sample : {1, 5, 15, 29}) EXPECT_EQ(frame(30 + sample), frame_of(scene, sample).rgba) << sample;
     for (const long k : {60L, 61L, 72L}) EXPECT_EQ(frame(k), last) << k;
     EXPECT_NE(frame(90), last);
 
-    // ranges of samples, drawn alone, are the same files; the cards belong to the first and the last sample
+    // ranges of samples give the same files; the cards belong to the first and the last sample
     std::set<std::string> seen;
     for (const auto& [from, to] : {std::pair{0L, 4L}, {4L, 30L}, {30L, 31L}}) {
         render(scene, {.out = parts, .first = from, .last = to});
@@ -93,7 +93,7 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     EXPECT_EQ(sheet.size.width, 3 * 320 + 4 * 8);
     EXPECT_GT(title, 30);
     EXPECT_LT(title, 100);
-    // the words of a tile are the time alone
+    // the only text of a tile is its time
     const auto composer = composed(tile, 60, PictureKind::tile);
     EXPECT_EQ(words_of({composer->backdrop(), composer->frame()}), std::vector<std::string>{"0.50 s"});
     // the last tile is the end of the motion
@@ -103,7 +103,7 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     for (int y = 0; y < last.size.height; ++y)
         for (int x = 0; x < last.size.width; ++x)
             ASSERT_TRUE(std::equal(last.at(x, y), last.at(x, y) + 4, sheet.at(left + x, top + y))) << x << ' ' << y;
-    // both pendulums fill their halves: a circle takes most of a tile's width
+    // both pendulums fill their halves: a circle covers most of a tile's width
     const auto layout = make_layout(tile, bounds_of(scene), PictureKind::tile);
     EXPECT_GT(4 * layout.reach, 0.85f * 320);
 }
@@ -125,7 +125,7 @@ TEST(Schedule, CardsHaveAStillOfTheOutcome) {
             EXPECT_GT(label->anchor.y - label->size, 110) << label->text;
             EXPECT_LT(label->anchor.y, 1920 - 260) << label->text;
         }
-    // all of it fades
+    // the whole end card fades
     for (const auto& item : composer->end_card(0.25))
         std::visit([](const auto& shape) { EXPECT_LE(shape.color.a, 0.25f); }, item);
 }

@@ -22,7 +22,7 @@ TEST(Shown, IsExactlyWhatIsRequested) {
                       credit = fmt::format("|Doppel {} · butterfly", version());
     EXPECT_EQ(words(R"(["title", "subtitle", "clock", "labels", "credit"])"),
               "T|S|real time|A|B|N|0.00 s|T" + outcome + credit);
-    EXPECT_EQ(words("[]"), "T" + outcome);  // the card is asked for by a key of its own
+    EXPECT_EQ(words("[]"), "T" + outcome);  // the card has a key of its own
     EXPECT_EQ(words(R"(["title"])"), "T|T" + outcome);
     EXPECT_EQ(words(R"(["subtitle"])"), "S|T" + outcome);
     EXPECT_EQ(words(R"(["clock"])"), "real time|0.00 s|T" + outcome);

@@ -88,11 +88,11 @@ TEST(Single, MembersOfAnEnsembleHaveMassesLengthsAndColoursOfTheirOwn) {
     EXPECT_EQ(scene.members[1].chain->mass[1], 4);
     EXPECT_EQ(scene.members[1].chain->length[0], Quad(1) / 2);
     EXPECT_EQ(scene.preset.b.length_m[0], Quad(1) / 4);
-    // its last bob is in its colour, and as large as its mass
+    // its last bob has the pendulum's colour, and the size that fits its mass
     const auto layout = make_layout(scene);
     const auto picture = frame_of(scene, 0);
     EXPECT_TRUE(is_at(picture, layout.panels[0].at(1, 0), {0, 1, 0, 1}));
-    // the table ends with the members'; the first and the last are the pair
+    // the table ends with the members' columns; the first and the last member are the pair
     const auto table = table_of(scene);
     const auto names = cells_of(table[0]), last = cells_of(table.back());
     const auto cell = [&](const std::string& name) {
@@ -128,7 +128,7 @@ TEST(Single, AViewHasItsCentreAndHeightAndFollowsAMass) {
     EXPECT_FLOAT_EQ(zoomed.px_per_m, zoomed.area.height() / 2);
     EXPECT_FLOAT_EQ(zoomed.at(0.5, -1).x, (zoomed.area.left + zoomed.area.right) / 2);
     EXPECT_FLOAT_EQ(zoomed.at(0, 0).y, zoomed.area.top);
-    // the mass that is followed stays in the middle
+    // the mass that the view follows stays in the middle
     const auto scene = scene_of_text(one + "[video.view]\nfollow = 2\nheight_m = 2\n");
     const auto panel = make_layout(scene).panels[0];
     for (const long sample : {0L, 50L})
@@ -151,7 +151,7 @@ TEST(Single, TrailsAlone) {
     const auto none =
         composed(scene_of_text(one + "panels = [\"pendulums\"]\n[video.widths_px]\ntrail = 0\n"), 60)->frame();
     EXPECT_FALSE(std::ranges::any_of(none, [](const Item& item) { return std::holds_alternative<Stroke>(item); }));
-    // a pair without its twins' shadows
+    // a pair without the shadows of the second pendulum
     const auto capsules = [](const std::string& show) {
         const auto list = composed(scene_of("butterfly", {"b.angle_deg=[60, 90]", "video.show=" + show}), 60)->frame();
         return std::ranges::count_if(list, [](const Item& item) { return std::holds_alternative<Capsule>(item); });

@@ -40,21 +40,21 @@ TEST(Still, IsWrittenBesideAFilmAndOtherStills) {
     render(scene, {.out = out, .pictures = false});
     still(scene, {1, 2}, out);
     still(scene, {1, 1}, out);
-    still(scene, {1, 1}, out);  // in place of the last
+    still(scene, {1, 1}, out);  // replaces the last still
     EXPECT_EQ(files_in(out / "butterfly"),
               (std::set<std::string>{"butterfly.csv", "butterfly.json", "butterfly.0.5s.png", "butterfly.1s.png"}));
 }
 
 TEST(Still, IsAlsoAPageOfPathsAndText) {
     const auto out = test::fresh_folder();
-    for (int time = 0; time < 2; ++time) {  // the second in place of the first
+    for (int time = 0; time < 2; ++time) {  // the second run replaces the file of the first
         const auto svg = still(small(), {1, 1}, out, PictureFormat::svg);
         EXPECT_EQ(svg.filename(), "butterfly.1s.svg");
         EXPECT_NE(test::bytes_of(svg).find("<title>Three thousandths of a degree</title>"), std::string::npos);
         const auto pdf = still(small(), {1, 1}, out, PictureFormat::pdf);
         EXPECT_TRUE(test::bytes_of(pdf).starts_with("%PDF-"));
     }
-    // somebody else's is not replaced
+    // a file that Doppel did not write is not replaced
     test::write_bytes(out / "butterfly/butterfly.0.5s.pdf", "%PDF-1.5 of mine");
     EXPECT_EQ(error_of([&] { still(small(), {1, 2}, out, PictureFormat::pdf); }).first, ExitCode::io_failed);
 }
@@ -62,7 +62,7 @@ TEST(Still, IsAlsoAPageOfPathsAndText) {
 TEST(Still, IsOfAnyTimeUpToTheEnd) {
     const auto path = still(small(), {1003, 1000});
     EXPECT_EQ(path.filename(), "butterfly.1.003s.png");
-    // the picture of a film that has a sample there
+    // the same picture as in a film that has a sample at this time
     const auto pixels = [](std::vector<std::string> more) {
         more.insert(more.end(), {"video.trail_s=0", "video.panels=[\"pendulums\"]", "video.fps=60"});
         return read_png(still(small(more), {1003, 1000})).rgba;
@@ -86,7 +86,7 @@ TEST(Still, RangesInSecondsAreThoseInFramesWithoutTheirEnd) {
     EXPECT_EQ(of(Rational{7, 5}, std::nullopt), frames(168, 181)) << "the end of the whole is a frame";
     EXPECT_EQ(of(Rational{7, 5}, Rational{3, 2}), frames(168, 180)) << "0.1 s to the frame: such parts make loops";
     EXPECT_EQ(of(std::nullopt, Rational{1, 100}), frames(0, 2));  // between two frames
-    // of frames at 25/s the samples of the same time
+    // at 25 frames per second, the samples at the same times
     EXPECT_EQ(
         render(small({"video.fps=25"}), {.out = test::fresh_folder(), .from_s = Rational{1, 2}, .to_s = Rational{3, 5}})
             .samples,

@@ -17,7 +17,7 @@
 namespace doppel {
 namespace strips_test {
 
-/// The label of a picture that begins so.
+/// The label of a picture that begins with `start`.
 std::optional<Label> label_of(const std::vector<Label>& labels, const std::string& start) {
     const auto found = std::ranges::find_if(labels, [&](const Label& label) { return label.text.starts_with(start); });
     return found == labels.end() ? std::nullopt : std::optional(*found);
@@ -41,7 +41,7 @@ const std::vector<std::string> films{
     "loop",         "mass-ratio", "measured", "phase-dance", "raindrop", "rods",    "single-and-double",
     "slow-parting", "springs",    "triple",   "two-methods", "whip",     "whip-256"};
 
-/// The film of a preset, begun.
+/// The film of a preset up to its first samples.
 Scene beginning(const std::string& film, std::vector<std::string> keys) {
     if (film != "measured") keys.emplace_back("scene.duration_s=3");
     if (film == "whip-256") keys.emplace_back("system.integrator=\"taylor\"");
@@ -52,7 +52,7 @@ TEST(Strips, EachHasAFifthOfThePictureAndEachWordNinePixels) {
     const auto check = [](const Scene& scene, const std::string& what) {
         const auto layout = make_layout(scene);
         float together = 0;
-        const auto fifth = 0.197f * static_cast<float>(scene.preset.video.size.height);  // of whole pixels
+        const auto fifth = 0.197f * static_cast<float>(scene.preset.video.size.height);  // in whole pixels
         for (const auto& strip : layout.strips) {
             together += strip.area.height();
             if (!is_tall(scene.preset.video)) {
@@ -130,7 +130,7 @@ TEST(Strips, LimitsAreNamedForWhatTheyAre) {
     EXPECT_TRUE(layout.strips[0].area.contains(box_of(*numerical)));
     EXPECT_NEAR(model->anchor.x, layout.strips[0].time.at(5.3), 10 * layout.text + 1);
     expect_apart(labels, {960, 540}, "");
-    // no line of the grid crosses the words
+    // no grid line crosses the text
     const auto picture = frame_of(scene, 0);
     const int y = static_cast<int>(numerical->anchor.y - 0.3f * numerical->size),
               x = static_cast<int>(numerical->anchor.x) - 2;
@@ -138,7 +138,7 @@ TEST(Strips, LimitsAreNamedForWhatTheyAre) {
 }
 
 TEST(Strips, OneSideDoesNotCoverTheOther) {
-    // both run as one
+    // both pendulums have the same curve
     for (const char* panel : {"angles", "rates", "rod-force", "total-energy", "rod-error"}) {
         const auto scene = scene_of("butterfly", {fmt::format("video.panels=[\"pendulums\", \"{}\"]", panel),
                                                   "system.model=\"constraints\"", "scene.duration_s=4"});
@@ -166,7 +166,7 @@ TEST(Strips, TheEnergyOfADrivenSideIsAMeanOverItsPeriod) {
         mean.low = std::min(mean.low, *value), mean.high = std::max(mean.high, *value);
     });
     EXPECT_LT(mean.high - mean.low, 0.15 * (raw.high - raw.low));  // measured 0.09
-    PeriodMean of_line(0.5);  // a straight line's is its value half a period ago, at samples and between them
+    PeriodMean of_line(0.5);  // the mean of a straight line is its value half a period ago, at samples and between them
     for (int n = 0; n <= 10; ++n) of_line.add(0.12 * n, 3 + 0.12 * n);
     EXPECT_NEAR(*of_line.at(1.2, 4.2), 3.95, 1e-14);
     EXPECT_NEAR(*of_line.at(1.27, 4.27), 4.02, 1e-14);

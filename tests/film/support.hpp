@@ -33,12 +33,12 @@ void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
     }
 }
 
-/// A preset x.toml of this text.
+/// A scene from a preset x.toml with this text.
 inline Scene scene_of_text(const std::string& text) {
     return make_scene(read_preset({"x", "presets/x.toml", text}));
 }
 
-/// What makes a chain one of one link, the sides at these angles.
+/// The arguments that make a chain of one link, released at these angles.
 inline std::vector<std::string> one_link_at(const std::string& a, const std::string& b) {
     return {"system.links=1",
             "system.mass_kg=[1]",
@@ -49,7 +49,7 @@ inline std::vector<std::string> one_link_at(const std::string& a, const std::str
             "b.angle_deg=[" + b + "]"};
 }
 
-/// That has seen the samples 0 … last.
+/// A composer that has processed the samples 0 … last.
 inline std::unique_ptr<Composer> composed(const Scene& scene, long last, PictureKind dress = PictureKind::film) {
     Recording recording(scene, {last + 1}, true, never_stopped);
     auto composer = std::make_unique<Composer>(scene, recording.bounds(), dress);

@@ -11,7 +11,7 @@ namespace unlike_sides_test {
 
 const std::atomic<bool> never = false;
 
-/// A rod of 2 m beside a spring of 1 m.
+/// A rod of 2 m on one side, a spring of 1 m on the other.
 const std::string chain_and_spring =
     "[a]\nlinks = 1\nlength_m = 2\n[[b.particle]]\nname = \"bob\"\nposition_m = [1, 0]\n[[b.force]]\nkind = "
     "\"spring\"\n"
@@ -30,8 +30,8 @@ TEST(UnlikeSides, TheSingleOneComesBackAfterTheExactPeriodAndTheDoubleOneDoesNot
     PairRun pair(scene);
     auto state = pair.next(never);
     const auto start_a = state.a.bobs.back(), start_b = state.b.bobs.back();
-    EXPECT_NEAR(state.distance, 0, 1e-15);  // they start at one place, at rest
-    double back_a = 1e9, back_b = 1e9;      // m, how near they come to the start within 2 ms of the period
+    EXPECT_NEAR(state.distance, 0, 1e-15);  // they start at the same place, at rest
+    double back_a = 1e9, back_b = 1e9;      // m, smallest distance from the start within 2 ms of the period
     for (long n = 1; n <= std::lround(1000 * period) + 2; ++n) {
         state = pair.next(never);
         if (std::abs(scene.time(n) - period) > 2e-3) continue;

@@ -11,7 +11,7 @@
 
 namespace doppel {
 
-/// What a label covers, px: letters of DejaVu Sans rise 0.73 em above the baseline, tails fall 0.24 em below it.
+/// The area of a label, px: letters of DejaVu Sans rise 0.73 em above the baseline and descend 0.24 em below it.
 inline Area box_of(const Label& label, const Typeface& type = {}) {
     const float width = type.width(label.text, label.size, label.weight);
     const float share = label.align == Align::left ? 0 : label.align == Align::center ? 0.5f : 1;
@@ -33,13 +33,13 @@ inline std::vector<std::string> words_of(const std::vector<DisplayList>& lists) 
     return words;
 }
 
-/// The words of the picture after the snapshots 0 … last.
+/// The labels of the picture after the snapshots 0 … last.
 inline std::vector<Label> labels_of(const Scene& scene, long last) {
     const auto composer = composed(scene, last);
     return labels_in({composer->backdrop(), composer->frame()});
 }
 
-/// Each is in the picture, and none touches another.
+/// Each label is inside the picture, and no two overlap.
 inline void expect_apart(const std::vector<Label>& labels, Size size, const std::string& what,
                          const Typeface& type = {}) {
     const Area picture{0, 0, static_cast<float>(size.width), static_cast<float>(size.height)};
