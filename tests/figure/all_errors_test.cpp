@@ -11,7 +11,7 @@ namespace all_figure_faults_test {
 
 using Lines = std::vector<std::string>;
 
-/// How the faults of a figure of this kind begin; the text is from line 3 on.
+/// How the errors of a figure of this kind begin; the text starts at line 3.
 Lines faults_of(const std::string& kind, const std::string& text, const std::vector<std::string>& arguments = {},
                 std::size_t letters = 24) {
     try {

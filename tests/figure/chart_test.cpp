@@ -28,7 +28,7 @@ TEST(Chart, APdfHasTheRequestedWidth) {
     EXPECT_TRUE(pdf.starts_with("%PDF-"));
     const auto layout = layout_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6"}).chart);
     EXPECT_NEAR(layout.width_pt, 8.6 / 2.54 * 72, 1e-9);
-    EXPECT_EQ(layout.unit, 1.0f);  // labels are 20 px: 8 pt, as the key says where it is not given
+    EXPECT_EQ(layout.unit, 1.0f);  // labels are 20 px, which is 8 pt, the default of the key
     EXPECT_NEAR(20 * layout.scale * layout.width_pt / layout.picture.width, 8, 0.01);
 }
 
@@ -48,7 +48,7 @@ TEST(Chart, APngOnPaperHasItsResolution) {
         for (std::size_t i = 0; i < 4; ++i) all = all << 8 | static_cast<unsigned char>(png[from + i]);
         return all;
     };
-    EXPECT_NEAR(number(at + 4) * 0.0254, 600, 0.2);  // a pixel is the least that the width can differ by
+    EXPECT_NEAR(number(at + 4) * 0.0254, 600, 0.2);  // one pixel is the smallest possible difference of the width
     EXPECT_EQ(number(at + 8), number(at + 4));
     EXPECT_EQ(png[at + 12], 1);
     EXPECT_NEAR(layout_of(figure.chart).picture.width, 8.6 / 2.54 * 600, 0.5);

@@ -1,4 +1,4 @@
-// The claims of the study (Kao 2022), measured one by one, and the table of what comes of them, docs/study.md:
+// The claims of the study (Kao 2022), each measured, and the table of the results in docs/study.md:
 //     DOPPEL_UPDATE_STUDY=1 build/release/tests/test_figure --gtest_filter=Claims.*
 
 #include "analysis/difference.hpp"
@@ -26,17 +26,17 @@ const std::atomic<bool> never = false;
 enum class Verdict { holds, fails, misprinted };
 constexpr const char* verdict_words[] = {"holds", "does not hold", "misprinted"};
 
-/// What was measured, in words, and what it says of the claim.
+/// What was measured, in words, and the verdict on the claim.
 struct Found {
     Verdict verdict;
     std::string words;
 };
 
-// The study's releases, in its units, and what is measured of them.
+// The study's initial conditions, in its units, and the measurements on them.
 
 using SidePair = std::pair<SideSpec, SideSpec>;
 
-/// Unit masses and lengths, from rest, by the study's Euler steps.
+/// Unit masses and lengths, released at rest, with the study's Euler steps.
 SideSpec side(std::vector<Quad> angle_deg, ModelChoice model = ModelChoice::angles) {
     SideSpec spec;
     spec.set_links(angle_deg.size());
@@ -45,7 +45,7 @@ SideSpec side(std::vector<Quad> angle_deg, ModelChoice model = ModelChoice::angl
     return spec;
 }
 
-/// The same by Taylor series in quad.
+/// The same computed by Taylor series in quadruple precision.
 SideSpec exactly(SideSpec spec) {
     spec.integrator = "taylor";
     spec.precision = Precision::in_quad;
@@ -53,12 +53,12 @@ SideSpec exactly(SideSpec spec) {
     return spec;
 }
 
-/// PendulumPair 0.003° apart in the upper link.
+/// A pair whose upper links differ by 0.003°.
 SidePair angle_pair(int theta1_deg, int theta2_deg = 0) {
     return {side({theta1_deg, theta2_deg}), side({theta1_deg + parse_quad("0.003"), theta2_deg})};
 }
 
-/// PendulumPair of mass ratio `ratio` and 0.01 more.
+/// A pair of mass ratios `ratio` and `ratio` + 0.01.
 SidePair mass_pair(int theta1_deg, int theta2_deg, double ratio) {
     auto twins = std::pair{side({theta1_deg, theta2_deg}), side({theta1_deg, theta2_deg})};
     twins.first.mass_kg[0] = ratio;
@@ -66,7 +66,7 @@ SidePair mass_pair(int theta1_deg, int theta2_deg, double ratio) {
     return twins;
 }
 
-/// The same on the general mechanism, with the study's droplet or without.
+/// The same as a general mechanism, with or without the study's droplet.
 SideSpec with_droplet(SideSpec spec, bool droplet) {
     spec.model = ModelChoice::mechanism;
     if (droplet)
@@ -86,7 +86,7 @@ std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count) 
     return all;
 }
 
-/// The study's averages over 25 s.
+/// The study's mean distances over 25 s.
 std::vector<double> averages(const std::vector<SidePair>& sides, const MotionSpec& method = {}) {
     std::vector<PendulumPair> twins;
     for (const auto& [a, b] : sides) twins.push_back({chain_of(a).cast<double>(), chain_of(b).cast<double>()});
@@ -235,7 +235,7 @@ Found energy_gain() {
                         scientific(euler), scientific(std::abs(taylor)))};
 }
 
-/// Greatest distance with and without the droplet within 75 s, and when it is first more than 1, s; 0 = never.
+/// Greatest distance with and without the droplet within 75 s, and the time when it first exceeds 1, s; 0 = never.
 std::pair<double, double> parted_by_droplet(int angle_deg) {
     const auto start = exactly(side({angle_deg, angle_deg}));
     const auto d = distances(with_droplet(start, true), with_droplet(start, false), 9000);
@@ -272,10 +272,10 @@ Found three_links() {
 }
 
 struct Claim {
-    const char* words;  // in short
+    const char* words;  // short summary
     Found (*measure)();
 };
-/// In the order of the study.
+/// In the study's order.
 constexpr Claim claims[]{
     {"The accelerations in angles are as printed (eqs. 5, 6)", equations},
     {"Each step updates velocities first, then positions (eq. 7)", order_of_update},
@@ -292,7 +292,7 @@ constexpr Claim claims[]{
     {"A raindrop a mile away is felt where the motion is chaotic", droplet_90},
     {"Figure 8 takes over an hour and a half, and more than three links are out of reach", three_links}};
 
-/// What docs/study.md says before and behind the table.
+/// The text of docs/study.md before and after the table.
 constexpr const char* above =
     "# The study's claims\n\nJ. Kao, *Simulating Chaos in Deterministic Systems: The Double Pendulum*, 2022. Each "
     "claim is measured by a "

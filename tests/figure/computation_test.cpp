@@ -1,4 +1,4 @@
-// Going on from a record.
+// Resuming from a record.
 #include "figure/computation.hpp"
 
 #include "figure/support.hpp"
@@ -19,7 +19,7 @@ using test::write_bytes;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A computation that resuming from the record in the folder, and what came of it.
+/// A computation that resumes from the record in the folder, and its result.
 struct Resumed {
     Said said;
     KnownTrials trials;
@@ -42,7 +42,7 @@ TEST(Computation, ComputesOnlyWhatARecordDoesNotHave) {
     const auto expected = computed(figure);
     KnownTrials known(10);
     for (const std::size_t trial : {0u, 1u, 4u, 9u})
-        known[trial] = {100.0 + static_cast<double>(trial)};  // to be told apart
+        known[trial] = {100.0 + static_cast<double>(trial)};  // numbers that no computation gives
     PartWriter(record, header_of(figure), known).close();
 
     const Resumed resumed(figure, header_of(figure), folder);
@@ -85,7 +85,7 @@ TEST(Computation, KeepsARecordOfAnotherRun) {
         expect_error(ExitCode::io_failed, {record.string() + " belongs to another preset or version"},
                      [&] { Resumed(figure, header_of(figure), folder); });
         EXPECT_EQ(bytes_of(record), bytes);
-        // which is why each has a name of its own
+        // and so each has its own name
         EXPECT_TRUE(names.insert(resume_name(header)).second) << resume_name(header);
     }
     write_bytes(record, "my diary");
@@ -93,7 +93,7 @@ TEST(Computation, KeepsARecordOfAnotherRun) {
     EXPECT_EQ(bytes_of(record), "my diary");
 }
 
-/// A kill at any moment, and a line that rotted: what is whole before is kept, all else is computed anew.
+/// A run is killed at any byte, or a line is damaged: complete trials are kept, all others are computed again.
 TEST(Computation, ResumesFromARecordTruncatedOrDamagedAtAnyByte) {
     const auto folder = fresh_folder();
     const auto figure = figure_of("fig2-right", {"grid.x.to=3", "scene.duration_s=0.05"});
@@ -118,7 +118,7 @@ TEST(Computation, ResumesFromARecordTruncatedOrDamagedAtAnyByte) {
     }
 }
 
-/// Checksums tell what rots; numbers that cannot be are told by their kind.
+/// Checksums find damage; impossible numbers are found by the kind of figure.
 TEST(Computation, RejectsImpossibleNumbers) {
     const auto folder = fresh_folder();
     const auto figure = small_sweep();
@@ -133,7 +133,7 @@ TEST(Computation, RejectsImpossibleNumbers) {
         EXPECT_EQ(resumed.computed_units, 6);
         EXPECT_TRUE(resumed.said.has("40 % is done; line 6 is damaged"));
     }
-    // those of another part
+    // a record with the numbers of another part
     auto header = header_of(figure, 2, 2);
     PartWriter(folder / resume_name(header), header, expected).close();
     EXPECT_EQ(Resumed(figure, header, folder).computed_units, 5);

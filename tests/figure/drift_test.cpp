@@ -9,7 +9,7 @@ namespace drift_test {
 
 const std::string kind = "[scene]\nkind = \"series\"\n";
 
-/// Of the double pendulum of the preset, for a short time.
+/// The preset's double pendulum, for a short time.
 FigurePreset short_drift(int seconds, const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments{fmt::format("series.duration_s={}", seconds), "series.points_per_decade=5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -44,10 +44,10 @@ TEST(Drift, EulerGainsEnergyByTheClosedForm) {
         "[system]\nlinks = 1\nangle_deg = [0.1]\n"
         "[series]\nquantity = \"errors\"\nevaluations_per_s = 200\nduration_s = 40\nmethods = [\"euler\"]\n");
     const auto table = table_of(figure);
-    ASSERT_EQ(table.rows.size(), 2u * 18);  // in angles, then in constraints
+    ASSERT_EQ(table.rows.size(), 2u * 18);  // minimal coordinates first, then constraints
     for (std::size_t i = 0; i < 18; ++i) {
         const double time = table.rows[i][3];
-        // the last look of a window is the worst; there are four a second
+        // the last check in a window has the largest error; there are four checks per second
         const double steps = std::floor(time * 4 + 1e-9) / 4 / h;
         const double gained = std::expm1(steps * std::log1p(z2)) * (1 - std::cos(amplitude)) / std::cos(amplitude);
         EXPECT_EQ(table.rows[i][2], h);
@@ -62,7 +62,7 @@ TEST(Drift, EveryMethodTakesItsEvaluations) {
         if (!key.ends_with("_evaluations_per_s")) continue;
         ++counted;
         if (key.starts_with("taylor")) {
-            EXPECT_LT(value, 500) << key;  // 446: the finest tolerance there is takes no more
+            EXPECT_LT(value, 500) << key;  // 446: even the smallest tolerance needs no more evaluations
             EXPECT_EQ(found.number(key.substr(0, key.find("_eval")) + "_setting"), 8.89e-16);
         } else {
             EXPECT_NEAR(value, 500, 5) << key;  // measured 499.6 … 501.8
@@ -94,9 +94,9 @@ TEST(Drift, HasNoRodErrorForMethodsThatPreserveRods) {
     const auto table =
         table_of(short_drift(200, {"series.methods=[\"semi-implicit-euler\", \"rattle\", \"rattle6\"]"}));
     ASSERT_EQ(table.rows.size(), 5u * 13);
-    // those that keep them come last: rattle, rattle6 and rk4 projected
+    // the methods that conserve the constraints come last: rattle, rattle6 and projected rk4
     for (std::size_t i = 2 * 13; i < table.rows.size(); ++i) EXPECT_LT(table.rows[i][5], 2e-15);  // measured 2e-16
-    EXPECT_GT(table.rows[2 * 13 - 1][5], 0.05);  // measured 0.27: they do not keep themselves
+    EXPECT_GT(table.rows[2 * 13 - 1][5], 0.05);  // measured 0.27: the others do not conserve them
     for (const auto& row : table.rows) {
         EXPECT_LT(row[4], 1);
         EXPECT_LT(row[5], 1);

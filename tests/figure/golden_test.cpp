@@ -9,9 +9,9 @@
 namespace doppel {
 namespace golden_test {
 
-/// A figure that the last bit of a number does not change: nothing beyond 3 s that is chaotic, nothing that was timed.
+/// A figure that does not depend on the last bit: nothing chaotic beyond 3 s, no measured times.
 struct Golden {
-    const char* name;  // of the file
+    const char* name;  // of the image file
     const char* preset;
     std::vector<std::string> sets;
 };
@@ -34,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Golden{"figure-sweep", "fig2-right", {"grid.x.to=40"}}, Golden{"figure-curves", "fig6", {"scene.duration_s=3"}},
         Golden{"figure-curves-dark", "fig4-left", {"scene.duration_s=3", "chart.theme=\"dark\""}},
-        // tolerances so coarse that the errors in the captions are truncation, not rounding
+        // such coarse tolerances that the errors in the captions are truncation, not round-off
         Golden{"figure-flip-map",
                "flip-map",
                {"grid.x.points=48", "grid.y.points=48", "scene.duration_s=2", "grid.flip_tolerance=1e-4"}},
@@ -55,13 +55,13 @@ INSTANTIATE_TEST_SUITE_P(
                "why-they-part",
                {"scene.duration_s=1", "grid.color.values=[\"euler\", \"rk4\"]", "grid.x.points=5",
                 "grid.x.to=0.000520833333333333333"}},
-        // errors far above rounding
+        // errors far above round-off
         Golden{"figure-work-precision",
                "speed-accuracy",
                {"chart.cost=\"evaluations\"", "work_precision.problems=[\"P1\", \"P3\"]",
                 "work_precision.most_evaluations=20000", "work_precision.least_error=1e-6",
                 "work_precision.models=[\"angles\", \"constraints\"]"}},
-        // steps, times and angles at which nothing is chaotic yet
+        // steps, times and angles without chaos
         Golden{"figure-stability",
                "stability",
                {"grid.y.to=30", "grid.y.points=18", "grid.x.points=24", "scene.duration_s=2", "scene.sample_hz=50",

@@ -22,7 +22,7 @@ to = 2
 step = 0.5
 )";
 
-/// The pair of trial i as a film has it.
+/// The pair of trial i as a film.
 Scene film(double mass) {
     auto preset = read_preset({"x", "x.toml",
                                "[scene]\nduration_s = 12\n[system]\nangle_deg = [120, 80]\n"
@@ -62,7 +62,7 @@ TEST(Grid, InLanesFindsWhatAFilmShows) {
 }
 
 TEST(Grid, OneByOneFindsWhatLanesFind) {
-    // a spring next to none makes it a mechanism
+    // a spring of almost no stiffness makes it a mechanism
     const std::string spring =
         "[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]\nstiffness_N_per_m = 1e-12\n";
     for (const char* quantity : {"flip_time", "energy_error", "divergence"}) {
@@ -84,7 +84,7 @@ TEST(Grid, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
     ASSERT_EQ(table.rows.size(), 9u);
     EXPECT_EQ(table.rows[0][0], 1.0 / (120 * 83));
     EXPECT_EQ(table.rows[8][0], 1.0 / 120);
-    // of order 4
+    // convergence of order 4
     const double slope = std::log(table.rows[8][1] / table.rows[5][1]) / std::log(table.rows[8][0] / table.rows[5][0]);
     EXPECT_NEAR(slope, 4, 0.1);  // measured 3.98
 }
@@ -100,7 +100,7 @@ TEST(Grid, NamesTheMethodInItsSubtitle) {
     EXPECT_EQ(subtitle("energy_error"), "two links in angles, θ₂ = 0; Runge–Kutta 4, 1/240 s");
     EXPECT_EQ(subtitle("exponent"), "two links in angles, θ₂ = 0; tangent equations by Dormand–Prince 8");
     EXPECT_EQ(subtitle("flip_time"), "two links in angles, θ₂ = 0; Taylor series, tolerance 1.0 × 10⁻⁸");
-    // what is varied is no number of all
+    // the subtitle omits the number that varies
     EXPECT_EQ(subtitle("energy_error",
                        {"grid.x.key=\"system.step_s\"", "grid.x.from=0.0001", "grid.x.to=0.002", "grid.difference=0"}),
               "two links in angles, 90°/0°; Runge–Kutta 4");
@@ -126,7 +126,7 @@ TEST(Grid, HasTheNumbersOfSweeps) {
     }
 }
 
-/// A map of flips.
+/// A small flip map.
 FigurePreset flips(int columns, int rows, const std::array<int, 4>& ends = {-180, 180, -180, 180}) {
     return figure_of("flip-map", {"scene.duration_s=8", fmt::format("grid.x.points={}", columns),
                                   fmt::format("grid.y.points={}", rows), fmt::format("grid.x.from={}", ends[0]),
@@ -143,12 +143,12 @@ TEST(FlipMap, OfAPartHasTheCellsOfTheWhole) {
                 const double one = part.rows[8 * r + c][k], other = whole.rows[16 * (r + 4) + c + 8][k];
                 EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other))) << r << ' ' << c << ' ' << k;
             }
-    // where no release has the energy to flip
+    // no release has enough energy to flip
     const auto still = table_of(flips(4, 4, {-1, 1, -1, 1}));
     for (const auto& row : still.rows) EXPECT_TRUE(std::isnan(row[2]));
 }
 
-/// PendulumPair over the mass ratio, at three angles.
+/// A pair against the mass ratio, at three angles.
 const std::string three_angles = R"(
 [scene]
 kind = "grid"
@@ -203,7 +203,7 @@ TEST(Grid, HasAPanelForEachMethodWithTheNumbersOfItAlone) {
     ASSERT_EQ(page.panels.size(), 2u);
     EXPECT_EQ(page.panels[1].title, "taylor");
     EXPECT_EQ(figure.subtitle, "two links, θ₂ = 90°, mass ratios m₁/m₂ apart by 0.01");
-    // a value that the key does not take
+    // a value that the key rejects
     const auto [code, message] = error_of([] {
         figure_from(three_angles, {"grid.panel.key=\"system.integrator\"", "grid.panel.values=[\"rk4\", \"rk5\"]"});
     });
@@ -252,7 +252,7 @@ TEST(Grid, PeriodsAreThoseOfTheEllipticIntegral) {
         const double period = 4 * std::sqrt(1 / 9.8) * std::comp_ellint_1(std::sin(row[0] * pi / 360));
         EXPECT_NEAR(row[1], period, 1e-8) << row[0];
     }
-    // none within a time too short, and none of one that hangs
+    // none within too short a time, and none for a pendulum at rest
     const auto none = figure_from(
         "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nlinks = 1\nangle_deg = 1\n[grid]\nquantity = \"period\"\n"
         "[grid.x]\nvalues = [0, 90]");
@@ -260,7 +260,7 @@ TEST(Grid, PeriodsAreThoseOfTheEllipticIntegral) {
               "none of the 2 pairs has a period: no whole period within 1 s");
 }
 
-/// The exponents of longer and longer chains, each as largest_exponent() finds it; and what their steps cost.
+/// The exponents of chains with more and more links equal those of largest_exponent(); and the cost of their steps.
 TEST(Grid, OfLinksHasTheExponentsOfTheChains) {
     const auto figure = figure_of("links", {"grid.x.to=4", "grid.exponent_duration_s=10", "system.mass_kg=2"});
     const auto table = table_of(figure);
@@ -304,7 +304,7 @@ TEST(Grid, LeavesEquilibriaOutOfTheCurveNotOutOfTheTable) {
     const auto table = table_of(figure);
     EXPECT_EQ(table.rows[0][1], 0);
     EXPECT_EQ(table.rows.size(), 3u);
-    // twins that differ in their angle do not rest
+    // two pendulums with different angles do not rest
     EXPECT_TRUE(page_of(figure_of("fig2-right", {"grid.x.step=90", "scene.duration_s=1"})).captions.empty());
 }
 

@@ -19,7 +19,7 @@ public:
 
     bool accepts(const Json& value) const { return accepts(root_, value); }
 
-    /// Throws std::logic_error where the schema has a keyword that is not known here.
+    /// Throws std::logic_error for a keyword of the schema that is not supported here.
     bool accepts(const Json& schema, const Json& value) const {
         if (schema.contains("$ref"))
             return accepts(root_.at(Json::json_pointer(schema["$ref"].get<std::string>().substr(1))), value);
@@ -41,7 +41,7 @@ private:
         if (keyword == "multipleOf")
             return !value.is_number() || std::remainder(value.get<double>(), wanted.get<double>()) == 0;
         if (keyword == "minLength") return !value.is_string() || value.get<std::string>().size() >= wanted;
-        if (keyword == "maxLength") {  // of characters
+        if (keyword == "maxLength") {  // counts characters
             const auto text = value.is_string() ? value.get<std::string>() : std::string();
             return std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xc0) != 0x80; }) <=
                    wanted.get<std::ptrdiff_t>();
@@ -49,7 +49,7 @@ private:
         if (keyword == "pattern")
             return !value.is_string() ||
                    std::regex_search(value.get<std::string>(), std::regex(wanted.get<std::string>()));
-        if (keyword == "items" && wanted.is_array()) {  // of each place
+        if (keyword == "items" && wanted.is_array()) {  // one schema for each position
             for (std::size_t i = 0; value.is_array() && i < std::min(wanted.size(), value.size()); ++i)
                 if (!accepts(wanted[i], value[i])) return false;
             return true;

@@ -8,7 +8,7 @@
 namespace doppel {
 namespace kinds_test {
 
-// What the figures that settle open questions must show, whatever their pictures look like.
+// What the figures must show, independent of their layout.
 
 std::map<std::string, double> findings_of(const FigurePreset& figure) {
     std::map<std::string, double> found;
@@ -31,7 +31,7 @@ TEST(Convergence, ListsEverySetting) {
                                              "grid.x.points=4", "grid.x.to=0.00104166666666666666",
                                              "grid.x.tolerance_to=1e-20", "grid.x.tolerance_points=18"}));
     EXPECT_EQ(table.columns, (std::vector<std::string>{"method", "precision", "step_s", "distance", "steps"}));
-    ASSERT_EQ(table.rows.size(), 4u + 12 + 4 + 18);  // double keeps no tolerance below 1e-14
+    ASSERT_EQ(table.rows.size(), 4u + 12 + 4 + 18);  // double precision has no tolerance below 1e-14
     for (std::size_t i = 0; i + 1 < 4; ++i) EXPECT_DOUBLE_EQ(table.rows[i][2], 2 * table.rows[i + 1][2]);
     EXPECT_DOUBLE_EQ(table.rows[0][2], 1.0 / 120);
 }
@@ -46,23 +46,23 @@ TEST(Spectrum, ComesInPairsThatSumToZero) {
     EXPECT_DOUBLE_EQ(last[0], 100);
     EXPECT_NEAR(last[1] + last[2] + last[3] + last[4], last[5], 1e-15);  // measured 0
     EXPECT_NEAR(last[5], 0, 1e-11);                                      // measured 2.6e-12
-    EXPECT_NEAR(last[1], -last[4], 0.05);                                // measured 0.01; they settle as 1/t
+    EXPECT_NEAR(last[1], -last[4], 0.05);                                // measured 0.01; they converge as 1/t
     EXPECT_GT(last[1], 0.5);                                             // 90°/90° is chaotic
 }
 
 TEST(Spectrum, OfADrivenPendulumSumsToFrictionOverInertia) {
     const auto figure = figure_of("driven-spectrum", {"series.duration_s=200", "series.samples=20"});
     const auto table = table_of(figure);
-    ASSERT_EQ(table.columns.size(), 4u);  // none of the time, none of the work
+    ASSERT_EQ(table.columns.size(), 4u);  // no column of the time, none of the work
     for (const auto& row : table.rows) EXPECT_NEAR(row[3], -1.5652475842498528, 3e-11);  // measured 4e-12
     EXPECT_GT(table.rows.back()[1], 0.2);
     const auto found = findings_of(figure);
     EXPECT_EQ(found.at("exponent1_per_s"), table.rows.back()[1]);
-    EXPECT_FALSE(found.contains("pair_mismatch_per_s"));  // friction leaves no pairs
+    EXPECT_FALSE(found.contains("pair_mismatch_per_s"));  // with friction the exponents form no pairs
 }
 
 TEST(Sweep, FindsExponentsOfDrivenPendulums) {
-    // the least of them is the rate at which every motion of one driven link loses its past, b/2J
+    // the smallest exponent is the rate at which one driven link loses its initial state, b/2J
     const auto table = table_of(figure_from(R"(
 [scene]
 kind = "grid"
@@ -112,7 +112,7 @@ TEST(Bifurcation, PeriodsDoubleWhereTheTextbookSays) {
 }
 
 TEST(Map, TheVibratingPivotIsStableUpToItsTheoreticalEdge) {
-    // a row of amplitudes on both sides of Mathieu's edge at 4 Hz, 0.177 m
+    // a row of amplitudes on both sides of Mathieu's stability limit at 4 Hz, 0.177 m
     const auto found =
         table_of(figure_of("kapitza-map", {"grid.x.from=3.99", "grid.x.to=4.01", "grid.x.points=2", "grid.y.from=0.167",
                                            "grid.y.to=0.187", "grid.y.points=4", "scene.duration_s=15"}));
@@ -126,10 +126,10 @@ TEST(Map, TheVibratingPivotIsStableUpToItsTheoreticalEdge) {
     }
 }
 
-/// The orbits of a section of one energy, by whether they are grey, and what is said of them.
+/// The orbits of a section at one energy: indices of the grey ones, hues of the others, and texts.
 struct SectionPage {
     std::vector<std::size_t> grey;
-    std::vector<int> hues;  // of the others
+    std::vector<int> hues;  // of the orbits that are not grey
     std::string caption, note;
 };
 SectionPage section_page(const std::string& energy_J, int orbits, const std::string& gravity = "9.8",
@@ -152,18 +152,18 @@ SectionPage section_page(const std::string& energy_J, int orbits, const std::str
 
 TEST(Section, DistinguishesRegularFromChaoticOrbits) {
     using Numbers = std::vector<std::size_t>;
-    // all but without gravity a double pendulum keeps its angular momentum, too: every orbit is regular, but for the
-    // first, which rounding drives along its separatrix
+    // almost without gravity, angular momentum is also conserved: every orbit is regular. Only the first one is
+    // driven along its separatrix by round-off
     const auto free = section_page("39.2", 12, "1e-9");
     EXPECT_EQ(free.grey, Numbers{0});
     EXPECT_EQ(free.note, "11 of 12 regular");
     EXPECT_NE(free.caption.find("(colours repeat): the largest Lyapunov exponent of 2000 s"), std::string::npos);
-    // at 4 m g l above hanging none is: exponents of 1.2 … 1.3 1/s
+    // at 4 m g l above hanging, no orbit is regular: exponents of 1.2 … 1.3 1/s
     const auto wild = section_page("39.2", 4);
     EXPECT_EQ(wild.grey, (Numbers{0, 1, 2, 3}));
     EXPECT_NE(wild.caption.find("(a colour each)"), std::string::npos);
-    // between, both: these are chaotic, at 0.12 … 0.15 1/s, the others below 0.0005 1/s; one stays near an island for
-    // 1000 s
+    // between the two, some are chaotic, at 0.12 … 0.15 1/s, the others are below 0.0005 1/s. One stays near an island
+    // for 1000 s
     const auto mixed = section_page("14.7", 12, "9.8", "10000");
     EXPECT_EQ(mixed.grey, (Numbers{1, 2, 6, 9, 10, 11}));
     EXPECT_EQ(mixed.hues, (std::vector<int>{0, 1, 2, 3, 4, 5}));
@@ -185,7 +185,7 @@ TEST(Section, HasPointsThatTheEnergyAllows) {
     }
 }
 
-/// What a figure says below its title of a system that is not the preset's.
+/// The subtitle describes the system of the figure, which may differ from the preset's.
 TEST(Subtitle, IsOfTheSystem) {
     const auto subtitle = [](const std::string& preset, const std::vector<std::string>& sets) {
         return figure_of(preset, sets).subtitle;
@@ -212,7 +212,7 @@ TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
     ASSERT_EQ(table.rows.size(), 1600u);
     int flipped = 0;
     for (const auto& row : table.rows) {
-        // a rod upright, the other hanging: E ≥ −m2 g l2 … of equal links: 3 − 2 = 2 cosθ1 + cosθ2
+        // one rod upright, the other hanging: E ≥ −m2 g l2. For equal links: 3 − 2 = 2 cosθ1 + cosθ2
         const bool forbidden = 2 * std::cos(row[0] * pi / 180) + std::cos(row[1] * pi / 180) > 1;
         EXPECT_TRUE(!forbidden || std::isnan(row[2])) << row[0] << " " << row[1];
         flipped += !std::isnan(row[2]);
@@ -223,7 +223,7 @@ TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
 }
 
 TEST(FlipMap, LeavesFailedCellsEmpty) {
-    // gravity so strong that some swings take steps below 1e-9 s
+    // such strong gravity that some motions need steps below 1e-9 s
     const auto figure =
         figure_of("flip-map", {"system.gravity_m_per_s2=3e15", "grid.x.points=16", "grid.y.points=16",
                                "scene.duration_s=1e-6", "scene.sample_hz=1000000", "system.step_s=\"1/1000000\""});
@@ -268,7 +268,7 @@ film_column = "b_kinetic_J"
     Figure page;
     figure.experiment->draw(computed(figure), page);
     EXPECT_EQ(page.panels.at(0).y.label, "θ₂, rad; kinetic, J");
-    // each column of the film has a number
+    // each column of the film's table is a number
     for (const auto& column : {"a_theta1_rad", "b_omega2_rad_per_s", "a_x1_m", "a_y2_m", "b_vx1_m_per_s",
                                "b_vy2_m_per_s", "a_energy_J", "a_energy_error", "b_length_error_m", "a_potential_J"})
         EXPECT_TRUE(std::isfinite(table_of(figure_from("[scene]\nkind = \"series\"\nduration_s = 0.1\n",

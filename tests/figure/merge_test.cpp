@@ -1,4 +1,4 @@
-// Figures joined from parts.
+// Figures merged from parts.
 #include "figure/run.hpp"
 #include "figure/support.hpp"
 
@@ -29,7 +29,7 @@ protected:
         expect_error(code, words, [&] { run_figure(figure, {.out = out_, .merge = true}); });
         EXPECT_EQ(names_in(folder_), before);
     }
-    /// Words of a part's header replaced.
+    /// Replaces text in a part's header.
     void edit(int i, const std::string& from, const std::string& to) const {
         auto bytes = bytes_of(part(i));
         const auto at = bytes.find(from);
@@ -51,7 +51,7 @@ TEST_F(Merge, JoinsWhatIsThereAndComputesNothing) {
     run_figure(small_sweep({"chart.theme=\"dark\""}), {.out = out_, .merge = true});
 }
 
-/// A finished shard called again does nothing; one that is damaged computes what is lost.
+/// Repeating a finished shard does nothing; a damaged shard computes what is missing.
 TEST_F(Merge, TakesFinishedPartsAsTheyAre) {
     const auto bytes = bytes_of(part(2));
     const auto time = fs::last_write_time(part(2));
@@ -61,7 +61,7 @@ TEST_F(Merge, TakesFinishedPartsAsTheyAre) {
     EXPECT_EQ(run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 3}}).samples, 1);
     EXPECT_EQ(bytes_of(part(2)), bytes);
     EXPECT_EQ(names_in(folder_).size(), 3u);
-    // of another preset
+    // the part of another preset
     EXPECT_EQ(run_figure(small_sweep({"grid.difference=0.004"}), {.out = out_, .shard = Shard{2, 3}}).samples, 3);
     EXPECT_NE(bytes_of(part(2)), bytes);
 }
@@ -104,7 +104,7 @@ TEST_F(Merge, RejectsAChangedDigit) {
     digit[at] = digit[at] == '4' ? '5' : '4';
     write_bytes(part(2), digit);
     expect_damaged("is damaged in line 2");
-    // lines of another part, and numbers that no trial has
+    // lines of another part, and numbers of no trial
     write_bytes(part(2), bytes + bytes_of(part(1)).substr(bytes_of(part(1)).find('\n') + 1));
     expect_damaged("is damaged in line 5");
     PartWriter(part(2), header_of(small_sweep(), 2, 3), KnownTrials(10, {1, 2})).close();
@@ -154,7 +154,7 @@ TEST(MergeOfNothing, SaysHowToMakeParts) {
     EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }
 
-/// An orbit may never come back to the section; it has no points, and is computed nonetheless.
+/// An orbit that never returns to the section has no points, but counts as computed.
 TEST(MergeOfNothing, ReportsUnknownTrials) {
     const auto out = fresh_folder();
     const auto figure = figure_from(

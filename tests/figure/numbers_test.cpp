@@ -7,14 +7,14 @@
 namespace doppel {
 namespace numbers_test {
 
-// Each kind of figure knows what its trials' numbers look like: those of a file that do not fit are not believed.
+// Each kind of figure checks the numbers of its trials: impossible numbers in a file are rejected.
 
 constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
 
 struct Case {
     const char* name;
     std::vector<std::string> sets;
-    bool may_be_none;  // a number of the first trial
+    bool may_be_none;  // whether the first trial may have no number
 };
 
 void PrintTo(const Case& c, std::ostream* out) {
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"fig2-right",
              {"grid.x.step=60", "scene.duration_s=1", "grid.right=\"exponent\"", "grid.exponent_duration_s=5"},
              false},
-        // explicit Euler breaks down at once in some trials
+        // explicit Euler diverges at once in some trials
         Case{
             "fig2-right", {"grid.x.step=30", "scene.duration_s=6", "scene.sample_hz=5", "system.step_s=\"1/5\""}, true},
         Case{"fig2-left", {"scene.duration_s=1"}, true}, Case{"fig6", {"scene.duration_s=1"}, false},
@@ -89,7 +89,7 @@ TEST(NumbersOfWork, AreThoseOfWholeSettings) {
     EXPECT_TRUE(work.fits(1, TrialNumbers(8, none)));
     EXPECT_FALSE(work.fits(1, {}));
     EXPECT_FALSE(work.fits(1, std::span(two).first(15)));
-    for (const double count : {-1.0, 0.5, 1e300, infinite}) {  // of steps
+    for (const double count : {-1.0, 0.5, 1e300, infinite}) {  // numbers of steps
         two[two.size() - 2] = count;
         EXPECT_FALSE(work.fits(1, two)) << count;
     }

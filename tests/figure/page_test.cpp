@@ -76,7 +76,7 @@ TEST(FigurePage, HoldsTheCellsOfAMapFromTheLowerLeft) {
 }
 
 TEST(FigurePage, AxesAreWhereThePictureHasThem) {
-    // each panel marks one point: it is drawn where the axes say
+    // each panel marks one point, drawn at its coordinates
     Figure figure{.columns = 2};
     for (int i = 0; i < 4; ++i) {
         Plot plot{.x = {.label = "x", .low = 1, .high = 1000, .logarithmic = i % 2 == 1},
@@ -126,7 +126,7 @@ TEST(FigurePage, TitlesAndLabelsOfAnyLettersAreText) {
     EXPECT_EQ(page.find(hostile), std::string::npos);
     EXPECT_EQ(page.find("<b>"), std::string::npos);
     EXPECT_NE(page.find("<h1 dir=\"auto\">&lt;/script&gt;&lt;!-- &lt;b&gt;&quot;&#39;&amp;{}</h1>"), std::string::npos);
-    EXPECT_EQ(page.find("style=\""), std::string::npos);  // the policy refuses it
+    EXPECT_EQ(page.find("style=\""), std::string::npos);  // the security policy blocks inline styles
 }
 
 TEST(FigurePage, IsOneFileBesideTableAndManifest) {

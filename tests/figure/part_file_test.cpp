@@ -36,7 +36,7 @@ void expect_same_bits(const TrialNumbers& a, const TrialNumbers& b) {
             << a[i] << " and " << b[i];
 }
 
-/// The trials of a file, each in its place.
+/// The trials of a file by their index.
 KnownTrials trials_in(const fs::path& path) {
     const auto part = read_part_file(path);
     KnownTrials trials(part.header.trials);
@@ -44,7 +44,7 @@ KnownTrials trials_in(const fs::path& path) {
     return trials;
 }
 
-/// Numbers of all sizes and none at all.
+/// Trials with numbers of all sizes, and with no numbers.
 KnownTrials some_trials() {
     using Limits = std::numeric_limits<double>;
     KnownTrials trials{{0.0, -0.0, none, infinite, -infinite, -none},
@@ -64,7 +64,7 @@ TEST(PartFile, KeepsEveryNumberToTheBit) {
     const auto trials = some_trials();
     const PartHeader header{"some \"figure\"", "0.1.0", "abc-dirty", "cafe", trials.size(), 2, 3};
     PartWriter writer(path, header, {});
-    for (std::size_t i = trials.size(); i-- > 0;) writer.add(i, trials[i]);  // in any order
+    for (std::size_t i = trials.size(); i-- > 0;) writer.add(i, trials[i]);  // in reverse order
     writer.close();
     EXPECT_EQ(read_part_file(path).header, header);
     EXPECT_EQ(read_part_file(path).damaged_line, 0u);
@@ -77,7 +77,7 @@ TEST(PartFile, BeginsWithWhatIsKnownAndReplacesAnOlderOne) {
     const auto path = fresh_folder() / "some.resume";
     write_bytes(path, "something older");
     PartWriter writer(path, some_header(3), {{1.5}, {}, {2.5, none}});
-    const auto read = trials_in(path);  // before it is closed
+    const auto read = trials_in(path);  // before the file is closed
     expect_same_bits(read[0], {1.5});
     EXPECT_TRUE(read[1].empty());
     expect_same_bits(read[2], {2.5, none});
@@ -121,7 +121,7 @@ TEST(PartFile, RejectsAChangedByte) {
                 std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
             try {
                 const auto part = read_part_file(path);
-                const bool last_end = at + 1 == bytes.size();  // as if the last line had been cut
+                const bool last_end = at + 1 == bytes.size();  // as if the last line were incomplete
                 EXPECT_EQ(part.damaged_line, last_end ? 0 : std::max<std::size_t>(line, 1) + 1) << at;
                 EXPECT_EQ(part.trials.size(), std::max<std::size_t>(line, 1) - 1) << at;
                 for (const auto& trial : part.trials) expect_same_bits(trial.numbers, trials[trial.number]);
@@ -132,7 +132,7 @@ TEST(PartFile, RejectsAChangedByte) {
         }
 }
 
-/// As editors and file systems do it.
+/// Editors and file systems change line ends.
 TEST(PartFile, RejectsOtherLineEnds) {
     const auto path = fresh_folder() / "some.resume";
     PartWriter(path, some_header(2), {{1}, {2}}).close();
@@ -165,7 +165,7 @@ TEST(PartFile, ReadsRegularFilesAlone) {
 TEST(PartFile, ReadsNoEndlessHeader) {
     const auto path = fresh_folder() / "some.resume";
     write_bytes(path, "");
-    fs::resize_file(path, std::uintmax_t{1} << 40);  // a hole: nothing on the disk
+    fs::resize_file(path, std::uintmax_t{1} << 40);  // a sparse file: no blocks on the disk
     expect_error(ExitCode::io_failed, {path.string(), "is no file of trials"}, [&] { read_part_file(path); });
 }
 

@@ -48,7 +48,7 @@ TEST(FigurePreset, ExponentsAreOfSmoothMotions) {
         EXPECT_EQ(error.first, ExitCode::bad_input);
         EXPECT_NE(error.second.find("quantity needs a smooth motion"), std::string::npos) << error.second;
     }
-    // no mass at all
+    // zero mass
     const auto massless = error_of([&] {
         figure_from(
             "[scene]\nkind = \"series\"\n[series]\nquantity = \"exponents\"\n[system]\nmass_kg = 0\nrod_mass_kg = [1, "
@@ -121,7 +121,7 @@ TEST(FigurePreset, IsNoFilm) {
 }
 
 TEST(FigurePreset, KeepsTheNameThatWasGiven) {
-    // a preset of one's own is no name that doppel knows
+    // a user's preset is not a built-in name
     const auto film = error_of([] { read_figure({"base", "base.toml", "", "base.toml"}); });
     EXPECT_NE(film.second.find("doppel render base.toml"), std::string::npos) << film.second;
     const auto figure = error_of([] { read_preset({"x", "my/x.toml", "[scene]\nkind = \"grid\"", "my/x.toml"}); });
@@ -180,7 +180,7 @@ TEST(FigurePreset, OfALogarithmOfRatiosTakesADistance) {
 
 class FigureErrors : public testing::TestWithParam<RefusedFigure> {};
 
-/// "path:line:column: [table] key" and the rest.
+/// "path:line:column: [table] key", then the value and the remedy.
 TEST_P(FigureErrors, NamePlaceValueAndRemedy) {
     const auto& c = GetParam();
     const auto [code, message] = error_of([&] { figure_from("[scene]\nkind = \"" + c.kind + "\"\n" + c.text); });

@@ -1,4 +1,4 @@
-// docs/presets*.md say what the lists of keys say.
+// docs/presets*.md list the same keys as the program.
 #include "figure/preset.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(Reference, OfPresetsIsThatOfTheLists) {
     }
 }
 
-/// The keys of the tables of that name in the lists.
+/// The keys in the tables of that name.
 std::set<std::string> listed_keys(const std::vector<FieldTable>& tables, const std::string& name) {
     std::set<std::string> keys;
     for (const auto& table : tables) {

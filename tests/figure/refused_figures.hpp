@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-// Figures that are refused, and how: the reader's tests go through them, and those of the schema.
+// Figures with errors and their messages, for the tests of the reader and of the schema.
 
 namespace doppel {
 
 struct RefusedFigure {
     std::string kind;   // of [scene]
-    std::string text;   // what follows, from line 3 on
-    std::string place;  // what the message begins with after the path
+    std::string text;   // from line 3 on
+    std::string place;  // start of the message after the path
     std::vector<std::string> words;
 };
 

@@ -72,7 +72,7 @@ TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
 
 TEST(FigureRun, ManifestHasNullForNaN) {
     const auto out = fresh_folder();
-    // every pair breaks down, and exponents are drawn
+    // every pair fails, and exponents are drawn
     run_figure(figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
                                         "system.step_s=1", "grid.right=\"exponent\"", "grid.exponent_duration_s=10"}),
                {.out = out});
@@ -134,10 +134,10 @@ TEST(FigureRun, FailsIfAMethodFails) {
     EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }
 
-/// The second sentence of an error names what would be right.
+/// The second sentence of an error says what would be right.
 TEST(FigureRun, FailsIfEveryPairOfASweepFails) {
     const auto out = fresh_folder() / "out";
-    for (const char* method : {"euler", "rk4"}) {  // both in lanes
+    for (const char* method : {"euler", "rk4"}) {  // both in batches
         const auto figure = figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=80", "grid.x.step=5",
                                                      "scene.sample_hz=1", "scene.duration_s=3000", "system.step_s=1",
                                                      fmt::format("system.integrator=\"{}\"", method)});
@@ -145,7 +145,7 @@ TEST(FigureRun, FailsIfEveryPairOfASweepFails) {
                      [&] { run_figure(figure, {.out = out}); });
         EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
     }
-    // by the films' loop, and joined from parts
+    // the same pair by the films' loop, and merged from parts
     const auto alone =
         figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
                                  "system.step_s=1", "system.model=\"mechanism\""});
@@ -168,7 +168,7 @@ TEST(FigureRun, DrawsASweepWithSomeFailedPairs) {
 
 TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
     const auto out = fresh_folder() / "out";
-    // both hang at rest, each under its own gravity
+    // both hang at rest, with different gravity
     const auto at_rest = [](const std::string& kind, const std::string& keys) {
         return figure_from("[scene]\nkind = \"" + kind +
                            "\"\nduration_s = \"1/2\"\n[system]\nangle_deg = [0, 0]\n[b]\ngravity_m_per_s2 = 9\n" +
@@ -210,7 +210,7 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
          "no method has an error"}};
     for (const auto& [figure, words] : all) {
         SCOPED_TRACE(words);
-        // as one that took its time would have, a record of its trials
+        // a record of its trials, as a slow run leaves it
         const auto header = header_of(figure);
         fs::create_directories(out / figure.name);
         PartWriter(out / figure.name / resume_name(header), header, KnownTrials(header.trials)).close();
@@ -219,7 +219,7 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
     }
 }
 
-/// Between computing, drawing and writing, too.
+/// A request to stop also works between computing, drawing and writing.
 TEST(FigureRun, StopsBetweenItsStages) {
     const auto out = fresh_folder() / "out";
     std::atomic<bool> stop = false;
@@ -235,7 +235,7 @@ TEST(FigureRun, StopsBetweenItsStages) {
     EXPECT_EQ(names_in(out / "fig2-right"), std::vector<std::string>{"fig2-right.shard"});
 }
 
-// Going on.
+// Resuming.
 
 TEST(Resume, OfAnotherRunStaysAsItIs) {
     const auto out = fresh_folder();
@@ -248,11 +248,11 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     Said said;
     run_figure(small_sweep(), {.out = out}, said);
     EXPECT_TRUE(said.has("ignoring " + record.string() + ", of another preset or version"));
-    EXPECT_EQ(said.notes.size(), 1u);  // nothing of the other part's
+    EXPECT_EQ(said.notes.size(), 1u);  // no note about the other part
     EXPECT_EQ(bytes_of(record), bytes);
     EXPECT_EQ(bytes_of(folder / "fig2-right.csv"), table_text(small_sweep(), computed(small_sweep())));
     EXPECT_EQ(names_in(folder).size(), 5u);
-    // its own is believed, and gone afterwards
+    // its own record is used, and then removed
     run_figure(large, {.out = out}, said);
     EXPECT_TRUE(said.has("resuming from " + record.string() + ": 100 % is done"));
     EXPECT_FALSE(fs::exists(record));

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 using test::bytes_of;
 using test::fresh_folder;
 
-// A figure's numbers are the same to the bit whoever computes them, in whatever pieces.
+// A figure's numbers are bit-identical for every number of threads, groups and parts.
 
 struct Case {
     const char* name;
@@ -32,7 +32,7 @@ protected:
     }
 };
 
-/// What a run leaves: table and picture.
+/// The files of a run: table and picture.
 std::pair<std::string, std::string> table_and_picture(const fs::path& out, const FigurePreset& figure) {
     const auto base = out / figure.name / figure.name;
     return {bytes_of(base.string() + ".csv"), bytes_of(base.string() + ".png")};
@@ -53,7 +53,7 @@ TEST_P(SameNumbers, InAnyGroups) {
     for (const std::size_t together : {1u, 3u, 1000u}) {
         KnownTrials trials(figure.experiment->trials());
         const auto groups = (trials.size() + together - 1) / together;
-        for (std::size_t g = groups; g-- > 0;) {  // the last ones first
+        for (std::size_t g = groups; g-- > 0;) {  // the last groups first
             const auto first = g * together, last = std::min(first + together, trials.size());
             figure.experiment->compute(first, std::span(trials).subspan(first, last - first), never);
         }
@@ -66,7 +66,7 @@ TEST_P(SameNumbers, AfterAMergeOfAnyParts) {
     const auto folder = fresh_folder();
     run_figure(figure, {.out = folder / "whole", .jobs = 1});
     const auto expected = table_and_picture(folder / "whole", figure);
-    for (const int of : {1, 3, static_cast<int>(figure.experiment->trials()) + 2}) {  // the last with parts of nothing
+    for (const int of : {1, 3, static_cast<int>(figure.experiment->trials()) + 2}) {  // the last one gives empty parts
         const auto out = folder / std::to_string(of);
         for (int i = of; i >= 1; --i) run_figure(figure, {.out = out, .jobs = 1 + i % 2, .shard = Shard{i, of}});
         run_figure(figure, {.out = out, .merge = true});
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-/// The mirror image of a row is not computed: with a push that is none, every row is, and says the same.
+/// A mirrored row is not computed. With a zero impulse every row is computed, and the numbers are the same.
 TEST(FlipMap, MirroredRowsAreThoseComputed) {
     const std::vector<std::string> small{"grid.x.points=16", "grid.y.points=15", "scene.duration_s=4"};
     const auto figure = figure_of("flip-map", small);

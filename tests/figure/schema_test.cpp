@@ -1,4 +1,4 @@
-// The schema of presets takes what the reader takes, and refuses what a schema can refuse.
+// The schema of presets accepts what the reader accepts, and rejects what a schema can reject.
 #include "figure/json_schema.hpp"
 #include "figure/kinds.hpp"
 #include "figure/refused_figures.hpp"
@@ -21,12 +21,12 @@ const test::JsonSchema& schema() {
     return known;
 }
 
-/// Whether it accepts the text as TOML.
+/// Whether the schema accepts the text as TOML.
 bool accepts(const std::string& text) {
     return schema().accepts(json_of_toml(text));
 }
 
-/// The reader's refusal; empty where it reads the text.
+/// The reader's error; empty where it accepts the text.
 std::string refusal_of(const std::string& text) {
     const PresetText preset{"x", "presets/x.toml", text, "x"};
     const auto [code, message] = error_of([&] {
@@ -38,21 +38,21 @@ std::string refusal_of(const std::string& text) {
     return code == ExitCode::done ? "" : message;
 }
 
-/// Whether the message is of one key alone, whatever the others say: then a schema can refuse its value, too.
+/// Whether the error concerns one key, whatever the others are: then a schema can also reject its value.
 bool is_of_one_key(const std::string& message) {
     static const std::regex one_key(
         R"( has no "|must be (a |an |true|whole numbers|two |from |at most |> |≥ |"|colours|written as|names of)|may hold|must hold at least|must have 2 colours| is missing; )"
         R"(|of 1 to \d+ numbers)");
-    // what more than the key decides: the values of others, the font, how long a number is
+    // errors that depend on more than the key: other values, the font, the length of a number
     static const std::regex of_more(
         R"(one a link|must be at most \d+ samples|as a frame of a GIF takes|must be at most [a-z_]+ = |\(-?9223372036854775\d+\)|at most 1000 and|from 1 to \d+, as|\[system\] gravity|mass_kg(\[\d+\])? must be > 0; it is -?0$|\[video\] crf must be from 0 to 51|must be "mechanism" or|\[links\] to must|°|must be that of|must be higher|or "one/other"|more digits|a fraction such as .*e-?[0-9]{2}|are both 0|whole number of samples|must be at most \d+ steps|must (not )?be (above|below)|must be another|must be 0 for|, as [a-z0-9_.\[\]]+ is;|for equal ratios|must keep|logarithmic scale|takes points|title is missing|and to as well)");
     return std::regex_search(message, one_key) && !std::regex_search(message, of_more);
 }
 
-/// A series of one motion takes less of [system] than one of pairs, which the schema of their kind does not say.
+/// A series of one motion has fewer keys of [system] than one of pairs, which the schema of their kind does not state.
 bool is_of_motion(const std::string& text, const std::string& message) {
     if (message.find("[series] duration_s") != std::string::npos || message.find(" values:") != std::string::npos)
-        return true;  // other keys decide on its range; a value of a grid's axis is another key's
+        return true;  // other keys decide its range; a value of a grid's axis belongs to another key
     return message.find(" has no ") != std::string::npos &&
            (text.find("\"exponents\"") != std::string::npos || text.find("\"errors\"") != std::string::npos);
 }
@@ -75,7 +75,7 @@ TEST(Schema, AcceptsEveryPresetAsItIsAndResolved) {
 }
 
 TEST(Schema, RefusesWhatTheReaderRefusesOfOneKey) {
-    std::vector<std::pair<std::string, std::string>> refused;  // texts and messages
+    std::vector<std::pair<std::string, std::string>> refused;  // texts and their messages
     for (const auto& list : {refused_keys, refused_system, refused_rates, refused_video})
         for (const auto& preset : list) refused.emplace_back(preset.text, preset.message);
     for (const auto& preset : refused_video_keys)
@@ -96,8 +96,8 @@ TEST(Schema, RefusesWhatTheReaderRefusesOfOneKey) {
     EXPECT_GE(caught, 89) << "of " << refused.size();
 }
 
-/// What the reader takes, the schema takes; where it refuses one key's value, so does the schema. Of 72 000 mutations
-/// the two differ in 41: numbers beyond double, and fractions beyond 64 bits.
+/// The schema accepts what the reader accepts, and rejects each value of one key that the reader rejects. Of 72 000
+/// mutations, they differ in 41: numbers beyond double, and fractions beyond 64 bits.
 TEST(Schema, AgreesWithTheReaderOnMutations) {
     constexpr int mutations = 60;  // of each preset
     std::vector<std::string> texts;
@@ -114,7 +114,7 @@ TEST(Schema, AgreesWithTheReaderOnMutations) {
                 value = json_of_toml(mutated);
                 message = refusal_of(mutated);
             } catch (const std::exception&) {
-                continue;  // no TOML
+                continue;  // not TOML
             }
             ++(message.empty() ? read : refused);
             if (message.empty()) {

@@ -7,7 +7,7 @@
 namespace doppel {
 namespace stability_test {
 
-/// One row at an angle so small that linear theory holds while the energy grows a hundredfold.
+/// One row at an angle so small that linear theory is valid while the energy grows a hundredfold.
 std::vector<std::string> small_angle(const std::string& method, double from, double to, int columns) {
     return {fmt::format("grid.panel.values=[\"{}\"]", method),
             "grid.y.points=2",
@@ -42,7 +42,7 @@ TEST(Stability, RespectsTheLinearLimit) {
         EXPECT_GT(below, 5) << method;
         EXPECT_GT(above, 2) << method;
     }
-    // the limits themselves: z = 2 and 2 √2 of ω = 5.7844/s, a little more after a time that is short
+    // the limits themselves: z = 2 and 2 √2 of ω = 5.7844/s, slightly higher after too short a time
     EXPECT_NEAR(limit_of("rattle") * 5.7844, 2, 0.001);               // measured 0.0001
     EXPECT_NEAR(limit_of("rk4") * 5.7844, 2 * std::sqrt(2.0), 0.02);  // measured 0.013
 }
@@ -56,7 +56,7 @@ TEST(Stability, FindsTheStableIslandsBeyondTheLimit) {
 TEST(Stability, OfEulerGrowsByOnePlusZSquaredAStep) {
     const auto table = table_of(figure_of("stability", small_angle("euler", 5e-4, 3e-3, 5)));
     for (const auto& row : table.rows) {
-        // half of the energy in either oscillation: ω² = 9.8 (2 ∓ √2)
+        // half of the energy in each mode: ω² = 9.8 (2 ∓ √2)
         const double h = row[1], steps = 40 / h;
         const double grown = 0.5 * std::pow(1 + 9.8 * (2 - std::sqrt(2.0)) * h * h, steps) +
                              0.5 * std::pow(1 + 9.8 * (2 + std::sqrt(2.0)) * h * h, steps);
@@ -104,7 +104,7 @@ TEST(Stability, SharesItsAxes) {
         figure.experiment->draw(computed(figure), page);
         return page;
     };
-    // nine of fixed step and three by tolerance: rows of three, each of one sort
+    // nine with fixed steps, three with a tolerance: rows of three of one sort
     const auto all = page_of(
         "[\"euler\", \"semi-implicit-euler\", \"midpoint\", \"rk4\", \"adams\", \"gauss4\", "
         "\"gauss6\", \"rattle\", \"rattle6\", \"dopri5\", \"dop853\", \"taylor\"]");
@@ -114,11 +114,11 @@ TEST(Stability, SharesItsAxes) {
     for (std::size_t i = 0; i < 12; ++i) {
         EXPECT_EQ(all.panels[i].x, all.panels[i < 9 ? 0 : 9].x) << i;
         EXPECT_EQ(all.panels[i].y, all.panels[0].y) << i;
-        for (const auto& rule : all.panels[i].rules) EXPECT_EQ(rule.label, "");  // no words on the maps
+        for (const auto& rule : all.panels[i].rules) EXPECT_EQ(rule.label, "");  // no labels on the maps
     }
     EXPECT_NE(all.panels[0].x, all.panels[9].x);
     EXPECT_TRUE(all.panels[3].note.starts_with("limit 0."));  // of rk4
-    EXPECT_EQ(all.panels[6].note, "");                        // Gauss collocation has none
+    EXPECT_EQ(all.panels[6].note, "");                        // Gauss collocation has no limit
     EXPECT_EQ(page_of("[\"rk4\", \"taylor\"]").columns, 0);
 }
 

@@ -7,7 +7,7 @@
 namespace doppel {
 namespace study_test {
 
-// The figures of the study: check values of an independent program, to the digits given (Kao 2022, re-run).
+// The figures of the study, compared with an independent program to the digits given (Kao 2022, re-run).
 
 FigurePreset narrowed(const std::string& preset, int from, int to, int step, std::vector<std::string> more = {}) {
     more.push_back(fmt::format("grid.x.from={}", from));
@@ -47,8 +47,8 @@ TEST(Study, SweepsOverTheMassRatio) {
     const auto table = table_of(figure);
     EXPECT_EQ(table.columns, (std::vector<std::string>{"mass_ratio", "average_log_ratio"}));
     ASSERT_EQ(table.rows.size(), 8u);
-    EXPECT_EQ(table.rows[7][0], 0.57);  // 0.5 + 7 · 0.01 in double is not
-    // one point of it as a pair of its own
+    EXPECT_EQ(table.rows[7][0], 0.57);  // 0.5 + 7 · 0.01 in double is not 0.57
+    // one point of it as a separate pair
     const auto alone = figure_of("fig3-left", {"grid.x.from=20", "grid.x.to=20", "scene.duration_s=2",
                                                "a.mass_kg=[0.52, 1]", "b.mass_kg=[0.53, 1]"});
     EXPECT_EQ(table.rows[2][1], table_of(alone).rows[0][1]);
@@ -74,7 +74,7 @@ TEST(Study, ColumnsAreTheDocumentedOnes) {
 }
 
 TEST(Study, PairOverTime) {
-    // its list begins with sample 1, so that entry n, counted from 0, is sample n + 1
+    // its list begins with sample 1: entry n, counted from 0, is sample n + 1
     const auto table = table_of(figure_of("fig2-left", {"scene.duration_s=9"}));
     EXPECT_EQ(table.rows.size(), 9u * 120 + 1);
     for (const auto& [sample, expected, slack] :
@@ -106,7 +106,7 @@ TEST(Study, FormulationsDiverge) {
         EXPECT_NEAR((*maximum)[column], largest, 6e-4);
         EXPECT_NEAR(static_cast<double>(maximum - table.rows.begin()), static_cast<double>(at), 5);
     }
-    // the manifest says the same
+    // the manifest has the same text
     for (const auto& finding : figure.experiment->findings(trials))
         if (finding.key == "greatest_distance_50") {
             EXPECT_NEAR(std::get<double>(finding.value), 1.044, 6e-4);
@@ -121,7 +121,7 @@ TEST(Study, FormulationsDivergeByTruncation) {
     EXPECT_NEAR(largest, 0.242, 6e-4);
 }
 
-// Any model, method and precision goes by the films' loop; fixed steps in double go by lanes. Both are one sweep.
+// The films' loop supports any model, method and precision; batches support fixed steps in double. Both give one sweep.
 
 void expect_same_sweep(const std::vector<std::string>& one, const std::vector<std::string>& other, double slack) {
     const auto sweep = [](std::vector<std::string> sets) {
@@ -161,7 +161,7 @@ TEST(Sweep, GoesOverEveryParameter) {
         EXPECT_TRUE(std::isfinite(table->rows[0][1]));
         EXPECT_NE(table->rows[0][1], table->rows[1][1]);
     }
-    // one link, and the lower link's angle as an upper one's
+    // a pendulum of one link works as well
     const auto lone =
         figure_of("fig2-right", {"system.links=1", "system.angle_deg=[0]", "grid.x.to=2", "scene.duration_s=1"});
     EXPECT_EQ(table_of(lone).rows.size(), 3u);
@@ -177,7 +177,7 @@ TEST(Sweep, EndsAtItsLimits) {
 }
 
 TEST(Sweep, LeavesOutEqualPairs) {
-    // at 1 kg neither an angle nor a mass differs: no ratio to take a logarithm of, and nothing broke down
+    // at 1 kg the pair is identical: there is no ratio to take a logarithm of, and no run failed
     const auto figure = figure_of("fig2-right", {"grid.x.key=\"b.mass_kg[0]\"", "grid.difference=0", "grid.x.from=1",
                                                  "grid.x.to=2", "system.angle_deg=[90, 0]", "scene.duration_s=1"});
     const auto trials = computed(figure);
@@ -194,7 +194,7 @@ TEST(Sweep, ExponentDistinguishesRegularFromChaotic) {
     ASSERT_EQ(table.rows.size(), 4u);
     ASSERT_GE(table.columns.size(), 4u);
     EXPECT_EQ(table.columns[2], "exponent_per_s");
-    EXPECT_EQ(table.at(0, 2), 0);                       // it hangs still
+    EXPECT_EQ(table.at(0, 2), 0);                       // it hangs at rest
     EXPECT_LT(table.at(60, 2), 2 * table.at(60, 3));    // measured 0.011 ± 0.020
     EXPECT_GT(table.at(120, 2), 5 * table.at(120, 3));  // measured 0.84 ± 0.08
     // upper link upright, lower hanging: det(K + s² M) = 0 has the root s⁴ = 2 g²

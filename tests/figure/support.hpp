@@ -33,7 +33,7 @@ inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
     return computation.take_all();
 }
 
-/// The table as its file holds it.
+/// The text of the table's file.
 inline std::string table_text(const FigurePreset& figure, const KnownTrials& trials) {
     const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("table-{}.csv", getpid());
     std::filesystem::create_directories(path.parent_path());
@@ -45,11 +45,11 @@ inline std::string table_text(const FigurePreset& figure, const KnownTrials& tri
     return text;
 }
 
-/// A table read back; empty cells and words are not a number.
+/// A table read back; empty cells and words are NaN.
 struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<double>> rows;
-    std::vector<std::vector<std::string>> words;  // of the same cells
+    std::vector<std::vector<std::string>> words;  // the same cells as text
 
     explicit Table(const std::string& text) {
         std::istringstream lines(text);
@@ -103,19 +103,19 @@ inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
     return figure_of("fig2-right", more);
 }
 
-/// What figures said on their way.
+/// Collects the reports of figures.
 struct Said {
     std::vector<std::string> notes;
     std::vector<FigureProgress> progress;
     std::vector<RunResult> results;
     std::mutex mutex;
 
-    /// Of one computation.
+    /// The report of one computation.
     ComputationReport report() {
         return {[this](const FigureProgress& p) { progress.push_back(p); },
                 [this](const std::string& sentence) { notes.push_back(sentence); }};
     }
-    /// Of a run of figures, which may all speak at once.
+    /// For a run of figures, which may report at the same time.
     FigureReport run_report() {
         const auto add = [this](auto& list, const auto& what) {
             const std::lock_guard hold(mutex);
@@ -132,7 +132,7 @@ struct Said {
     }
 };
 
-/// Makes one figure's files.
+/// Writes one figure's files.
 inline RunResult run_figure(const FigurePreset& figure, const FigureOptions& options, Said& said) {
     const std::atomic<bool> never = false;
     run_figures({figure}, options, never, said.run_report());

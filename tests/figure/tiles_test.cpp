@@ -48,8 +48,8 @@ TEST(Tiles, AreTheCellsOfTheMap) {
     Figure page;
     figure.experiment->draw(computed(figure), page);
     const auto& map = *page.panels.at(0).map;
-    // colours only depend on the number, and grow apart with it
-    std::map<std::vector<std::uint8_t>, std::pair<double, double>> ranges;  // of times, by colour
+    // colours depend on the number alone, and differ more the more the numbers differ
+    std::map<std::vector<std::uint8_t>, std::pair<double, double>> ranges;  // times by colour
     for (const int row : {0, 255, 256, 299})
         for (int column = 0; column < 600; column += 7) {
             const auto picture = read_png(out / "x/x.tiles" / fmt::format("2-{}-{}.png", row / 256, column / 256));
@@ -61,20 +61,20 @@ TEST(Tiles, AreTheCellsOfTheMap) {
             high = std::max(high, time);
         }
     EXPECT_GT(ranges.size(), 25u);
-    for (const double end : {0.0, 1.0}) {  // beyond the scale
+    for (const double end : {0.0, 1.0}) {  // outside the scale
         const auto color = bytes_of(map_color(end));
         ranges.erase(std::vector(color.begin(), color.begin() + 3));
     }
     for (const auto& [color, range] : ranges)
         EXPECT_TRUE(range.first == range.second || range.second < 1.05 * range.first || std::isnan(range.first))
             << range.first << ' ' << range.second;
-    // beyond the map there is nothing
+    // outside the map there are no pixels
     const auto last = read_png(out / "x/x.tiles/2-1-2.png");
     EXPECT_EQ(last.at(600 - 512, 0)[3], 0);
     EXPECT_EQ(last.at(0, 300 - 256)[3], 0);
 }
 
-/// Of the same files of numbers as pictures.
+/// The pictures equal those drawn from the same files of numbers.
 TEST(Tiles, AreTheSameInPartsAndFromMoreThreads) {
     const auto out = fresh_folder(), parts = out / "parts";
     make(out, small(), {.jobs = 1});
@@ -104,7 +104,7 @@ TEST(Tiles, ReplaceTheirOwnAndLeaveOtherFilesAlone) {
     test::write_bytes(folder / "diary.txt", "mine");
     expect_error(ExitCode::io_failed, {"diary.txt"}, [&] { make(out, small()); });
     EXPECT_EQ(test::bytes_of(folder / "diary.txt"), "mine");
-    // nor through a link
+    // nor through a symbolic link
     fs::remove_all(folder);
     fs::create_directories(out / "elsewhere");
     fs::create_directory_symlink(out / "elsewhere", folder);

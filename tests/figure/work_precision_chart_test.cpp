@@ -8,7 +8,7 @@
 namespace doppel {
 namespace work_precision_chart_test {
 
-// What a chart of work against precision shows in colour.
+// Which methods a work-precision chart colours.
 
 Figure page_of(const FigurePreset& figure) {
     Figure page;
@@ -37,7 +37,7 @@ TEST(WorkPrecisionChart, HasFiveInColour) {
     const auto page = page_of(figure_of("speed-accuracy", arguments));
     ASSERT_EQ(page.panels.size(), 2u);
     for (const auto& plot : page.panels) {
-        // the same five in every panel, and the study's point; of ten methods in angles the others are faint
+        // the same five in every panel, and the study's point; the others of ten methods in angles are faint
         EXPECT_EQ(labels_of(plot),
                   (std::set<std::string>{"taylor", "adams", "dop853", "dopri5", "rk4", "the study: Euler, 30 kHz"}));
         EXPECT_EQ(faint_ones(plot), 10 - 5);
@@ -47,7 +47,7 @@ TEST(WorkPrecisionChart, HasFiveInColour) {
             }
         EXPECT_EQ(plot.curves.front().background, Background::band);
     }
-    EXPECT_EQ(page.captions.size(), 2u);  // of times one more
+    EXPECT_EQ(page.captions.size(), 2u);  // one more in a chart of times
     EXPECT_TRUE(page.captions[0].starts_with("In colour the five best, by the mean rank")) << page.captions[0];
 }
 
@@ -69,7 +69,7 @@ TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
     EXPECT_TRUE(page.captions[0].starts_with("Each method in its best model;")) << page.captions[0];
 }
 
-/// Has the answer, at a cost of its own.
+/// Has the exact result at a given cost.
 class Oracle final : public Motion {
 public:
     explicit Oracle(long evaluations) : evaluations_(evaluations) {}
@@ -87,7 +87,7 @@ private:
 };
 
 TEST(WorkPrecisionChart, OfLibrariesHasTheirFiveBestAndDoppelsBest) {
-    // all say that nothing moved, which is true within 1e-8 of a pendulum that hangs all but still
+    // all report no motion, which is correct within 1e-8 for a pendulum almost at rest
     std::vector<ExternalMethod> libraries;
     for (const int cost : {70, 10, 60, 20, 50, 30, 40})
         libraries.push_back(

@@ -10,7 +10,7 @@ namespace work_precision_test {
 
 const std::string by_evaluations = "chart.cost=\"evaluations\"";
 
-/// A film of one second, and the figure of it.
+/// A film of one second, and its figure.
 std::string film_path() {
     const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("film-{}.toml", getpid());
     std::filesystem::create_directories(path.parent_path());
@@ -26,7 +26,7 @@ FigurePreset second(const std::vector<std::string>& more = {}, const std::string
                        more);
 }
 
-/// The table's words and numbers, by column.
+/// The words and numbers of a row, by column.
 struct Row {
     std::map<std::string, std::string> cells;
     double number(const std::string& column) const {
@@ -89,7 +89,7 @@ TEST(WorkPrecision, HasTheColumnsAndEveryStudy) {
             EXPECT_EQ(row.number("length_error_m"), 0);
         }
     }
-    ASSERT_EQ(outcomes.size(), 3u + 3 + 2);  // rattle does not serve angles
+    ASSERT_EQ(outcomes.size(), 3u + 3 + 2);  // rattle does not support angles
     for (const auto& [name, count] : outcomes) EXPECT_GT(count, 10) << name;
 }
 
@@ -109,7 +109,7 @@ TEST(WorkPrecision, FallsByThePowerOfEachOrder) {
     std::map<std::string, std::vector<const Row*>> studies;
     for (const auto& row : rows) studies[row.cells.at("model") + " " + row.cells.at("method")].push_back(&row);
     for (const auto& [name, study] : studies) {
-        // over the last octave or two: finer, rounding begins to tell
+        // over the last one or two octaves: at finer steps round-off appears
         const auto &fine = *study.at(study.size() - 2), &coarse = *study.at(study.size() - 6);
         const double slope = std::log(coarse.number("angle_error_rad") / fine.number("angle_error_rad")) /
                              std::log(coarse.number("setting") / fine.number("setting"));
@@ -119,7 +119,7 @@ TEST(WorkPrecision, FallsByThePowerOfEachOrder) {
     EXPECT_EQ(studies.size(), 6u + 6);
 }
 
-/// Two even bars with no bobs.
+/// Two uniform bars without bobs.
 TEST(WorkPrecision, TakesBodies) {
     const auto figure =
         figure_of("speed-accuracy", {by_evaluations, "work_precision.scene=\"rods\"", "work_precision.duration_s=1",
@@ -130,7 +130,7 @@ TEST(WorkPrecision, TakesBodies) {
         auto& error = minimum.try_emplace(row.cells.at("model") + " " + row.cells.at("method"), 1).first->second;
         error = std::fmin(error, row.number("angle_error_rad"));
     }
-    ASSERT_EQ(minimum.size(), 3u);  // in angles alone
+    ASSERT_EQ(minimum.size(), 3u);  // in angles only
     for (const auto& [name, error] : minimum)
         EXPECT_LT(error, name.ends_with("rk4") ? 1e-12 : 1e-14) << name;  // 2e-13, 1.5e-15
 }
@@ -151,7 +151,7 @@ TEST(WorkPrecision, KnowsItsProblems) {
         EXPECT_LT(found.at(std::string(name) + "_reference_disagreement"), 5e-30) << name;  // measured 9e-31
         EXPECT_LT(found.at(std::string(name) + "_1e-12_cost"), 6000) << name;               // measured 4706
     }
-    // what the study's own program errs by at its step
+    // the error of the study's program at its step
     const std::map<std::string, double> study{{"P1", 0.13}, {"P3", 0.12}, {"P4", 0.66}};
     std::size_t seen = 0;
     for (const auto& row : rows_of(table_text(figure, trials))) {
@@ -168,7 +168,7 @@ TEST(WorkPrecision, EndsAtTheFloor) {
     double minimum = 1;
     for (const auto& row : rows) minimum = std::fmin(minimum, row.number("angle_error_rad"));
     EXPECT_LT(minimum, 7e-16);                             // measured 2e-16
-    EXPECT_GT(rows.back().number("setting"), 0.99e-15);    // the finest that double can give
+    EXPECT_GT(rows.back().number("setting"), 0.99e-15);    // the smallest that double precision allows
     EXPECT_LT(rows.back().number("energy_error"), 3e-15);  // measured 5.1e-16
 }
 
@@ -188,7 +188,7 @@ TEST(WorkPrecision, TimesItsRuns) {
     EXPECT_GT(last, 0);
 }
 
-/// Does nothing right, at leisure.
+/// Computes nothing, slowly.
 class Idle final : public Motion {
 public:
     explicit Idle(double setting) : setting_(setting) {}
@@ -263,7 +263,7 @@ TEST(WorkPrecision, FailsIfEveryRunFails) {
     EXPECT_EQ(other.experiment->nothing_to_draw(computed(other)), std::nullopt);
 }
 
-/// What blows up may end near the true angles, as whole turns go, even at the very angle (of energies of 1e185).
+/// A diverged run may end near the true angles by chance, modulo whole turns, with energies of 1e185.
 TEST(WorkPrecision, ADivergedRunHasFailed) {
     const auto figure =
         figure_of("speed-accuracy",
@@ -281,12 +281,12 @@ TEST(WorkPrecision, ADivergedRunHasFailed) {
             continue;
         }
         EXPECT_LE(row.number("angle_error_rad"), pi) << name;
-        EXPECT_LT(row.number("energy_error"), 25) << name;  // of the potential range, E0 being 0
+        EXPECT_LT(row.number("energy_error"), 25) << name;  // relative to the potential range, as E0 = 0
         EXPECT_LT(row.number("length_error_m"), 2) << name;
     }
     for (const auto* name : {"angles euler", "angles adams", "constraints euler", "mechanism adams"})
         EXPECT_GT(failed[name], 0) << name;
-    EXPECT_EQ(failed["constraints rattle"], 3);  // it does not find its multipliers
+    EXPECT_EQ(failed["constraints rattle"], 3);  // its iteration for the multipliers does not converge
     std::map<std::string, Finding> found;
     for (const auto& finding : figure.experiment->findings(trials)) found[finding.key] = finding;
     EXPECT_EQ(std::get<std::string>(found.at("butterfly_1e-12_best").value), "adams, angles");
