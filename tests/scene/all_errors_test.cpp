@@ -10,7 +10,7 @@ namespace all_errors_test {
 
 using Lines = std::vector<std::string>;
 
-/// What is said of the preset, without the path.
+/// The messages about the preset, without the path.
 Lines faults_of(const std::string& text, const std::vector<std::string>& arguments = {}) {
     try {
         read_preset({"x", "x.toml", text, "x.toml"}, sets(arguments));
@@ -59,7 +59,7 @@ mas_kg = 3
     EXPECT_EQ(errors, expected);
 }
 
-/// Neither is wrong where the key beside it is right.
+/// Only one error is reported: the other may be its consequence.
 TEST(AllErrors, OmitErrorsThatAnotherMayCause) {
     const auto alone = [](const std::string& text) {
         const auto errors = faults_of(text);
@@ -81,7 +81,7 @@ TEST(AllErrors, OmitErrorsThatAnotherMayCause) {
     EXPECT_EQ(alone("[video.fonts]\ntext = 3\n[a]\nlabel = \"\xd8\xa7\"").substr(0, 23), "2:1: [video.fonts] text");
 }
 
-/// The key that decides is there, and right. Where two do not go with it, it may be the one that is wrong.
+/// The key that decides is correct, so its value is used. Of two incompatible keys, either may be wrong.
 TEST(AllErrors, IncludeErrorsOfSeveralKeys) {
     EXPECT_EQ(starts(faults_of("[system]\nlinks = 3\nmass_kg = [1, 2]\nfoo = 1\nlength_m = [1]"), 20),
               (Lines{"3:1: [system] mass_k", "4:1: [system] has no"}));

@@ -1,4 +1,4 @@
-// What pictures and messages say.
+// The texts of pictures and messages.
 #include "scene/captions.hpp"
 
 #include "base/text.hpp"
@@ -41,10 +41,10 @@ TEST(Captions, AreThePresetsIfItSetsThem) {
     EXPECT_EQ(scene_caption(own), "by me");
     const auto sides = side_captions(own);
     EXPECT_EQ(sides[0].heading, "left");
-    EXPECT_EQ(sides[0].note, "θ₁ = 90°, θ₂ = 90°");  // what differs from the other side has lost its place above
+    EXPECT_EQ(sides[0].note, "θ₁ = 90°, θ₂ = 90°");  // the difference moves into the note: the label replaces it above
     EXPECT_EQ(sides[1].heading, "θ₁ = 90.003°");
     EXPECT_EQ(sides[1].note, "");
-    // they are in the resolved preset, and nowhere but in a film's sides
+    // they are in the resolved preset, and allowed only for the sides of a film
     const auto again = read_preset({"x", "x.toml", resolved_toml(own.preset), "x.toml"});
     EXPECT_EQ(again.a.label, "left");
     EXPECT_EQ(again.b.note, "");
@@ -59,18 +59,18 @@ TEST(Captions, AreThePresetsIfItSetsThem) {
 }
 
 TEST(Captions, OfAnAccuracyOmitTheChosenTolerance) {
-    // the sides are 10⁻¹² degrees apart, and each gets a tolerance of its own
+    // the angles of the sides differ by 10⁻¹²°, and each side gets its own tolerance
     const auto scene = scene_of("horizon", {"scene.duration_s=5"});
     for (const auto& side : side_captions(scene)) {
         EXPECT_EQ(side.heading.find("tolerance"), std::string::npos) << side.heading;
         EXPECT_EQ(side.note, "θ₂ = 90°");
     }
     EXPECT_TRUE(scene_caption(scene).ends_with("accuracy 0.01 rad")) << scene_caption(scene);
-    // one that the preset names is said
+    // a tolerance that the preset states is shown
     const auto given = side_captions(scene_of(
         "butterfly", {"system.integrator=\"taylor\"", "a.tolerance=1e-9", "b.tolerance=1e-12", "b.angle_deg=90"}));
     EXPECT_EQ(given[0].heading, "tolerance 10⁻⁹");
-    // so are two accuracies
+    // two different accuracies are shown, too
     const auto two = side_captions(scene_of("horizon", {"scene.duration_s=2", "a.accuracy=1e-3", "b.angle_deg=90"}));
     EXPECT_EQ(two[0].heading, "accuracy 0.001 rad");
     EXPECT_EQ(two[1].heading, "accuracy 0.01 rad");
@@ -125,8 +125,8 @@ TEST(Captions, InPlainWordsHaveNoSymbols) {
 TEST(Captions, NearestAllowsATypingErrorInThreeLetters) {
     constexpr std::array<std::string_view, 2> names{"poster_s", "background_color"};
     EXPECT_EQ(nearest("backgruond_colour", names), "background_color");
-    EXPECT_EQ(nearest("bakgrund_kolour", names), "background_color");  // four letters of fifteen
-    EXPECT_EQ(nearest("bakgrnd_kollour", names), std::nullopt);        // six
+    EXPECT_EQ(nearest("bakgrund_kolour", names), "background_color");  // 4 of 15 letters differ
+    EXPECT_EQ(nearest("bakgrnd_kollour", names), std::nullopt);        // 6 letters differ
     EXPECT_EQ(nearest("pst", names), std::nullopt);
 }
 
@@ -182,7 +182,7 @@ TEST(Words, OfLongValuesInErrorsAreShortened) {
                })
             .second;
     };
-    // 60 with its quotes
+    // 60 characters with the quotes
     EXPECT_TRUE(error(58).ends_with("it is a string (\"" + std::string(58, 'y') + "\")")) << error(58);
     EXPECT_TRUE(error(59).ends_with("it is a string (\"" + std::string(58, 'y') + "…)")) << error(59);
 }

@@ -16,7 +16,7 @@ namespace choice_study_test {
 
 const std::atomic<bool> never = false;
 
-/// CPU time of a run up to `last`, s: the least of several. Infinite where the method breaks down.
+/// CPU time of a run up to `last`, s: the minimum of several. Infinite where the method fails.
 double seconds_of_run(const MotionSpec& motion, long last) {
     double minimum = INFINITY, all = 0;
     for (int run = 0; run < 3 || (all < 0.03 && run < 30); ++run) try {
@@ -32,8 +32,8 @@ double seconds_of_run(const MotionSpec& motion, long last) {
     return minimum;
 }
 
-/// The CPU time of the loosest setting of a method that keeps an accuracy as long as the chosen side does, where it
-/// takes no more than four times as long as that.
+/// The CPU time of a method's loosest setting that keeps the accuracy as long as the chosen side does. Considers only
+/// settings that need at most four times as long as that.
 double seconds_of_loosest(const StepLevels& levels, const SideSpec& spec, const Rational& hz, const Side& chosen,
                           double chosen_s) {
     const auto& choice = *chosen.choice;
@@ -58,7 +58,7 @@ double seconds_of_loosest(const StepLevels& levels, const SideSpec& spec, const 
 // Measured on one core of an AMD EPYC, 80 scenes: 1.43 times the best at worst, 1.009 on average.
 TEST(ChoiceStudy, TakesLittleMoreTimeThanTheBestMethod) {
     if (!std::getenv("DOPPEL_ALL_SCENES")) GTEST_SKIP() << "measures times; DOPPEL_ALL_SCENES=1, on a quiet machine";
-    constexpr int enough = 5;  // of a kind
+    constexpr int enough = 5;  // scenes of each kind
     constexpr Rational hz{60, 1};
     drawn::Lot lot(20261125);
     double worst = 0, sum = 0;
@@ -75,7 +75,7 @@ TEST(ChoiceStudy, TakesLittleMoreTimeThanTheBestMethod) {
             try {
                 side = MethodChooser(preset, never).choose(1, never)[0];
             } catch (const Error& error) {
-                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // out of reach
+                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // not achievable
                 continue;
             }
             ++reached;

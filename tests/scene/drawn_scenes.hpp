@@ -11,7 +11,7 @@
 
 namespace doppel::drawn {
 
-/// Whole thousandths, the same with every standard library.
+/// Random numbers in whole thousandths, the same with every standard library.
 class Lot {
 public:
     explicit Lot(unsigned seed) : numbers_(seed) {}
@@ -26,7 +26,7 @@ private:
     std::mt19937 numbers_;
 };
 
-/// Unequal links, and what moves them.
+/// Links with random masses, lengths, angles and rates, and random gravity.
 inline SideSpec chain_by(Lot& lot, std::size_t links, double fastest) {
     SideSpec side;
     side.set_links(links);
@@ -60,11 +60,11 @@ inline SideSpec bodies_by(Lot& lot) {
     return side;
 }
 
-/// A kind of systems to draw from by lot.
+/// A kind of systems for random samples.
 struct Kind {
     const char* name;
     SideSpec (*drawn)(Lot&);
-    bool is_slow = false;  // to follow in quad
+    bool is_slow = false;  // slow in quadruple precision
 };
 inline const std::vector<Kind> kinds{
     {"chain", [](Lot& lot) { return chain_by(lot, 1 + lot.of(4), 200); }},

@@ -32,7 +32,7 @@ TEST(Forecast, EstimatesThePredictabilityLimitInDouble) {
         const auto limit = forecast_of(scene, scene.a, never).limit;
         ASSERT_TRUE(limit) << system;
         EXPECT_LE(limit->from, limit->to);
-        // others, by methods and equations that it did not try
+        // other runs, by methods and equations that the forecast does not use
         const auto reference = reference_trajectory(scene.a.motion, scene.samples, scene.a.reach, 0.5, never);
         for (const auto& [model, method, tolerance] : {std::tuple{Model::angles, "dop853", "1e-14"},
                                                        {Model::constraints, "taylor", "1e-15"},
@@ -55,13 +55,13 @@ TEST(Forecast, EstimatesTheFinalErrorOfAccurateRuns) {
 }
 
 TEST(Forecast, ReportsDivergenceBeforeTheEnd) {
-    // what it makes of ten seconds holds what forty show
+    // the forecast from ten seconds agrees with that from forty
     const auto shown = *predicted("angle_deg = [90, 90]", 40).limit,
                told = *predicted("angle_deg = [90, 90]", 10).limit;
     EXPECT_NEAR(told.from / shown.from, 1, 0.3);  // measured 0.23
     EXPECT_GT(told.to, 0.9 * shown.to);
     EXPECT_LT(told.to, 2.4 * shown.to);                    // measured 1.91
-    EXPECT_FALSE(predicted("angle_deg = [30, 0]").limit);  // regular: no end in sight
+    EXPECT_FALSE(predicted("angle_deg = [30, 0]").limit);  // regular: no limit
 }
 
 TEST(Forecast, DistinguishesAnUnstableEquilibriumFromChaos) {
@@ -74,7 +74,7 @@ TEST(Forecast, DistinguishesAnUnstableEquilibriumFromChaos) {
     EXPECT_EQ(predicted("links = 1\nangle_deg = [179.999]", 5).kind, Kind::regular);
     EXPECT_EQ(predicted("angle_deg = [30, 0]", 5).kind, Kind::regular);
     EXPECT_EQ(predicted("angle_deg = [90, 90]", 5).kind, Kind::chaotic);
-    // a spring makes another system of it, of which the chain's exponent tells nothing
+    // with a spring it is another system, to which the chain's exponent does not apply
     EXPECT_FALSE(predicted("angle_deg = [90, 90]\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]", 5)
                      .exponent);
 }

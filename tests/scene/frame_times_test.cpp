@@ -61,13 +61,13 @@ TEST(FrameTimes, OfAnyRateAreAtTheirTimesToTheLastDigit) {
 
 TEST(FrameTimes, OfAChangingSpeedTakeTheTimeThatItsIntegralSays) {
     const auto video = scene_of("butterfly", {slow_at_the_parting}).preset.video;
-    // seconds of film a second of motion: 1; in 0.5 s from 1 to 4, 2.5 on average; 4; 0.5 s back; 1
+    // seconds of film per second of motion: 1; in 0.5 s from 1 to 4, 2.5 on average; 4; 0.5 s back to 1
     EXPECT_NEAR(film_time(video, 6.3), 6.3, 1e-12);
     EXPECT_NEAR(film_time(video, 6.8), 6.3 + 0.5 * 2.5, 1e-12);
     EXPECT_NEAR(film_time(video, 7.9), 6.3 + 0.5 * 2.5 + 1.1 * 4, 1e-12);
     EXPECT_NEAR(film_time(video, 8.4), 6.3 + 0.5 * 2.5 + 1.1 * 4 + 0.5 * 2.5, 1e-12);
     EXPECT_NEAR(film_time(video, 30), 6.3 + 0.5 * 2.5 + 1.1 * 4 + 0.5 * 2.5 + 21.6, 1e-12);
-    // between them by 3u² − 2u³: its slope is the pace
+    // between them by 3u² − 2u³: its slope is the rate of the film's time
     for (const double u : {0.1, 0.5, 0.8}) {
         const double t = 6.3 + 0.5 * u, h = 1e-5, pace = (film_time(video, t + h) - film_time(video, t - h)) / (2 * h);
         EXPECT_NEAR(pace, 1 + 3 * (3 * u * u - 2 * u * u * u), 1e-8) << u;
@@ -98,7 +98,7 @@ TEST(FrameTimes, OfEachSpeedFallOnSamplesWhereTheyCan) {
     EXPECT_NEAR(position(frames.at(121)), 601.5, 1e-9);
 }
 
-// Frames between samples must not change the samples: neither their steps nor the rounding of their time.
+// Frames between samples must not change the samples: neither their steps nor the rounding of their times.
 TEST(FrameTimes, SamplesDoNotDependOnFramesBetweenThem) {
     const std::atomic<bool> never = false;
     struct Case {
@@ -131,7 +131,7 @@ TEST(FrameTimes, SamplesDoNotDependOnFramesBetweenThem) {
     }
 }
 
-// Against a run that has its samples there: what is between samples is the motion, as exactly as the method steps it.
+// Compares with a run that has its samples there: between samples the motion is as accurate as the method.
 TEST(FrameTimes, BetweenSamplesIsTheMotion) {
     const std::atomic<bool> never = false;
     struct Case {
@@ -140,13 +140,13 @@ TEST(FrameTimes, BetweenSamplesIsTheMotion) {
         double maximum;  // m
     };
     for (const auto& [preset, more, maximum] :
-         {Case{"butterfly", {}, 0},  // at the same steps
+         {Case{"butterfly", {}, 0},  // with the same steps
           {"butterfly", {"system.integrator=\"taylor\"", "system.tolerance=1e-12"}, 1e-11},
           {"butterfly",
            {"system.integrator=\"dop853\"", "system.model=\"constraints\"", "system.tolerance=1e-12"},
            1e-9},
           {"whip", {}, 1e-9},
-          {"measured", {}, 1e-4}}) {  // which samples of a track are around a time may depend on its rounding
+          {"measured", {}, 1e-4}}) {  // round-off of a time may decide which samples of a track surround it
         const auto scene = scene_of(preset, more);
         auto fine = more;
         fine.push_back(fmt::format("scene.sample_hz={}", 5 * scene.preset.sample_hz.numerator));
@@ -198,7 +198,7 @@ TEST(FrameTimes, StepsThatAreTooCoarseForASpeedAreRefused) {
         message,
         "butterfly: [video] frames are 0.00208 s of the motion apart and not all at steps, which are 0.00417 s long "
         "on side a: they must be at most 0.00026 s, by a smaller step_s or accuracy");
-    // what it says is so
+    // the remedy in the message works
     EXPECT_NO_THROW(scene_of("butterfly", {slow_at_the_parting, "system.step_s=\"1/3840\""}));
     EXPECT_NO_THROW(scene_of("butterfly", {"system.step_s=\"1/240\""})) << "each frame is a step";
     EXPECT_THROW(scene_of("butterfly", {"system.step_s=\"1/120\"", "video.fps=50"}), Error);

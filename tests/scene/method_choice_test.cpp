@@ -20,7 +20,7 @@ namespace method_choice_test {
 
 const std::atomic<bool> never = false;
 
-/// One side that requires an accuracy.
+/// A side with a required accuracy.
 Side choose_side(const SideSpec& spec, const Rational& duration, const Rational& sample_hz) {
     const Preset preset{.duration_s = duration, .sample_hz = sample_hz, .a = spec, .b = spec};
     return *MethodChooser(preset, never).choose(1, never)[0];
@@ -40,7 +40,7 @@ std::string error_of(const std::string& toml, const std::vector<Override>& overr
 }
 
 /// The largest error of a side's run against quad, at all samples up to its horizon. `rounded`: against the motion of
-/// the chain whose numbers are those of double.
+/// the chain with its numbers rounded to double.
 double true_error(const SideSpec& spec, const Side& side, bool rounded = false) {
     auto exact = spec;
     exact.accuracy.reset();
@@ -96,7 +96,7 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesTheErrorOnRandomScenes) {
             try {
                 side = choose_side(spec, seconds, {10, 1});
             } catch (const Error& error) {
-                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // out of reach
+                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // not achievable
                 continue;
             }
             ++reached;
@@ -107,19 +107,19 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesTheErrorOnRandomScenes) {
         }
         EXPECT_EQ(reached, enough) << kind.name;
         if (enough > 0) {
-            EXPECT_GT(largest_share, 0.1) << kind.name;  // no caution for its own sake
+            EXPECT_GT(largest_share, 0.1) << kind.name;  // the estimate is not too cautious
         }
     }
     EXPECT_LT(most_optimistic, 1.001);  // measured 1.000000
 }
 
 TEST(Choice, MeetsTheAccuracyOfAMotionWhoseNumbersAreRoundedToDoubleToo) {
-    // beside the motion of the decimals alone, roundings that cancel by chance hide what they do: 38 % too much here
+    // compared only with the exact decimals, round-off errors may cancel by chance: the error was 38 % too large here
     const auto scene = make_scene(preset_from(
         "[scene]\nduration_s = 10\nsample_hz = 60\n[video]\nfps = 60\n[system]\nlinks = 3\nangle_deg = [76.79, 9.394, "
         "89.658]\nomega_deg_per_s = [175.67, 21.14, 388.1]\nlength_m = [1.112, 1.213, 1.443]\nmass_kg = [6.5504, "
         "0.3471, 6.1755]\naccuracy = 8.1e-10"));
-    EXPECT_LE(true_error(scene.preset.a, scene.a, true), scene.a.choice->accuracy);  // 3.2 times before
+    EXPECT_LE(true_error(scene.preset.a, scene.a, true), scene.a.choice->accuracy);  // 3.2 times before the correction
 }
 
 TEST(Choice, MeetsTheAccuracyOfAMechanismInPartsOfItsSize) {
@@ -148,7 +148,7 @@ TEST(Choice, NeverTakesMoreWorkForLessAccuracy) {
         for (const double accuracy : {1e-1, 2e-2, 1e-2, 1e-3, 5e-4, 5e-5, 1e-6, 1e-7, 2e-8, 1e-9, 1e-10}) {
             try {
                 const auto choice = *chooser.choose(accuracy / 1e-2, never)[0]->choice;
-                if (choice.horizon < 360) break;  // from here on rounding decides
+                if (choice.horizon < 360) break;  // from here on round-off decides
                 EXPECT_GE(choice.work, before) << system << ", " << accuracy;
                 before = choice.work;
             } catch (const Error& error) {
@@ -161,13 +161,13 @@ TEST(Choice, NeverTakesMoreWorkForLessAccuracy) {
 }
 
 TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
-    // eight links, let go level: errors grow tenfold within half a second
+    // eight links, released level: errors grow tenfold within half a second
     const auto scene =
         make_scene(preset_from("[scene]\nduration_s = 10\n[system]\nlinks = 8\nlength_m = 0.2\naccuracy = 1e-6"));
     const auto& choice = *scene.a.choice;
     ASSERT_LT(choice.horizon, scene.samples);
     EXPECT_EQ(scene.a.motion.method, "taylor");
-    EXPECT_GT(scene.a.motion.tolerance, 1e-14);  // the finest would be 1e-15; measured 3e-13, which gets nearly as far
+    EXPECT_GT(scene.a.motion.tolerance, 1e-14);  // the smallest is 1e-15; measured 3e-13, almost as long a horizon
     EXPECT_EQ(scene.horizon(), scene.time(choice.horizon));
     auto spec = scene.preset.a;
     spec.accuracy.reset();
@@ -176,7 +176,7 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
     spec.tolerance = parse_quad("1e-28");
     const auto truth = make_motion(make_side(spec, scene.preset.sample_hz).motion), run = make_motion(scene.a.motion);
     double error = 0;
-    const long past = choice.horizon + 120;  // a second later
+    const long past = choice.horizon + 120;  // one second later
     for (long sample = 1; sample <= past; ++sample) {
         truth->advance(never);
         run->advance(never);
@@ -185,15 +185,15 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
             EXPECT_LE(error, choice.accuracy);
         }
     }
-    EXPECT_GT(error, choice.accuracy);  // no horizon of caution alone
+    EXPECT_GT(error, choice.accuracy);  // the horizon is not too short
 }
 
 TEST(Choice, KeepsTheUprightAsLongAsRoundingAllows) {
-    // one link released at the double nearest to π: what it lacks grows like cosh(√(g/l) t)
+    // one link released at the double nearest to π: the difference from π grows as cosh(√(g/l) t)
     const auto scene = make_scene(preset_from(
         "[scene]\nduration_s = 20\n[system]\nlinks = 1\nangle_deg = 180\nomega_deg_per_s = 0\naccuracy = 1e-3"));
     const double lacking = 1.2246467991473532e-16, rounding = pi * 0x1p-53, rate = std::sqrt(9.8);
-    const double exact = std::acosh(0.8e-3 / (lacking + rounding)) / rate;  // eight tenths of what is asked for
+    const double exact = std::acosh(0.8e-3 / (lacking + rounding)) / rate;  // 80 % of the required accuracy
     EXPECT_NEAR(scene.time(scene.a.choice->horizon), exact, 0.1);           // measured 0.02; 9.22 s
 }
 
@@ -206,7 +206,7 @@ TEST(Choice, TakesTheCheapestWayThatTheTableAllows) {
     EXPECT_EQ(scene("stabilise = \"projection\"").a.motion.model, Model::constraints);
     EXPECT_EQ(scene("[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]").a.motion.model,
               Model::mechanism);
-    // finer costs more
+    // a higher accuracy costs more
     const auto loose = scene(""),
                tight = make_scene(preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-11"));
     EXPECT_LT(loose.a.choice->work, tight.a.choice->work);
@@ -230,7 +230,7 @@ TEST(Choice, IsSharedBySidesThatDifferOnlyInTheSystem) {
     const auto scene = [](const std::string& sides) {
         return make_scene(preset_from("[scene]\nduration_s = 20\n[system]\naccuracy = 1e-6\n" + sides));
     };
-    // alone, side a would take a tolerance three times as large
+    // alone, side a would get a tolerance three times as large
     const auto calm = scene("angle_deg = [20, 0]\n[b]\nangle_deg = [110, 0]");
     EXPECT_EQ(calm.a.motion.tolerance, calm.b.motion.tolerance);
     EXPECT_NE(calm.a.motion.tolerance, scene("angle_deg = [20, 0]").a.motion.tolerance);
@@ -238,10 +238,10 @@ TEST(Choice, IsSharedBySidesThatDifferOnlyInTheSystem) {
     EXPECT_EQ(heavy.a.motion.method, "dop853");
     EXPECT_EQ(heavy.b.motion.method, "dop853");
     EXPECT_EQ(heavy.a.motion.tolerance, heavy.b.motion.tolerance);
-    // sides that are the same have one reference
+    // identical sides share one reference
     const auto same = scene("");
     EXPECT_EQ(same.a.choice->reference, same.b.choice->reference);
-    // and sides of two accuracies two choices
+    // two sides of different accuracies need two choices
     const auto two = scene("angle_deg = [20, 0]\n[b]\naccuracy = 1e-3");
     EXPECT_LT(two.a.motion.tolerance, two.b.motion.tolerance);
 }
@@ -295,12 +295,12 @@ TEST(Choice, ReplacesIntegratorAndStep) {
         "[scene]\nduration_s = 1\n[system]\nintegrator = \"euler\"\nstep_s = \"1/1200\"\n[b]\nstep_s = \"1/2400\"";
     const auto by_accuracy = preset_from(euler, {parse_set("system.accuracy=1e-5")});
     EXPECT_TRUE(by_accuracy.a.accuracy && by_accuracy.b.accuracy && !by_accuracy.b.step_s);
-    // what the preset says goes on top level by level; the command line's method beats the preset's accuracy
+    // the preset's keys apply table by table; the command line's method overrides the preset's accuracy
     const auto mixed = preset_from("[system]\naccuracy = 1e-5\n[b]\nintegrator = \"rk4\"");
     EXPECT_TRUE(mixed.a.accuracy && !mixed.b.accuracy);
     const auto by_method = preset_from("[system]\naccuracy = 1e-5", {parse_set("system.integrator=\"rk4\"")});
     EXPECT_TRUE(!by_method.a.accuracy && by_method.a.integrator == "rk4");
-    // and what is resolved reads back to the same
+    // and the resolved preset gives the same preset again
     EXPECT_EQ(resolved_toml(preset_from(resolved_toml(mixed))), resolved_toml(mixed));
     EXPECT_NE(resolved_toml(mixed).find("accuracy = 1e-05\n"), std::string::npos) << resolved_toml(mixed);
 }
@@ -314,17 +314,17 @@ TEST(Choice, NamesAPossibleAccuracy) {
     EXPECT_EQ(beyond.find("test: side a: accuracy = 1e-15 rad is beyond double here: it would be kept for "), 0u)
         << beyond;
     EXPECT_NE(beyond.find("; precision = \"quad\" allows more"), std::string::npos) << beyond;
-    // what it says is within reach for a swing, is
+    // the accuracy that the message calls possible for a chaotic motion is accepted
     const auto at = beyond.find("possible: ") + 10;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);
     EXPECT_EQ(error_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "");
-    // of a regular motion, to the end as well
+    // so is the one that a regular motion keeps to the end
     const std::string gentle = "[scene]\nduration_s = 30\n[system]\nangle_deg = [30, 0]\naccuracy = ";
     const auto to_end = error_of(gentle + "1e-16");
     const auto end = to_end.find(" to the end;"), start = to_end.rfind(' ', end - 1);
     ASSERT_NE(end, std::string::npos) << to_end;
     EXPECT_EQ(error_of(gentle + to_end.substr(start, end - start)), "") << to_end;
-    // a spring whose ends meet has no direction: that is the method's fault, not the accuracy's
+    // a spring whose ends meet has no direction: the method fails, whatever the accuracy
     EXPECT_NE(error_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
                   .find("fails within 0.0083 s: taylor:"),
               std::string::npos);

@@ -30,7 +30,7 @@ particle = "bob2"
 direction = [1, 0]
 )";
 
-/// What a key in a table of its own leads to.
+/// The result of looking up a key, with the keys of a preset.
 struct Found {
     Preset preset;
     std::optional<NumericKey> key;
@@ -87,7 +87,7 @@ TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
     Found line("system.constraint.slot-line.direction[1]", "", true);
     ASSERT_TRUE(line.key) << line.message;
     EXPECT_EQ(line.with(0.5).a.constraints[0].direction[1], Quad(0.5));
-    // two springs: which one?
+    // two springs: the key is ambiguous
     EXPECT_NE(Found("system.force.spring.stiffness_N_per_m", "", true).message.find("no particle, constraint or force"),
               std::string::npos);
 }
@@ -98,7 +98,7 @@ TEST(NumericKey, OfLinksKeepsWhatAllLinksHaveInCommon) {
     EXPECT_TRUE(links.key->is_whole);
     const auto set = links.with(4);
     EXPECT_EQ(set.a.angle_deg, (std::vector<Quad>(4, 120)));
-    EXPECT_EQ(set.a.length_m, (std::vector<Quad>(4, 1)));  // they differed
+    EXPECT_EQ(set.a.length_m, (std::vector<Quad>(4, 1)));  // the lengths differed
     Found rods("system.links", "[system]\nlinks = 2\nrod_mass_kg = 0.5\ncenter_m = 0.3\n");
     EXPECT_EQ(rods.with(3).a.physical.rod_mass_kg, (std::vector<Quad>(3, Quad(1) / 2)));
     EXPECT_EQ(rods.with(3).a.physical.center_m, (std::vector<Quad>(3, parse_quad("0.3"))));
@@ -108,7 +108,7 @@ TEST(NumericKey, OfAStepTakesTheNearestThatDividesASample) {
     Found step("system.step_s", "[system]\nintegrator = \"rk4\"\n");
     ASSERT_TRUE(step.key) << step.message;
     EXPECT_TRUE(step.key->is_step);
-    EXPECT_EQ(step.with(1.0 / 1000).a.step_s, (Rational{1, 960}));  // 8 to a sample of 1/120 s
+    EXPECT_EQ(step.with(1.0 / 1000).a.step_s, (Rational{1, 960}));  // 8 steps in a sample of 1/120 s
     EXPECT_EQ(step.key->taken(Quad(1.0 / 1000), step.preset), Quad(1) / 960);
     EXPECT_FALSE(step.key->keeps_method);
 }

@@ -68,7 +68,7 @@ TEST(Physical, CaptionsStateTheDifference) {
 
 TEST(Physical, TheEnergyStripShowsEnergyWhereItIsNotKept) {
     EXPECT_EQ(scene_of("damped").preset.video.strips[1], StripKind::total_energy);
-    EXPECT_EQ(scene_of("rods").preset.video.strips[1], StripKind::energy);  // heavy links keep theirs
+    EXPECT_EQ(scene_of("rods").preset.video.strips[1], StripKind::energy);  // links with mass conserve it
 }
 
 class RefusedPhysical : public testing::TestWithParam<RefusedPreset> {};
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
             "presets/x.toml:3:10: [system] force cannot be combined with links with mass, friction or a drive, which "
             "need a plain chain"}));
 
-/// The angle errors of a preset's run, by the motion of another method.
+/// The largest angle error of a preset's run up to its horizon, against another method.
 double error_at_end(const Preset& preset) {
     const auto scene = make_scene(preset);
     auto truth = scene.a.motion;
@@ -121,7 +121,7 @@ double error_at_end(const Preset& preset) {
 }
 
 TEST(Physical, AnAccuracyIsMet) {
-    // random scenes of this kind; DOPPEL_ALL_SCENES=1: fifty
+    // random scenes of this kind; fifty with DOPPEL_ALL_SCENES=1
     const int scenes = std::getenv("DOPPEL_ALL_SCENES") ? 50 : 6;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(0, 1);

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Rates, PresetErrors, testing::ValuesIn(refused_rates));
 
 INSTANTIATE_TEST_SUITE_P(Video, PresetErrors, testing::ValuesIn(refused_video));
 
-/// Letters beyond ASCII are escaped.
+/// Non-ASCII characters are escaped.
 TEST(PresetErrors, AreShortAndUtf8WhateverTheValue) {
     for (const char* start : {"", "a", "ab", "abc"}) {
         std::string text(start);

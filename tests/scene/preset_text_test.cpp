@@ -1,4 +1,4 @@
-// What a preset is made of before it means anything: its file, its name, its bytes.
+// The text of a preset before it is interpreted: its file, its name, its bytes.
 #include "base/clock.hpp"
 #include "output/fixtures.hpp"
 #include "scene/resolved.hpp"
@@ -60,7 +60,7 @@ TEST(DrawnText, IsOfAtMostAThousandLetters) {
 }
 
 TEST(PresetText, EveryCharacterComesBackFromTheResolvedPreset) {
-    // in blocks, and each control character by itself
+    // in blocks, and each control character separately
     std::vector<std::string> texts;
     for (char32_t c = 0; c < 0xa0; ++c) texts.push_back("a" + utf8_of(c) + "b");
     for (char32_t c = 0; c <= 0x10ffff; ++c) {
@@ -166,7 +166,7 @@ TEST(PresetText, NumbersAreFoundSoonInALongText) {
     for (const auto& text : {before + lines + "]\n", one_line + "]\n"}) {
         const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
         const auto preset = read(text);
-        EXPECT_LT(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, 2);  // measured 0.1; minutes when counted anew for each
+        EXPECT_LT(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, 2);  // measured 0.1; minutes if counted again for each
         for (const auto& angle : preset.a.angle_deg) ASSERT_EQ(angle, Quad(3) / 2);
     }
 }
@@ -202,7 +202,7 @@ TEST(PresetText, DotsThatAreNoKeyMayBeMany) {
 }
 
 TEST(PresetText, WhatIsDrawnHasLettersOfAFont) {
-    // characters that Unicode leaves free: no system's font has them
+    // code points without a character: no font has them
     const std::string rest =
         ", which the built-in font lacks; it has Latin and Greek letters and signs of mathematics; no font of this "
         "system has them; give a font file in [video.fonts] text";

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-// Presets that are refused, and how: the reader's tests go through them, and those of the schema.
+// Presets with errors and their messages, for the tests of the reader and of the schema.
 
 namespace doppel {
 
-/// Its text, presets/x.toml, and the error's message, all of it.
+/// The text of presets/x.toml, and the complete message of its error.
 struct RefusedPreset {
     const char *text, *message;
 };
@@ -167,7 +167,7 @@ inline const std::vector<RefusedPreset> refused_video{
     RefusedPreset{"[video]\ndistance_range = [1, 2]",
                   "presets/x.toml:2:1: [video] distance_range must increase by 1 to 60 powers of ten; it is [1, 2]"}};
 
-// The text is that of [video]; the message follows the place of the key and "[video] ".
+// The text is that of [video]; the message continues after the key's line and column and "[video] ".
 
 inline const std::vector<RefusedPreset> refused_video_keys{
     RefusedPreset{

@@ -124,7 +124,7 @@ TEST(Numbers, EqualInDoubleNeedQuad) {
     EXPECT_NO_THROW(scene_of("butterfly", in_quad));
 }
 
-/// The error of what `in_a` and `in_b` say on top of `system`.
+/// The error of two sides with the keys `in_a` and `in_b`, which override `system`.
 std::pair<ExitCode, std::string> error_of_sides(const std::string& system, const std::string& in_a,
                                                 const std::string& in_b, const std::string& precision = "double") {
     const auto text = "[system]\nprecision = \"" + precision + "\"\n" + system + "\n[a]\n" + in_a + "\n[b]\n" + in_b;
@@ -175,7 +175,7 @@ TEST(Numbers, OfAnyKeyEqualInDoubleNeedQuad) {
             {spring, entry("particle", "u", "mass_kg = 1.0"), "particle \"u\" mass_kg"},
             // 1 ulp of degrees is less than one of radians
             {"", {"angle_deg = [120, 90]", "angle_deg = [120.00000000000001, 90]"}, "angle_deg[0]"},
-            // the length is that of the start on one side
+            // the length of one side equals the distance at the start
             {spring + "[[system.force]]\nkind = \"spring\"\nname = \"r\"\nfrom = \"u\"\nto = [0, 1]\n",
              {"", "[[b.force]]\nname = \"r\"\nlength_m = 1.000000000000000000001"},
              "spring \"r\" length_m"}};
@@ -188,7 +188,7 @@ TEST(Numbers, OfAnyKeyEqualInDoubleNeedQuad) {
             << message;
         EXPECT_EQ(error_of_sides(system, sides[0], sides[1], "quad").first, ExitCode::done) << name;
     }
-    // what has no effect in quad either is no loss
+    // equal sides are accepted if the difference has no effect in quad either
     EXPECT_EQ(error_of_sides("", "[a.pivot]\nphase_deg = 1", "[b.pivot]\nphase_deg = 2").first, ExitCode::done);
 }
 
@@ -203,7 +203,7 @@ TEST(Numbers, EqualInQuadAreRefused) {
               "x.toml:7:1: [b] angle_deg[0] must have at most 34 digits, the precision of quad; it has 40");
     const auto step = error_of_sides("", "step_s = 0.001", "step_s = 0.00100000000000000000001");
     EXPECT_NE(step.second.find("[b] step_s has too many digits"), std::string::npos) << step.second;
-    // zeros are none
+    // trailing zeros do not count
     EXPECT_EQ(error_of_sides("", "", "angle_deg = [91.00000000000000000000000000000000000000, 90]").first,
               ExitCode::done);
 }
@@ -226,7 +226,7 @@ TEST(ExclusiveKeys, TheCommandLineReplacesKeysOfAnotherKind) {
     const auto fixed = scene_of("whip", {"system.integrator=\"rk4\""});
     EXPECT_FALSE(fixed.preset.a.tolerance);
     EXPECT_EQ(fixed.a.step, default_step);
-    // a side of its own in the preset
+    // the preset gives one side its own method
     const auto mixed =
         make_scene(read_preset({"x", "x.toml", "[system]\nstep_s = \"1/600\"\n[b]\nintegrator = \"dop853\""}));
     EXPECT_EQ(mixed.a.step, (Rational{1, 600}));
@@ -281,7 +281,7 @@ Scene scene_from(const std::string& text) {
     return make_scene(read_preset({"x", "presets/x.toml", text}));
 }
 
-/// A bead of 1 kg on a rod from a fixed place 1 m beside it.
+/// A bead of 1 kg on a rod from a fixed point, 1 m to one side.
 const std::string bead = R"(
 [[system.particle]]
 name = "bead"
@@ -301,7 +301,7 @@ TEST(Size, OfOneParticleIsThatOfItsConstraint) {
     const std::atomic<bool> never = false;
     double worst = 0;
     for (long n = 0; n <= scene.samples; ++n) worst = std::max(worst, std::abs(*pair.next(never).energy_error_a));
-    EXPECT_LT(worst, 1e-7);  // measured 1.1e-8, of the method
+    EXPECT_LT(worst, 1e-7);  // measured 1.1e-8, the error of the method
 }
 
 TEST(Size, OfOneParticleMakesItsErrorsThoseOfTheSamePendulum) {
@@ -314,7 +314,7 @@ TEST(Size, OfOneParticleMakesItsErrorsThoseOfTheSamePendulum) {
 }
 
 TEST(SideRun, FailsAtTenTimesTheTotalEnergy) {
-    // it starts with E = 0: as much kinetic energy as its potential energy is below that of the pivot
+    // it starts with E = 0: its kinetic energy equals the depth of its potential energy below the pivot
     const double rate = std::sqrt(2 * 9.8 * std::cos(0.3)), degree = pi / 180;
     const auto scene = scene_from(fmt::format(R"(
 [scene]
@@ -330,7 +330,7 @@ step_s = "1/50"
     const std::atomic<bool> never = false;
     const auto motion = make_motion(scene.a.motion);
     EXPECT_NEAR(motion->observe().energy, 0, 1e-14);                // measured 1.8e-15
-    const double maximum = 10 * (2 * 9.8 * 1 + 0.5 * rate * rate);  // the potential range, and the energy of motion
+    const double maximum = 10 * (2 * 9.8 * 1 + 0.5 * rate * rate);  // the potential range, and the kinetic energy
     long sample = 0;
     for (; motion->observe().energy_change <= maximum; ++sample) motion->advance(never);
     SideRun run(scene, scene.a, 'a');
@@ -369,7 +369,7 @@ TEST(Distance, OverflowIsReportedWithSideAndQuantity) {
 }
 
 TEST(SideRun, NamesTheVelocityThatIsNoNumber) {
-    // so light a mass on so stiff a spring that its acceleration is beyond all numbers, its energy not
+    // a light mass on a stiff spring: its acceleration overflows, its energy does not
     const auto scene = scene_from(R"(
 [system]
 integrator = "euler"

@@ -1,4 +1,4 @@
-// What --set takes: values without quotes, elements of lists, entries by their names.
+// The values of --set: without quotes, elements of lists, entries by name.
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
@@ -104,7 +104,7 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
         {"system.gravity_m_per_s2[0]=1", "[system] gravity_m_per_s2[0] is not an element of a list of numbers"},
     };
     for (const auto& [given, words] : cases) {
-        const auto& set = given;  // clang 14 captures no structured binding
+        const auto& set = given;  // clang 14 cannot capture structured bindings
         const auto [code, message] = error_of([&] { with("[system]\nmodel = \"angles\"", {set}); });
         EXPECT_EQ(code, ExitCode::bad_input) << set;
         EXPECT_NE(message.find(words), std::string::npos) << message;
@@ -121,7 +121,7 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
         EXPECT_EQ(code, ExitCode::bad_input) << set;
         EXPECT_NE(message.find(words), std::string::npos) << message;
     }
-    // a list that is given whole drops what was given of it
+    // a complete list replaces its elements that were set before
     const auto twice = error_of([&] { with("", {"system.mass_kg[0]=2", "system.mass_kg=[1, 1]"}); }).second;
     EXPECT_NE(twice.find("would remove --set system.mass_kg[0]"), std::string::npos) << twice;
 }

@@ -1,4 +1,4 @@
-// A side that shows a measured swing, from a preset to a scene.
+// A side that shows a measured motion, from a preset to a scene.
 #include "base/text.hpp"
 #include "scene/captions.hpp"
 #include "scene/resolved.hpp"
@@ -85,7 +85,7 @@ TEST(SideTrack, CaptionsTellWhichIsMeasured) {
     EXPECT_EQ(scene.preset.video.strips[0], StripKind::distance);
 }
 
-/// "measured": what the fit left of this piece, 0.6 mrad rms in the first 2 s (docs/fit.md).
+/// "measured": the residual of the fit for this piece is 0.6 mrad rms in the first 2 s (docs/fit.md).
 TEST(SideTrack, TheSimulationStaysCloseToTheTrack) {
     const auto scene = scene_of("measured");
     PairRun run(scene);
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "nowhere/x.toml:2:1: [a.track] file / is a folder; a track is a CSV file"},
         RefusedText{"[a.track]\nfile = \"/dev/zero\"",
                     "nowhere/x.toml:2:1: [a.track] file /dev/zero is not a file; a track is a CSV file"},
-        // the place, and nothing of what stands there: a stranger's preset may name any file
+        // the line, but none of the file's text: a preset from somebody else may name any file
         RefusedText{"[a.track]\nfile = \"" + preset_file + "\"",
                     "nowhere/x.toml:2:1: [a.track] file " + preset_file + ":1: there is no column time_s"},
         RefusedText{"[system]\nlinks = 3\n" + track.substr(track.find("[a.track]")),
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{track + "[video]\nlayout = \"ensemble\"",
                     "nowhere/x.toml:6:1: [video] layout \"ensemble\" needs two simulations; a side shows a track"}));
 
-/// Numbers of friction and drive go from side a to side b, as those of the chain do.
+/// An ensemble interpolates the numbers of friction and drives from side a to side b, like those of the chain.
 TEST(Ensemble, GoesFromFrictionToFriction) {
     const auto scene = make_scene(preset_from(
         "[a]\njoint_viscous_N_m_s = [0, 0.25]\n[b]\njoint_viscous_N_m_s = [0.5, 0.75]\n[b.pivot]\namplitude_m = 1\n"

@@ -9,7 +9,7 @@
 
 namespace doppel {
 
-/// Overrides as --set gives them: {"video.size=[480, 270]", …}.
+/// Overrides in the form of --set: {"video.size=[480, 270]", …}.
 inline std::vector<Override> sets(const std::vector<std::string>& arguments) {
     std::vector<Override> all;
     for (const auto& argument : arguments) all.push_back(parse_set(argument));
@@ -20,7 +20,7 @@ inline Scene scene_of(const std::string& preset, const std::vector<std::string>&
     return make_scene(read_preset(find_preset(preset), sets(arguments)));
 }
 
-/// The error that `action` throws; fails where it throws none.
+/// The error that `action` throws; the test fails if it throws none.
 template <class Action>
 std::pair<ExitCode, std::string> error_of(Action&& action) {
     try {

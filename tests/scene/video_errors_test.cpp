@@ -44,7 +44,7 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
         EXPECT_EQ(video.pixel_format, PixelFormat::yuv420);
         EXPECT_EQ(video.crf, VideoSpec{}.crf);
         EXPECT_EQ(video.preset, VideoSpec{}.preset);
-        // but not what is asked for beside it
+        // but explicit keys beside it are not ignored
         for (const char* key :
              {"video.crf=20", "video.preset=\"slow\"", "video.pixel_format=\"yuv444p\"", "video.codec=\"vp9\""}) {
             const auto [code, message] = error_of([&] { read({set, key}); });
@@ -64,7 +64,7 @@ TEST(VideoErrors, APreviewIsAQuarterOfThePixelsUnlessTheCommandLineSaysOtherwise
         return read_preset({"x", "x.toml", text}, sets(arguments)).video;
     };
     const auto video = read({});
-    EXPECT_EQ(video.size, (Size{682, 384}));  // even
+    EXPECT_EQ(video.size, (Size{682, 384}));  // even numbers
     EXPECT_EQ(video.preset, "ultrafast");
     EXPECT_EQ(video.crf, 26);
     EXPECT_EQ(read({"video.size=[320, 180]"}).size, (Size{320, 180}));
@@ -72,7 +72,7 @@ TEST(VideoErrors, APreviewIsAQuarterOfThePixelsUnlessTheCommandLineSaysOtherwise
     EXPECT_EQ(read({"video.crf=30"}).crf, 30);
     EXPECT_EQ(read({"video.preview=false"}).size, (Size{1366, 768}));
     EXPECT_EQ(read({"video.size=[100, 100]", "video.preview=false"}).crf, 12);
-    // the resolved preset has what came of it, and is not halved again
+    // the resolved preset has the final size, which is not halved again
     const auto preset = read_preset({"x", "x.toml", "[video]\npreview = true"});
     EXPECT_EQ(read_preset({"x", "x.toml", resolved_toml(preset)}).video.size, (Size{960, 540}));
     EXPECT_EQ(read_preset({"x", "x.toml", "[video]\npreview = true\nlayout = \"portrait\""}).video.size,
@@ -86,14 +86,14 @@ TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
     const auto rate = [](const char* duration, const char* sampled = "scene.sample_hz=120") {
         return scene_of("butterfly", {"video.format=\"gif\"", duration, sampled, "system.integrator=\"taylor\""}).fps;
     };
-    EXPECT_EQ(rate("scene.duration_s=\"1201/120\""), (Rational{30, 1}));  // whatever the number of samples
+    EXPECT_EQ(rate("scene.duration_s=\"1201/120\""), (Rational{30, 1}));  // for any number of samples
     EXPECT_EQ(rate("scene.duration_s=30.03", "scene.sample_hz=\"24000/1001\""), (Rational{24000, 1001}));
     EXPECT_EQ(rate("scene.duration_s=10", "scene.sample_hz=5"), (Rational{5, 1}));  // all samples
     EXPECT_EQ(rate("scene.duration_s=10", "scene.sample_hz=45"), (Rational{45, 2}));
     EXPECT_EQ(rate("scene.duration_s=10", "scene.sample_hz=100"), (Rational{25, 1}));
 }
 
-// Unchecked, such a clock overflowed: "broke down by t = 12.4787 s" in a run of 0.01 s.
+// Without the check, the clock overflowed: a run of 0.01 s was said to fail at t = 12.4787 s.
 TEST(VideoErrors, FractionsWhoseProductsWouldLeave64BitsAreRefused) {
     const auto message = [](std::vector<std::string> more) {
         more.emplace_back("system.integrator=\"taylor\"");

@@ -14,7 +14,7 @@ double speed(const Bob<double>& bob) {
     return std::hypot(bob.vx, bob.vy);
 }
 
-/// How far each link is turned against the one before, rad, in the root mean square.
+/// The root mean square of the angles between adjacent links, rad.
 double bend(const Bobs<double>& bobs) {
     double sum = 0;
     for (std::size_t i = 1; i < bobs.size(); ++i) sum += std::pow(bobs[i].theta - bobs[i - 1].theta, 2);
@@ -43,7 +43,7 @@ TEST(Whip256, IsSmoothUntilItCracksAndThenDiverges) {
     EXPECT_GT(pair.other_cpu_s(), 0) << "its sides are large enough for two threads";
 }
 
-/// A small pair is stepped on one thread; which one it is makes no difference to any number.
+/// Both pendulums of a small pair run on one thread; the assignment does not change any number.
 TEST(Whip256, GivesTheSameNumbersOnTwoThreads) {
     const auto scene = scene_of("whip-256");
     PairRun pair(scene);
