@@ -1,4 +1,4 @@
-// The script "doppel" of a checkout, where it cannot build.
+// The script "doppel" of a checkout that cannot build.
 #include "cli/sandbox.hpp"
 
 namespace doppel {
@@ -7,7 +7,7 @@ namespace checkout_test {
 namespace fs = std::filesystem;
 using namespace test;
 
-/// A checkout in which nothing is wanted from the system and nothing is built yet.
+/// A checkout that requires no packages of the system, not yet built.
 fs::path checkout() {
     const auto top = fresh_folder();
     fs::copy_file(fs::path(DOPPEL_SOURCE_DIR) / "doppel", top / "doppel");
@@ -18,7 +18,7 @@ fs::path checkout() {
 }
 
 void expect_refused(const Outcome& result, const std::string& reason) {
-    EXPECT_EQ(result.code, 4) << result.err;  // 1 would mean that pictures differ
+    EXPECT_EQ(result.code, 4) << result.err;  // 1 means that pictures differ
     EXPECT_TRUE(one_line(result.err)) << result.err;
     EXPECT_NE(result.err.find("/build/release cannot be written: " + reason + "; "), std::string::npos) << result.err;
 }

@@ -22,7 +22,7 @@ doppel_add_golden_test(NAME swing PRESET mine.toml FRAMES 0:2 SIZE 160x90 GOLDEN
 doppel_add_golden_test(NAME chart PRESET fig6 FIGURE SIZE 160x90 GOLDEN charts SET scene.duration_s=0.5)
 )";
 
-/// A project of somebody's beside an installed Doppel that was moved after it was installed.
+/// A user's project with an installed Doppel that was moved after its installation.
 class CmakePackage : public testing::Test {
 protected:
     void SetUp() override {

@@ -19,7 +19,7 @@ using test::doppel;
 using test::Element;
 using test::fresh_folder;
 
-/// The pictures of a page, decoded: those of one kind, in order.
+/// The decoded pictures of one kind on a page, in order.
 std::vector<Picture> pictures_of(const Element& page, const std::string& kind, const fs::path& scratch) {
     constexpr std::string_view start = "data:image/png;base64,";
     std::vector<Picture> pictures;

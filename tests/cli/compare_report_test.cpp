@@ -26,11 +26,11 @@ void make(const fs::path& path, const Picture& picture) {
     write_png(path, picture);
 }
 
-/// Names that markup, terminals and XML would take amiss; the last is U+FFFE, U+FFFF and a byte that is no UTF-8.
+/// Names that are special in markup, terminals and XML; the last is U+FFFE, U+FFFF and a byte that is not UTF-8.
 const std::string sharp = "<a> & \"b' --> .png", steered = "line\nnext\x1b[1m\x01.png",
                   odd = "\xef\xbf\xbe\xef\xbf\xbf\xff\xc3\xa4.png";
 
-/// Two pass, two differ (one in size), two are missing, one cannot be read, and all have unlike names.
+/// Two pass, two differ (one in size), two are missing, one cannot be read; each has a different name.
 void make_folders(const fs::path& folder) {
     for (const auto& name : {sharp, steered, odd, std::string("4.png"), std::string("5.png"), std::string("6.png")})
         make(folder / "one" / name, plain(10));
@@ -146,7 +146,7 @@ TEST(CompareReports, ReplaceNoInputAndNoOtherFileOfDoppels) {
 TEST(CompareReports, DoNotReadTheManifestsOfTheirFolder) {
     const auto folder = fresh_folder();
     make(folder / "one.png", plain(10));
-    // a file system that keeps the times of access notes that the first reader came
+    // a file system that records access times shows whether the file was read
     ASSERT_EQ(test::shell(folder, "echo '{}' >other.json; touch -a -d 2001-01-01 other.json").code, 0);
     const auto result = test::shell(folder,
                                     "\"$DOPPEL\" compare one.png one.png --junit r.xml --html r.html && "

@@ -40,7 +40,7 @@ TEST(Compare, PassesDiffersAndShowsTheDifference) {
     EXPECT_EQ(doppel(folder, {"compare", "broken.png", "two/calm/frames/000000.png"}).code, 4);
 }
 
-/// A folder of pictures of one colour each; name and red.
+/// A folder of pictures, each of one colour; `pictures` has their names and red values.
 void make_pictures(const fs::path& folder, const std::vector<std::pair<std::string, int>>& pictures) {
     fs::create_directories(folder);
     for (const auto& [name, red] : pictures) {
@@ -81,7 +81,7 @@ TEST(Compare, RemovesAnOldDifferenceWhenThePicturePasses) {
     ASSERT_EQ(doppel(folder, {"compare", "one", "two"}).code, 1);
     ASSERT_TRUE(fs::exists(folder / "out/compare/1.diff.png"));
     make_pictures(folder / "two", {{"1.png", 10}, {"2.png", 90}});
-    // somebody's own picture, and a link to one
+    // a user's own picture, and a link to a picture
     make_pictures(folder / "out/compare", {{"3.diff.png", 0}});
     fs::create_symlink("2.diff.png", folder / "out/compare/4.diff.png");
     for (const char* side : {"one", "two"}) make_pictures(folder / side, {{"3.png", 10}, {"4.png", 10}});
@@ -107,7 +107,7 @@ TEST(Compare, ReplacesDifferencePicturesAlone) {
 TEST(Compare, ReportsUnreadablePictures) {
     const auto folder = fresh_folder();
     make_pictures(folder, {{"1.png", 10}});
-    const std::string name(300, 'n');  // more than a file system has
+    const std::string name(300, 'n');  // longer than file systems allow
     const auto refused = doppel(folder, {"compare", "1.png", name});
     EXPECT_EQ(refused.code, 4);
     EXPECT_EQ(refused.err, "doppel: " + name + ": cannot be read: File name too long\n");

@@ -24,7 +24,7 @@ Lines lines_of(const std::string& text) {
     return lines;
 }
 
-/// Folder with "doppel", which completes, and writes the arguments of other calls to the file "args".
+/// A folder with "doppel", which completes; for other commands it writes the arguments to the file "args".
 fs::path folder_with_doppel() {
     const auto folder = fresh_folder();
     fs::create_directory(folder / "bin");
@@ -35,7 +35,7 @@ fs::path folder_with_doppel() {
     return folder;
 }
 
-/// COMPREPLY for the words, of which the last is completed.
+/// COMPREPLY for these words; the last word is completed.
 Lines completed(const fs::path& folder, const std::string& words) {
     write_bytes(folder / "line", "doppel " + words);
     const std::string script =
@@ -92,7 +92,7 @@ TEST(Completion, KnowsKeysAndTheirValues) {
               (Lines{"ensemble", "overlay", "phase", "portrait", "side-by-side", "single"}));
     EXPECT_EQ(completed(folder, "render calm --set video.layout=ov"), Lines{"overlay"});
     EXPECT_EQ(completed(folder, "render calm --set 'video.layout=ov"), Lines{"video.layout=overlay"});
-    EXPECT_EQ(completed(folder, "render calm --set 'video.layo").size(), 6);  // a key alone would close the quote
+    EXPECT_EQ(completed(folder, "render calm --set 'video.layo").size(), 6);  // the key alone would close the quote
     EXPECT_EQ(completed(folder, "render calm --set b.mass_kg="), Lines{"\\[1,\\ 1\\]"});
     EXPECT_EQ(completed(folder, "render calm --set system.integrator=").size(), methods().size());
     EXPECT_EQ(completed(folder, "render calm --set b.integrator=ta"), Lines{"taylor"});
@@ -104,7 +104,7 @@ TEST(Completion, KnowsKeysAndTheirValues) {
               (Lines{"time_s,a_theta1_rad", "time_s,a_theta2_rad"}));
     EXPECT_EQ(completed(folder, "simulate calm --columns di"), Lines{"distance"});
     EXPECT_EQ(completed(folder, "render calm --columns=di"), Lines{"distance"});
-    // of a figure: those of its kind
+    // the values of a figure's kind
     EXPECT_EQ(completed(folder, "figure fig2-right --set grid.x.spacing="), (Lines{"linear", "logarithmic"}));
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
     EXPECT_EQ(completed(folder, "check flip-map --set grid.x.poi"), Lines{"grid.x.points="});
@@ -120,7 +120,7 @@ TEST(Completion, RefusesAnUnknownShell) {
     EXPECT_NE(result.err.find("tcsh"), std::string::npos);
 }
 
-/// Processor time of the programs that have ended, s.
+/// CPU time of the finished child processes, s.
 double spent_by_children() {
     rusage spent{};
     getrusage(RUSAGE_CHILDREN, &spent);
@@ -130,11 +130,11 @@ double spent_by_children() {
     return seconds(spent.ru_utime) + seconds(spent.ru_stime);
 }
 
-/// By its own time, whatever else the machine does.
+/// Measures CPU time, so that other load on the machine does not matter.
 TEST(Completion, IsFast) {
     const auto folder = fresh_folder();
 #ifdef DOPPEL_SANITIZE
-    const double maximum = 1;  // measured 0.1 s, with another build beside it 0.25
+    const double maximum = 1;  // measured 0.1 s; 0.25 s during another build
 #else
     const double maximum = 0.2;  // measured 0.02 s
 #endif
@@ -147,10 +147,10 @@ TEST(Completion, IsFast) {
     EXPECT_LT(best, maximum);
 }
 
-/// A bash on a terminal.
+/// A bash in a pseudoterminal.
 class Terminal {
 public:
-    /// Throws where the machine has no terminal to give.
+    /// Throws if no pseudoterminal is available.
     explicit Terminal(const fs::path& folder) {
         child_ = forked(forkpty(&side_, nullptr, nullptr, nullptr));
         if (child_ == 0) {
@@ -170,7 +170,7 @@ public:
         wait_for(child_);
     }
     void type(const std::string& keys) { EXPECT_EQ(write(side_, keys.data(), keys.size()), ssize_t(keys.size())); }
-    /// What it says until there is nothing more for a while after the words.
+    /// The output up to the words and until a short pause after them.
     std::string until(const std::string& words) {
         std::string said;
         pollfd wanted{.fd = side_, .events = POLLIN, .revents = 0};

@@ -1,4 +1,4 @@
-// What other programs rely on: JSON, --list-outputs, -o -, exit codes.
+// Interfaces to other programs: JSON, --list-outputs, -o -, exit codes.
 #include "cli/sandbox.hpp"
 
 #include <nlohmann/json.hpp>
@@ -103,8 +103,8 @@ TEST(Contracts, ListedOutputsAreTheWrittenOnes) {
                 "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"flip_time\"\n[grid.x]\npoints = "
                 "8\n[grid.y]\nkey = \"theta2_deg\"\npoints = 8\n");
     const Words brief{"--set", "scene.duration_s=0.1"}, small{"--size", "160x90"};
-    const Words chart{"--size", "800x450"};  // with room for all its words
-    doppel(folder, {"--version"});           // makes the files that it writes to
+    const Words chart{"--size", "800x450"};  // with space for all its text
+    doppel(folder, {"--version"});           // creates the files of its output
     const std::vector<Words> commands{with({"simulate", "calm", "triple"}, brief),
                                       with(with({"render", "calm"}, brief), small),
                                       with({"render", "sheet.toml", "-o", "films/of mine"}, small),
@@ -132,7 +132,7 @@ TEST(Contracts, ListedOutputsAreTheWrittenOnes) {
 TEST(Contracts, OneFileGoesToStandardOutputAndNothingElse) {
     const auto folder = fresh_folder();
     const Words brief{"--set", "scene.duration_s=0.1"}, small{"--size", "160x90"};
-    const Words chart{"--size", "800x450"};  // with room for all its words
+    const Words chart{"--size", "800x450"};  // with space for all its text
     struct Case {
         Words command;
         std::string file;
@@ -145,7 +145,7 @@ TEST(Contracts, OneFileGoesToStandardOutputAndNothingElse) {
         for (const char* style : {"none", "plain", "json"}) {
             fs::remove_all(folder / "out");
             fs::create_directory(folder / "tmp");
-            doppel(folder, {"--version"});  // makes the files that it writes to
+            doppel(folder, {"--version"});  // creates the files of its output
             const auto before = listing(folder);
             const auto streamed =
                 doppel(folder, with(command, {"-o", "-", "--progress", style}), [] { setenv("TMPDIR", "tmp", 1); });

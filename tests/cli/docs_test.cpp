@@ -1,4 +1,4 @@
-// What the pages say that a command can tell: they are run, and must still say so.
+// Statements of the pages that commands can check: the commands run, and their output must agree.
 #include "cli/sandbox.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::vector<fs::path> pages() {
     return all;
 }
 
-/// Every match of `pattern` in a page runs as `run` says, which has its groups.
+/// Calls run(page, groups) for every match of `pattern` in every page.
 template <class Run>
 void on_every(const char* pattern, const Run& run) {
     const std::regex what(pattern);
@@ -50,9 +50,9 @@ TEST(Docs, ExamplesPrintTheShownLines) {
     });
 }
 
-/// The commands of a page, as a reader types them one after another into one folder. So that they take seconds, films
-/// that are not cut are two frames long and pictures without a size small; figures that take minutes only list their
-/// files. What takes other programs (GNU parallel, Slurm) has its own tests (Recipe).
+/// The commands of a page, run one after another in one folder. To save time, films that are not cut have two frames,
+/// pictures without a size are small, and figures that take minutes only list their files. Commands with other
+/// programs (GNU parallel, Slurm) have their own tests (Recipe).
 class PageOfCommands : public testing::TestWithParam<fs::path> {
 protected:
     static std::string commands_of(const fs::path& page) {
@@ -64,7 +64,7 @@ protected:
         return all;
     }
 
-    /// ./doppel: the program, its commands made short.
+    /// ./doppel: the program with its commands shortened.
     static constexpr const char* shortened = R"(#!/bin/bash
 case "$1 $*" in
     test*|package*) exit 0 ;;

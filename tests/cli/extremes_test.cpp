@@ -1,4 +1,4 @@
-// Requests at and beyond the edge of sense, to the real program.
+// Extreme and invalid requests to the real program.
 #include "cli/sandbox.hpp"
 
 #include <fmt/ranges.h>
@@ -19,13 +19,13 @@ std::vector<std::string> set(std::initializer_list<const char*> values) {
     return line;
 }
 
-/// A request and its answer: 0 it is served, 2 refused with a place, 3 the method fails.
+/// A request and its exit code: 0 done, 2 rejected with the place of the error, 3 the method fails.
 struct Request {
     int code;
     std::vector<std::string> line;
 };
 
-/// The answer must be as said, soon, and nothing half done.
+/// The exit code must be as expected, within the time limit, and without partial files.
 void expect_answer(const std::string& command, const Request& requested) {
     const auto& request = requested.line;
     const auto folder = fresh_folder();
@@ -43,7 +43,7 @@ void expect_answer(const std::string& command, const Request& requested) {
     EXPECT_EQ(code, requested.code) << what << "\n" << message;
     for (const auto& name : made) EXPECT_FALSE(name.ends_with(".part") || name.ends_with(".lock")) << what << name;
     if (code == 0) {
-        std::istringstream warnings(message);  // at most that a step is too coarse
+        std::istringstream warnings(message);  // only that a step is too coarse
         for (std::string warning; std::getline(warnings, warning);)
             EXPECT_NE(warning.find("% of its range"), std::string::npos) << what << "\n" << message;
         EXPECT_TRUE(made.contains("butterfly/butterfly.csv")) << what;
@@ -54,7 +54,7 @@ void expect_answer(const std::string& command, const Request& requested) {
     const bool names_place =
         says("--set ") || says("--size ") || says("--frames ") || says("butterfly.toml") || says(": side ");
     EXPECT_TRUE(code == 3 || names_place) << what << "\n" << message;
-    // what was right up to there is kept
+    // the valid samples are kept
     EXPECT_EQ(made.contains("butterfly/butterfly.failed.csv"), says("the samples before are in")) << what << message;
     EXPECT_TRUE(says("the samples before are in") || made.empty()) << what << message;
 }

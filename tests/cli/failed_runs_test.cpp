@@ -1,4 +1,4 @@
-// What goes wrong around a run: disks, signals, neighbours, files that change. With the real program.
+// Failures around a run: full disks, signals, other processes, changed files. With the real program.
 #include "cli/sandbox.hpp"
 #include "output/decoded.hpp"
 #include "output/png.hpp"
@@ -22,7 +22,7 @@ const std::vector<std::string> small{"--size", "64x64", "--progress", "none"};
 const std::vector<std::string> quick{"--set", "system.integrator=\"taylor\"", "--set", "scene.duration_s=0.1"};
 const std::vector<std::string> endless{"--set", "scene.duration_s=3600"};
 
-/// All that a whole run writes of 12 + 1 frames.
+/// All files that a complete run of 12 + 1 frames writes.
 Names whole_run(const std::string& format) {
     Names names{"butterfly", "butterfly/butterfly.csv", "butterfly/butterfly.json"};
     if (format == "mp4") names.insert("butterfly/butterfly.mp4");
@@ -47,7 +47,7 @@ std::vector<std::string> film(const std::string& format, const std::vector<std::
     return with(with(with({"render", "butterfly", "--format", format}, small), quality), more);
 }
 
-/// Starts a film that does not end, and returns where it is writing its pictures.
+/// Starts a very long film, and returns once it writes its pictures, with the process id.
 pid_t start_endless(const fs::path& folder, const std::string& format) {
     const auto child = start(folder, film(format, endless));
     const auto part = folder / "out/butterfly/.doppel-run" / (format == "mp4" ? "butterfly.mp4" : "frames");
@@ -61,7 +61,7 @@ TEST(FailedRuns, AFullDiskIsReportedAndKeepsOnlyNamedFinishedFiles) {
     const auto folder = fresh_folder();
     if (!can_mount(folder))
         GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDiskAndLeavesNothing stands in";
-    // a disk of so many pages, or so few files, that the run stops at another place each time; then one where it fits
+    // a disk with so few pages or files that the run stops at different places; the last one is large enough
     const std::string script = R"sh(set -u; mkdir -p out
         for limit in size=4k size=12k size=32k nr_inodes=2 nr_inodes=4 nr_inodes=5 size=16m; do
             mount -t tmpfs -o $limit none out || exit 77
@@ -155,7 +155,7 @@ TEST(FailedRuns, OldFramesNeverMixWithNew) {
     const auto folder = fresh_folder();
     ASSERT_EQ(doppel(folder, film("png", {"--set", "scene.duration_s=0.5"})).code, 0);  // 61 frames
     write_bytes(folder / "out/butterfly/frames/000007.png", "no picture");
-    EXPECT_EQ(doppel(folder, film("png", quick)).code, 4);  // somebody changed one
+    EXPECT_EQ(doppel(folder, film("png", quick)).code, 4);  // a changed picture is not replaced
     ASSERT_EQ(doppel(folder, with(film("png", quick), {"--force"})).code, 0);
     expect_whole(folder / "out", "png");
 }
@@ -171,7 +171,7 @@ TEST(FailedRuns, OldFramesStayWhereTheNewRunFails) {
         return all;
     };
     before = contents();
-    // interrupted, killed, on a full disk
+    // runs that were interrupted or killed, or that ran on a full disk
     auto child = start_endless(folder, "png");
     kill(child, SIGTERM);
     EXPECT_EQ(wait_for(child), 143);
@@ -241,7 +241,7 @@ TEST(FailedRuns, ASecondRunIsRefusedWhileTheFirstIsWriting) {
     EXPECT_TRUE(fs::exists(folder / "out/butterfly/.doppel-run/butterfly.mp4"));
     kill(first, SIGKILL);
     wait_for(first);
-    EXPECT_EQ(doppel(folder, film("png", quick)).code, 0);  // no stale lock
+    EXPECT_EQ(doppel(folder, film("png", quick)).code, 0);  // no lock remains
     expect_whole(folder / "out", "png");
 }
 
@@ -285,10 +285,10 @@ TEST(FailedRuns, APresetIsReadOnce) {
     EXPECT_TRUE(calm == gone);
 }
 
-/// The most memory a run had, kB.
+/// The maximum resident memory of a run, kB.
 long peak_memory(const fs::path& folder, const std::vector<std::string>& arguments) {
     const auto child = start(folder, arguments, [] {
-        // which otherwise keeps what was freed, some of it a thread
+        // otherwise the sanitizer keeps freed memory, some of it for each thread
         setenv("ASAN_OPTIONS", "quarantine_size_mb=0:thread_local_quarantine_size_kb=0", 1);
     });
     int status = 0;
@@ -307,8 +307,8 @@ TEST(FailedRuns, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
             if (command == "render") line = with(line, {"--size", "64x64", "--quality", "draft"});
             return peak_memory(folder, line);
         };
-        // Frames in flight differ from run to run, by 1 MB, with sanitizers on a busy machine by more than 3: what
-        // stays too large in four pairs of runs is kept. Measured 0.1 MB of simulate, 8.6 of render: 0.7 kB a sample.
+        // Frames in flight vary by 1 MB between runs, with sanitizers on a busy machine by more than 3: only a growth
+        // that is too large in four pairs of runs counts. Measured 0.1 MB of simulate, 8.6 of render: 0.7 kB a sample.
         const long maximum = command == "render" ? 3000 + 12'000 : 3000;  // kB
         long growth = peak(120) - peak(20);
         for (int again = 0; again < 3 && growth >= maximum; ++again) growth = std::min(growth, peak(120) - peak(20));

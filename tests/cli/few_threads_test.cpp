@@ -1,4 +1,4 @@
-// Where the system gives the program only some threads, or none.
+// The system allows the program only a few threads, or none.
 #include "cli/sandbox.hpp"
 
 #include <fmt/ranges.h>
@@ -8,7 +8,7 @@ namespace few_threads_test {
 
 using namespace test;
 
-/// The program's answer where it may start `count` threads and no more.
+/// The program's exit code if it may start at most `count` threads.
 int code_with_threads(int count, const std::filesystem::path& folder, const std::vector<std::string>& line) {
     const auto prepare = [&] {
         setenv("LD_PRELOAD", DOPPEL_FEW_THREADS, 1);
@@ -16,7 +16,7 @@ int code_with_threads(int count, const std::filesystem::path& folder, const std:
         setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);
     };
     return wait_at_most(start(folder, line, prepare),
-                        60);  // s; measured 0.3, and for ever where a thread is waited for
+                        60);  // s; measured 0.3, and infinite if the program waits for a thread that did not start
 }
 
 TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
@@ -54,7 +54,7 @@ TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
 }
 
 TEST(FewThreads, AreEnoughForPictures) {
-    // one of the three that would compress
+    // one instead of three threads that compress
     const auto folder = fresh_folder();
     const std::vector<std::string> line{"render", "butterfly", "--size",   "128x72", "--frames",   "0:20",
                                         "--jobs", "3",         "--format", "png",    "--progress", "none"};

@@ -26,11 +26,11 @@ using test::with;
 const std::vector<std::string> small{"--set",  "grid.x.to=9", "--set",      "scene.duration_s=0.5",
                                      "--size", "320x180",     "--progress", "none"};
 
-/// A map of some 2 to 10 s of one core.
+/// A map that takes about 2 to 10 s on one core.
 const std::vector<std::string> long_map{"figure", "flip-map",          "--set",  "grid.x.points=900",
                                         "--set",  "grid.y.points=900", "--size", "320x320"};
 
-/// Waits for a file.
+/// Waits until the file exists.
 bool appears(const fs::path& file) {
     for (int i = 0; i < 20'000 && !fs::exists(file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return fs::exists(file);
@@ -43,7 +43,7 @@ bool contains(const std::string& text, const std::string& words) {
 TEST(FigureProgram, DrawsByNameAndByPath) {
     const auto folder = fresh_folder();
     test::write_bytes(folder / "mine.toml", bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/figures/fig4-right.toml"));
-    // one thread: of two, the second figure may be ready first
+    // one thread: with two, the second figure may finish first
     const auto result = doppel(
         folder, with({"figure", "fig2-right", "./mine.toml", "-o", "figures", "--scale", "2", "--jobs", "1"}, small));
     EXPECT_EQ(result.code, 0) << result.err;
@@ -61,7 +61,7 @@ TEST(FigureProgram, IsChecked) {
     const auto check = doppel(folder, with({"check", "fig2-right"}, {"--set", "grid.x.to=9"}));
     EXPECT_EQ(check.code, 0) << check.err;
     EXPECT_TRUE(contains(check.out, "10 pairs")) << check.out;
-    // a row of exponents takes more than the second that it may take
+    // one row of exponents takes longer than the one second allowed for the estimate
     const auto map = doppel(folder, {"check", "parting-map", "--set", "grid.quantity=exponent"});
     EXPECT_TRUE(contains(map.out, "takes  about ")) << map.out << map.err;
     EXPECT_FALSE(fs::exists(folder / "out"));
@@ -91,18 +91,18 @@ TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
     EXPECT_EQ(wait_for(child), 130);
     EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1));  // measured 0.05 s
     EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
-    // nothing of what was not complete, but what the same command resuming from where that took long
+    // no incomplete file, except the record for resuming
     for (const auto& name : test::listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
     EXPECT_TRUE(fs::exists(folder / "out/fig6/fig6.png")) << "all of what was";
 }
 
-/// A long run: what it has done stays, whatever ends it.
+/// A long run keeps its results, whatever stops it.
 class LongFigure : public testing::Test {
 protected:
     void SetUp() override {
         folder_ = fresh_folder();
         child_ = start(folder_, with(long_map, {"--jobs", "1", "--progress", "none"}));
-        // held up in the middle until it counts as long: 2 s
+        // stopped for 2 s, so that it counts as a long run
         for (int i = 0; i < 60'000 && cpu_s() < 0.5; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         kill(child_, SIGSTOP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2050));
@@ -118,7 +118,7 @@ protected:
         if (clock_getcpuclockid(child_, &clock) != 0 || clock_gettime(clock, &time) != 0) return 1e9;
         return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
     }
-    /// "out/flip-map/flip-map.c0ffee123456.resume"; empty where there is none.
+    /// "out/flip-map/flip-map.c0ffee123456.resume"; empty if there is none.
     static std::string record_in(const fs::path& folder) {
         std::error_code ignored;
         for (const auto& entry : fs::directory_iterator(folder / "out/flip-map", ignored))
@@ -159,7 +159,7 @@ TEST_F(LongFigure, ReportsItsRecordAfterCtrlC) {
     EXPECT_TRUE(contains(said, "doppel: interrupted; ")) << said;
     EXPECT_TRUE(contains(said, "kept in " + record_ + ": the same command resumes")) << said;
     expect_record_alone();
-    // another preset does not, and leaves it as it is
+    // another preset does not resume from it, and does not change it
     const auto bytes = bytes_of(folder_ / record_);
     const auto other = doppel(folder_, with(long_map, {"--set", "scene.duration_s=0.1", "--progress", "plain"}));
     EXPECT_EQ(other.code, 0) << other.err;
@@ -167,7 +167,7 @@ TEST_F(LongFigure, ReportsItsRecordAfterCtrlC) {
     EXPECT_EQ(bytes_of(folder_ / record_), bytes);
 }
 
-// Commands of README.md and docs/figures.md, as shells run them.
+// Commands of README.md and docs/figures.md, run in a shell.
 
 const std::string settings = " --set grid.x.to=20 --set scene.duration_s=0.5 --size 320x180 --progress none";
 
@@ -197,7 +197,7 @@ TEST(Recipe, SlurmArray) {
 
 TEST(Recipe, GnuParallel) {
     const auto folder = fresh_folder();
-    // xargs where there is no parallel: it starts the same commands, {} replaced
+    // xargs if there is no GNU parallel: it runs the same commands, with {} replaced
     const auto jobs = shell(folder,
                             "if command -v parallel >/dev/null; then\n"
                             "    parallel --will-cite -j 4 \"$DOPPEL\" figure fig2-right --shard {}/8" +

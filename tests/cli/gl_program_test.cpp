@@ -20,13 +20,13 @@ using test::with;
 
 const std::vector<std::string> film{"--set", "scene.duration_s=0.1", "--size", "160x90", "--format",
                                     "png",   "--progress",           "none"};
-/// What drew, by the manifest of OUT/NAME/.
+/// The OpenGL library that drew, from the manifest in OUT/NAME/.
 std::string drawn_by(const fs::path& out, const std::string& name) {
     const auto manifest = nlohmann::json::parse(bytes_of(out / name / (name + ".json")));
     return manifest["libraries"]["gl"];
 }
 
-/// A folder in which the dynamic linker finds `libraries` first, each of them spoilt.
+/// A folder where the dynamic linker finds `libraries` first, each of them invalid.
 fs::path spoil(const fs::path& folder, const std::vector<std::string>& libraries) {
     fs::create_directory(folder / "spoilt");
     for (const auto& library : libraries) test::write_bytes(folder / "spoilt" / library, "no library");

@@ -24,7 +24,7 @@ TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
                          more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
     };
     const auto film = run("PRESETS='\n  calm '");
-    EXPECT_EQ(film.code, 2) << film.err;  // there is no golden yet
+    EXPECT_EQ(film.code, 2) << film.err;  // there is no golden picture yet
     fs::create_directories(folder / "golden");
     fs::copy(folder / "drawn here/actual/calm/frames", folder / "golden/calm");
     EXPECT_EQ(run("PRESETS=calm").code, 0);
@@ -38,17 +38,17 @@ TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
     const auto junit = test::XmlReader(bytes_of(folder / "drawn here/calm.xml")).document();
     EXPECT_EQ(junit["tests"] + junit["failures"], "21");
 
-    EXPECT_EQ(run("FIGURES=fig6 FIGURE_SETS='video.layout=\"overlay\"'").code, 2);  // no key of a figure
+    EXPECT_EQ(run("FIGURES=fig6 FIGURE_SETS='video.layout=\"overlay\"'").code, 2);  // not a key of a figure
     EXPECT_EQ(run("FIGURES=fig6").code, 2);
     fs::copy(folder / "drawn here/actual/fig6/fig6.png", folder / "golden/fig6.png");
-    EXPECT_EQ(run("PRESETS=calm FIGURES=fig6").code, 1);  // the film alone differs
+    EXPECT_EQ(run("PRESETS=calm FIGURES=fig6").code, 1);  // only the film differs
     const auto summary = bytes_of(folder / "summary");
     for (const char* line :
          {"| calm | passes |", "| calm | differs |", "| fig6 | failed (exit code 2) |", "| fig6 | passes |"})
         EXPECT_NE(summary.find(line), std::string::npos) << summary;
 }
 
-/// What `pattern` has in its first brackets and in its second, at each place where it fits.
+/// The first and second group of `pattern` for each match.
 std::map<std::string, std::string> pairs_in(const std::string& text, const std::regex& pattern) {
     std::map<std::string, std::string> found;
     for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
@@ -86,7 +86,7 @@ TEST(GoldenScript, TheExampleOfTheDocumentationPasses) {
 
 TEST(GoldenScript, ReportsWhatItCannotDraw) {
     const auto folder = test::fresh_folder();
-    // in place of the program, one that draws nothing, says what it would and reads its input
+    // a replacement for the program that draws nothing, prints its arguments and reads its input
     test::write_bytes(folder / "draws", "#!/bin/sh\ncat\necho \"ran $1 $2\"\n");
     test::write_bytes(folder / "fails", "#!/bin/sh\nexit 1\n");
     for (const char* program : {"draws", "fails"}) fs::permissions(folder / program, fs::perms::owner_all);

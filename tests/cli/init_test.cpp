@@ -29,14 +29,14 @@ TEST(Init, WritesAPresetThatIsCheckedAndRendered) {
     const auto film = doppel(folder, {"render", "mine.toml", "--set", "scene.duration_s=0.1", "--size", "160x90"});
     EXPECT_EQ(film.code, 0) << film.err;
     EXPECT_TRUE(fs::exists(folder / "out/mine/mine.mp4"));
-    // butterfly by an accuracy, and not by the study's method
+    // butterfly with an accuracy instead of the study's method
     const auto preset = read(bytes_of(folder / "mine.toml"));
     EXPECT_EQ(preset.a.accuracy, parse_quad("1e-3"));
     const auto again = read_preset(find_preset("butterfly"), {parse_set("system.accuracy=1e-3")});
     EXPECT_EQ(resolved_pair(preset), resolved_pair(again));
 }
 
-/// The keys that stand as comments, and cannot be taken into use alone.
+/// The keys in comments that cannot be uncommented alone.
 std::set<std::string> refused_keys(const std::string& whole, const std::function<void(const std::string&)>& read_text,
                                    std::size_t& keys) {
     std::istringstream lines(whole);
@@ -62,7 +62,7 @@ TEST(Init, EachKeyCanBeUncommented) {
     std::size_t keys = 0;
     const auto refused = refused_keys(bytes_of(folder / "mine.toml"), read, keys);
     EXPECT_GT(keys, 50u);
-    // those that are for other values of other keys
+    // keys that require other values of other keys
     EXPECT_EQ(refused, (std::set<std::string>{"codec", "integrator", "members", "phase", "phase_link", "position_bits",
                                               "speed_ease_s", "step_s", "tolerance"}));
 }
@@ -84,7 +84,7 @@ TEST(Init, WritesAPresetOfEveryKindOfFigure) {
                 const auto key = std::string(field.key) + " = ";
                 EXPECT_TRUE(text.find("\n" + key) != std::string::npos || text.find("\n#" + key) != std::string::npos)
                     << name << ": " << key;
-                if (field.key == "title" || field.key == "kind") continue;  // given, by the file's name and the option
+                if (field.key == "title" || field.key == "kind") continue;  // given by the file's name and the option
                 EXPECT_NE(text.find("# " + std::string(field.help) + " ("), std::string::npos) << name << ": " << key;
             }
     }
@@ -92,7 +92,7 @@ TEST(Init, WritesAPresetOfEveryKindOfFigure) {
 
 TEST(Init, EachKeyOfAFigureCanBeUncommented) {
     const auto folder = fresh_folder();
-    // those that are for other values of other keys, and what the figure gives itself
+    // keys that require other values of other keys, and keys that the figure sets itself
     std::map<std::string_view, std::set<std::string>> beside{
         {"grid",
          {"threshold", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right", "step_s",
@@ -114,7 +114,7 @@ TEST(Init, EachKeyOfAFigureCanBeUncommented) {
             },
             keys);
         EXPECT_GT(keys, 8u) << name;
-        std::erase_if(refused, [](const std::string& key) {  // of axes without a key
+        std::erase_if(refused, [](const std::string& key) {  // keys of axes that have no key
             return key.starts_with("y.") || key.starts_with("color.") || key.starts_with("panel.");
         });
         EXPECT_EQ(refused, beside[kind.name]) << name;
@@ -128,7 +128,7 @@ TEST(Init, WritesAFigureThatIsDrawn) {
                                         "section.crossings=10", "--set", "chart.scale=0.25"});
     EXPECT_EQ(figure.code, 0) << figure.err;
     EXPECT_TRUE(fs::exists(folder / "out/mine/mine.png"));
-    // twins that differ
+    // pairs that differ
     for (const auto& [kind, small, column] :
          {std::tuple{"grid", std::vector<std::string>{"grid.x.step=30", "scene.duration_s=2"}, "average_log_ratio"},
           {"grid",
@@ -144,7 +144,7 @@ TEST(Init, WritesAFigureThatIsDrawn) {
         const auto table = bytes_of(folder / "out" / kind / (std::string(kind) + ".csv"));
         EXPECT_NE(table.find(column), std::string::npos) << table;
         const std::string last = table.substr(table.rfind(',', table.size()) + 1);
-        EXPECT_GT(last.size(), 4u) << kind << last;  // a number, and the end of its line
+        EXPECT_GT(last.size(), 4u) << kind << last;  // a number and a line end
     }
     EXPECT_EQ(doppel(folder, {"init", "--figure", "pair"}).code, 2);
     EXPECT_EQ(doppel(folder, {"init"}).err, "doppel: init needs the name of the new file: doppel init FILE.toml\n");

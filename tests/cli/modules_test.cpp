@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Who may include whom: dependencies run one way.
+// Which module may include which: dependencies have one direction.
 //     base ← numeric ← physics ← integrate ← analysis, track ┐
 //     base ← image ← render ← plot ←─────────────────────────┼─ scene ← film ← figure, fit ← cli ← main
 //     base ← image ← output ─────────────────────────────────┘
@@ -67,7 +67,7 @@ TEST(Modules, IncludeOnlyWhatTheyMay) {
     EXPECT_GT(seen, 300);  // measured 334
 }
 
-/// Charts are made of shapes and words: what draws them is not theirs to know.
+/// Plots consist of shapes and text, and do not depend on OpenGL.
 TEST(Modules, PlotsKnowNoOpenGl) {
     for_each_include([](const fs::path& file, const std::string& header) {
         if (file.parent_path().filename() != "plot") return;
@@ -84,7 +84,7 @@ TEST(Modules, NeedEachOtherOneWay) {
         }
 }
 
-/// Whose headers stand in one module alone, and there in files whose names begin so.
+/// A library whose headers are included in one module only, in files whose names begin with `file`.
 struct Library {
     std::string_view header, module, file;
 };

@@ -25,7 +25,7 @@ std::vector<fs::path> pages() {
     return found;
 }
 
-/// What `pattern` has in its first brackets, at each place where it fits.
+/// The first group of `pattern` for each match.
 std::vector<std::string> all(const std::string& text, const std::regex& pattern) {
     std::vector<std::string> found;
     for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
@@ -60,7 +60,7 @@ TEST(Pages, AreShortAndSayWhatTheReaderCanDo) {
     }
 }
 
-/// Every preset of `folder` stands on `page`, as code.
+/// Every preset of `folder` is named on `page`, as code.
 void expect_named(const fs::path& folder, const fs::path& page) {
     const auto text = text_of(page);
     std::size_t presets = 0;

@@ -13,7 +13,7 @@
 
 namespace doppel::test {
 
-/// Starts a program in `folder`; standard output and error go to the files stdout and stderr there.
+/// Starts a program in `folder`; its standard output and error go to the files stdout and stderr there.
 inline pid_t start_program(const std::filesystem::path& folder, const char* program,
                            const std::vector<std::string>& arguments, const std::function<void()>& prepare = {}) {
     const pid_t child = forked(fork());
@@ -36,7 +36,7 @@ inline pid_t start(const std::filesystem::path& folder, const std::vector<std::s
     return start_program(folder, DOPPEL_PROGRAM, arguments, prepare);
 }
 
-/// The exit code, or the signal that ended it, negative.
+/// The exit code, or minus the signal that ended it.
 inline int wait_for(pid_t child) {
     int status = 0;
     waitpid(child, &status, 0);
@@ -54,7 +54,7 @@ inline Outcome doppel(const std::filesystem::path& folder, const std::vector<std
     return {code, bytes_of(folder / "stdout"), bytes_of(folder / "stderr")};
 }
 
-/// Runs a line of shell, "$DOPPEL" the program, in `folder`.
+/// Runs a shell command in `folder`; "$DOPPEL" is the program.
 inline Outcome shell(const std::filesystem::path& folder, const std::string& script) {
     const auto prepare = [] { setenv("DOPPEL", DOPPEL_PROGRAM, 1); };
     const int code = wait_for(start_program(folder, "/bin/sh", {"-c", script}, prepare));

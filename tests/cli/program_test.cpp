@@ -144,7 +144,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"figure", "fig6", "--scale", "2", "--set", "chart.scale=3"}, "chart.scale is given twice"},
         {{"figure", "fig6", "--jobs", "0"}, "--jobs"},
         {{"figure", "poincare", "--set", "system.integrator=\"rk4\""}, "[system] has no \"integrator\""},
-        // one file alone goes to standard output
+        // only one file can go to standard output
         {{"simulate", "calm", "triple", "-o", "-"}, "standard output takes one file; give one preset, not 2"},
         {{"render", "calm", "--format", "png", "-o", "-"}, "a PNG sequence is many files; give --format apng"},
         {{"figure", "flip-map", "--tiles", "--format", "html"}, "the format must be png, pdf or svg"},
@@ -227,7 +227,7 @@ TEST(Program, AnEstimateIsNearWhatRenderingTakesAndLeavesNothing) {
         EXPECT_EQ(doppel(folder, with(render, {"--progress", "none"})).code, 0);
         const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         const auto words = said.out.substr(said.out.find("to simulate, ") + 13);
-        // measured 1.1 to 1.3; other work on the machine may come and go
+        // measured 1.1 to 1.3; the load of the machine may change
         EXPECT_GT(std::stod(words), taken / 6) << format << " " << taken << " s\n" << said.out;
         EXPECT_LT(std::stod(words), taken * 6) << format << " " << taken << " s\n" << said.out;
     }
@@ -243,7 +243,7 @@ TEST(Program, ACheckEndsHoweverManyStepsThereAre) {
         const auto result = doppel(folder, line);
         EXPECT_EQ(result.code, 0) << result.err;
         EXPECT_NE(result.out.find(words), std::string::npos) << result.out;
-        // measured 0.1 s, and 2.1 s where not even a brief sample is done
+        // measured 0.1 s, and 2.1 s where even a shortened sample is not finished
         EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
     };
     check({"system.step_s=\"1/1200000000000\""}, "72 000 000 000 000 steps in all");
@@ -293,7 +293,7 @@ TEST(Program, ExitsWith4WhereNothingCanBeWritten) {
     EXPECT_NE(in_place.err.find("butterfly.csv is a folder"), std::string::npos) << in_place.err;
     EXPECT_FALSE(fs::exists(folder / "out/butterfly/butterfly.mp4"));
 
-    // where nobody may write, root neither
+    // a folder where nobody can write, not even root
     const auto closed = doppel(folder, with({"render", "butterfly", "-o", "/proc"}, tiny));
     EXPECT_EQ(closed.code, 4);
     EXPECT_EQ(closed.err.rfind("doppel: /proc/butterfly: the folder cannot be made: ", 0), 0u) << closed.err;

@@ -11,7 +11,7 @@
 
 namespace doppel::test {
 
-/// All that is below `folder`, as paths relative to it; nothing where it is not there.
+/// All paths below `folder`, relative to it; empty if it does not exist.
 inline std::set<std::string> listing(const std::filesystem::path& folder) {
     std::set<std::string> names;
     if (!std::filesystem::exists(folder)) return names;
@@ -20,7 +20,7 @@ inline std::set<std::string> listing(const std::filesystem::path& folder) {
     return names;
 }
 
-/// Until `happened`; false after 30 s.
+/// Waits until `happened` returns true; false after 30 s.
 inline bool wait_until(const std::function<bool()>& happened) {
     for (int i = 0; i < 3000; ++i) {
         if (happened()) return true;
@@ -29,7 +29,7 @@ inline bool wait_until(const std::function<bool()>& happened) {
     return false;
 }
 
-/// As wait_for(), but a program that does not end by itself within `seconds` is killed (−SIGKILL).
+/// Like wait_for(), but kills the program after `seconds` (−SIGKILL).
 inline int wait_at_most(pid_t child, double seconds) {
     int status = 0;
     for (double waited = 0; waited < seconds; waited += 0.01) {
@@ -41,12 +41,12 @@ inline int wait_at_most(pid_t child, double seconds) {
     return wait_for(child);
 }
 
-/// "doppel: …", and no more.
+/// Whether the text is one line that begins with "doppel: ".
 inline bool one_line(const std::string& text) {
     return text.starts_with("doppel: ") && std::count(text.begin(), text.end(), '\n') == 1;
 }
 
-/// Runs a line of shell as shell() does, where it may mount what nobody else sees.
+/// Runs a shell command like shell(), where it may mount without effect on other processes.
 inline Outcome shell_with_mounts(const std::filesystem::path& folder, const std::string& script) {
     const auto prepare = [] { setenv("DOPPEL", DOPPEL_PROGRAM, 1); };
     const std::string unshare = geteuid() == 0 ? "exec unshare -m " : "exec unshare -rm ";
@@ -55,7 +55,7 @@ inline Outcome shell_with_mounts(const std::filesystem::path& folder, const std:
     return {code, bytes_of(folder / "stdout"), bytes_of(folder / "stderr")};
 }
 
-/// Whether this machine lets a test mount.
+/// Whether this machine allows tests to mount.
 inline bool can_mount(const std::filesystem::path& folder) {
     return shell_with_mounts(folder, "mkdir -p m && mount -t tmpfs none m").code == 0;
 }

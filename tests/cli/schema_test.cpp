@@ -1,4 +1,4 @@
-// The schema of presets, and the line by which editors find it. With the real program.
+// The schema of presets, and the line that names it for editors. With the real program.
 #include "cli/sandbox.hpp"
 
 #include <nlohmann/json.hpp>
@@ -27,8 +27,8 @@ TEST(Schema, LineOfAShownPresetIsRightForACopy) {
     fs::copy_file(source / "presets/preset.schema.json", folder / "presets/preset.schema.json");
     EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, "#:schema ./presets/preset.schema.json\n" + rest);
     write_bytes(folder / "mine.toml", whole);
-    EXPECT_EQ(doppel(folder, {"show", "mine.toml"}).out, whole);  // one's own stays as it is
-    // as a package has it
+    EXPECT_EQ(doppel(folder, {"show", "mine.toml"}).out, whole);  // a user's preset is printed unchanged
+    // the folders of an installed package
     fs::create_directories(folder / "usr/bin");
     fs::create_directories(folder / "usr/share/doppel/presets");
     fs::rename(folder / "presets/preset.schema.json", folder / "usr/share/doppel/presets/preset.schema.json");

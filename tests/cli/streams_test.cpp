@@ -1,4 +1,4 @@
-// What goes to and comes from the terminal, pipes and closed descriptors. With the real program.
+// Input and output on terminals, pipes and closed descriptors. With the real program.
 #include "base/text.hpp"
 #include "cli/sandbox.hpp"
 
@@ -61,7 +61,7 @@ TEST(Streams, UnprintableNamesOfFilesAreExit75) {
             EXPECT_TRUE(fs::exists(folder / "out" / file)) << command;
             fs::remove_all(folder / "out");
             fs::create_directory(folder / "out");
-            // there is nobody to tell
+            // standard output is closed: nothing to report
             EXPECT_EQ(shell(folder, line + " >&-").code, 0) << command;
             EXPECT_TRUE(fs::exists(folder / "out" / file)) << command;
             fs::remove_all(folder / "out");
@@ -81,7 +81,7 @@ TEST(Streams, UnwritableJsonIsReportedAtTheEnd) {
         EXPECT_EQ(full.err, "doppel: standard output cannot be written: No space left on device\n");
         EXPECT_TRUE(fs::exists(csv)) << command;
         fs::remove_all(folder / "out");
-        // who stops reading has heard enough
+        // a reader that stops reading is not an error
         const auto left = shell(folder, "(\"$DOPPEL\" " + command + " --progress json; echo $? >code) | true");
         EXPECT_EQ(bytes_of(folder / "code"), "0\n") << left.err;
         EXPECT_TRUE(fs::exists(csv)) << command;
@@ -101,7 +101,6 @@ TEST(Streams, JsonSaysAnyPath) {
 TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     const auto folder = fresh_folder();
     const auto run = [&](const std::string& streams) {
-        // a progress line every 5 s of a run that would not end before
         const auto result = shell(folder, "\"$DOPPEL\" simulate butterfly --set scene.duration_s=0.1 " + streams);
         EXPECT_EQ(result.code, 0) << streams;
         const auto csv = bytes_of(folder / "out/butterfly/butterfly.csv");
@@ -111,7 +110,7 @@ TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     const auto whole = run(">/dev/null 2>&1");
     for (const auto* streams : {"<&- >&- 2>&-", "<&-", ">&-", "2>&-", ">&- 2>&-"})
         EXPECT_EQ(run(streams), whole) << streams;
-    // where the files of the run get their numbers
+    // the standard descriptors refer to /dev/null while the run writes its files
     const auto child =
         start(folder, {"simulate", "butterfly", "--set", "scene.duration_s=100000", "--progress", "plain"}, [] {
             for (const int stream : {0, 1, 2}) close(stream);
@@ -162,7 +161,7 @@ TEST(Streams, ControlCharactersOfAPresetAreSanitised) {
             if (c != '\n' && (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)) return false;
         return text.find("\xc2\x9b") == std::string::npos;
     };
-    // refused where they would be drawn; quoted in a message all the same
+    // rejected where they would be drawn, but quoted in a message
     const std::string evil = "\\u001b]0;owned\\u0007\\u009b31m\\u202e";
     write_bytes(folder / "film.toml", "title = \"" + evil + "\"\n");
     write_bytes(folder / "figure.toml", "title = \"" + evil + "\"\n[scene]\nkind = \"grid\"\n");
@@ -179,10 +178,10 @@ TEST(Streams, ControlCharactersOfAPresetAreSanitised) {
         EXPECT_TRUE(one_line(result.err)) << result.err;
         EXPECT_TRUE(clean(result.err)) << result.err;
     }
-    // on a terminal, not in a file
+    // control characters are removed on a terminal, not in a file
     write_bytes(folder / "raw.toml", "# \x1b[31mred\n");
     EXPECT_EQ(doppel(folder, {"show", "raw.toml"}).out, "# \x1b[31mred\n");
-    // script fails where there are no terminals to be had, as in a bare chroot
+    // script(1) fails without pseudoterminals, as in a bare chroot
     const auto terminal =
         shell(folder, "script -qec '\"$DOPPEL\" show raw.toml' /dev/null >shown && tr -d '\\r' <shown");
     EXPECT_EQ(terminal.out, terminal.code == 0 ? "#  [31mred\n" : "") << terminal.err;

@@ -10,7 +10,7 @@
 
 namespace doppel::test {
 
-/// An element of XML: its text is that of all between its tags, without that of elements in it.
+/// An XML element; its text excludes that of its child elements.
 struct Element {
     std::string name, text;
     std::map<std::string, std::string> attributes;
@@ -18,7 +18,7 @@ struct Element {
 
     const std::string& operator[](const std::string& attribute) const { return attributes.at(attribute); }
 
-    /// All below it, itself included, of that name.
+    /// All elements of that name below it, itself included.
     std::vector<const Element*> all(std::string_view wanted) const {
         std::vector<const Element*> found;
         if (name == wanted) found.push_back(this);
@@ -28,8 +28,8 @@ struct Element {
     }
 };
 
-/// A strict reader of the XML that Doppel writes: elements, attributes, comments, the five entities and &#39;. Throws
-/// std::runtime_error with the byte where the text is not well-formed.
+/// A strict parser of the XML that Doppel writes: elements, attributes, comments, the five entities and &#39;. Throws
+/// std::runtime_error with the position of the byte where the text is not well-formed.
 class XmlReader {
 public:
     explicit XmlReader(std::string_view text) : text_(text) {
