@@ -1,4 +1,4 @@
-// The methods that choose their steps from a tolerance: what they achieve, when they sample, when they give up.
+// The adaptive methods: their accuracy, their samples and their limits.
 
 #include "errors.hpp"
 #include "integrate/dormand_prince.hpp"
@@ -26,7 +26,7 @@ Pendulum<Quad> released_at(const std::vector<int>& degrees) {
     return p;
 }
 
-/// One with nothing equal or zero.
+/// A pendulum without equal or zero numbers.
 Pendulum<double> unequal() {
     return {{1.0, 0.7}, {1.0, 1.3}, {2.0, -0.5}, {0.3, 1.0}, 9.8};
 }
@@ -40,8 +40,8 @@ typename Model::State state_after(const Pendulum<typename Model::Scalar>& p, dou
     return stepper.state();
 }
 
-/// Errors of angles at the tolerances 1e-4 … 1e-13 stay below factor · tolerance; the truth is that of a quad run whose
-/// own error is below 1e-15.
+/// Errors of angles at the tolerances 1e-4 … 1e-13 are at most factor · tolerance; the reference is a quad run with an
+/// error below 1e-15.
 template <class Double, class Exact>
 void keeps_to_tolerance(const std::vector<int>& degrees, double seconds, double of_dop853, double of_dopri5) {
     const auto truth = state_after<Dop853, Exact>(released_at(degrees), seconds, 1e-17);
@@ -71,8 +71,8 @@ TEST(Adaptive, SamplesWithinAStepShareItsInterpolation) {
 }
 
 TEST(Tolerance, IsMet) {
-    // the factors follow the sensitivities of the four motions to their start, 80, 21, 320 and 1040, and the length of
-    // the second; measured 170, 1500, 210, 1200, 2600, 3700, 1000, 3300
+    // the factors follow the sensitivities of the four motions to the start, 80, 21, 320 and 1040, and the length of
+    // the second one; measured 170, 1500, 210, 1200, 2600, 3700, 1000, 3300
     using Two = DoublePendulum<double>;
     keeps_to_tolerance<Two, DoublePendulum<Quad>>({90, 90}, 10, 400, 3000);
     keeps_to_tolerance<Two, DoublePendulum<Quad>>({30, 0}, 60, 500, 2500);
@@ -98,7 +98,7 @@ TYPED_TEST(Adaptively, SamplingChangesNoStep) {
 }
 
 TYPED_TEST(Adaptively, TheClockNeitherDriftsNorCoarsens) {
-    // 1/120 is no double: 120 000 of them are 1000 s + 5.6e-14 s, which summing in double would miss by 1e-9 s
+    // 1/120 is not a double: 120 000 of them are 1000 s + 5.6e-14 s; a sum in double would have an error of 1e-9 s
     using Model = DoublePendulum<double>;
     const auto p = Pendulum<double>{{1, 1}, {1, 1}, {0.1, 0}, {0, 0}};
     Model model(p);
@@ -110,7 +110,7 @@ TYPED_TEST(Adaptively, TheClockNeitherDriftsNorCoarsens) {
     EXPECT_LT((sampled.state() - at_once.state()).norm(), maximum);
 }
 
-/// The oscillator y″ = −y, which counts how often it is asked.
+/// The oscillator y″ = −y, which counts its evaluations.
 struct Counting {
     using Scalar = double;
     using State = doppel::State<double, 2>;
@@ -170,7 +170,7 @@ struct BlowUp {
     void rate(const State& y, State& dydt) const { dydt[0] = y[0] * y[0]; }
 };
 
-/// y′ = −1/(2 √y), y(0) = 1: √(1 − t), and nothing after
+/// y′ = −1/(2 √y), y(0) = 1: √(1 − t), undefined for t > 1
 struct Cliff : BlowUp {
     void rate(const State& y, State& dydt) const { dydt[0] = -1 / (2 * std::sqrt(y[0])); }
 };
@@ -212,7 +212,7 @@ TYPED_TEST(Adaptively, RefusesATolerance) {
         (typename TypeParam::template Stepper<Fine>(fine, Fine::start(unequal().cast<Quad>()), Quad(1e-32))));
 }
 
-/// For motions whose tangents are made orthonormal again and again.
+/// For motions whose tangents are orthonormalised repeatedly.
 TYPED_TEST(Adaptively, ResetKeepsTheStepSize) {
     using Model = DoublePendulum<double>;
     Model model(unequal());
@@ -223,12 +223,12 @@ TYPED_TEST(Adaptively, ResetKeepsTheStepSize) {
     stepper.reset(start);
     EXPECT_EQ(stepper.state(), start);
     stepper.advance(0.01);
-    EXPECT_EQ(stepper.steps(), steps + 1);  // a beginning takes dopri5 two
+    EXPECT_EQ(stepper.steps(), steps + 1);  // dopri5 takes two steps after a start
     stepper.advance(1.09);
     EXPECT_LT((stepper.state() - state_after<TypeParam, Model>(unequal(), 1.1, 1e-14)).norm(), 5e-7);
 }
 
-/// A pendulum in (x, y), put back on its circle; counts how often.
+/// A pendulum in (x, y), projected onto its circle; counts the projections.
 struct OnTheCircle : RodChain<double, 1> {
     long settled = 0;
     explicit OnTheCircle(const Pendulum<double>& p) : RodChain(p) {}

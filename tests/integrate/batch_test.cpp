@@ -15,9 +15,9 @@ namespace doppel {
 namespace batch_test {
 
 constexpr double step = 1.0 / 3000;
-constexpr long steps = 300;  // more than the 256 after which Euler takes its sines afresh
+constexpr long steps = 300;  // more than the 256 after which Euler computes its sines anew
 
-/// Trials that differ in everything; their number is no multiple of any width.
+/// Trials with different numbers; the count is not a multiple of any register width.
 std::vector<Pendulum<double>> some_trials(std::size_t links, std::size_t count = 11) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> some(0.5, 2);

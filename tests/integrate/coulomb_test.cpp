@@ -8,7 +8,7 @@
 namespace doppel {
 namespace {
 
-/// By `method` at so many steps a second, or to the tolerance; a sample each 1/100 s.
+/// `method` with this number of steps per second, or with the tolerance; one sample each 1/100 s.
 MotionSpec spec_of(const PhysicalPendulum<double>& p, std::string_view method, long steps_per_s, double tolerance) {
     auto spec = stepping(Model::angles, method, p.chain, 100);
     spec.physical = p.cast<Quad>();
@@ -28,7 +28,7 @@ double difference(const std::vector<double>& one, const std::vector<double>& oth
     return maximum;
 }
 
-/// Two rods with a motor, whose joints turn over, stick and slip: each some 20 times in 5 s.
+/// Two rods with a motor. Each joint changes its direction, sticks and slips about 20 times in 5 s.
 PhysicalPendulum<double> sticking() {
     auto p = physical(Pendulum<double>{{1, 1}, {1, 0.8}, {-0.55, -0.82}, {0, 0}});
     p.center = {0.8, 0.7};
@@ -40,7 +40,7 @@ PhysicalPendulum<double> sticking() {
 }
 
 TEST(Coulomb, APendulumTurnsAndStopsWhereEnergyAndWorkSay) {
-    // from a turn at θ to the next at −θ′:  m g l (cos θ′ − cos θ) = c (θ + θ′); it stays where m g l sin θ ≤ c
+    // from a turning point θ to the next, −θ′:  m g l (cos θ′ − cos θ) = c (θ + θ′); it sticks where m g l sin θ ≤ c
     const double c = 0.5, weight = 9.8;
     auto p = physical(Pendulum<double>{{1}, {1}, {pi / 3}, {0}});
     p.friction.coulomb = {c};
@@ -93,7 +93,7 @@ TEST(Coulomb, InQuadToo) {
 }
 
 TEST(Coulomb, AHeldJointIsReleasedByThePeakOfADrive) {
-    // two motors that beat: their sum exceeds what friction gives by 0.5 % at most, for moments, after seconds of rest
+    // two motors that beat: after seconds of rest, their sum exceeds the static friction briefly, by at most 0.5 %
     auto p = physical(Pendulum<double>{{1}, {1}, {0}, {0}});
     p.friction.coulomb = {1.99};
     p.torques = {{0, 1, 2 * pi * 3, 0.8}, {0, 1, 2 * pi * 3.3, 2.9}};
@@ -103,7 +103,7 @@ TEST(Coulomb, AHeldJointIsReleasedByThePeakOfADrive) {
         EXPECT_NEAR(angles_after(spec_of(p, method, 0, 1e-12), 1000)[0], exact[0], 1e-10) << method;
 }
 
-/// Goes round and round at one time.
+/// A state that changes its direction again and again at one time.
 struct Restless {
     using State = doppel::State<double, Eigen::Dynamic>;
     using Scalar = double;

@@ -1,4 +1,4 @@
-// The explicit fixed-step methods on linear problems, where what they do is known in closed form; z = step · frequency.
+// The explicit fixed-step methods on linear problems with solutions in closed form; z = step · frequency.
 
 #include "integrate/adams.hpp"
 #include "integrate/euler.hpp"
@@ -75,7 +75,7 @@ TEST(SemiImplicitEuler, KeepsItsInvariant) {
 }
 
 TEST(SemiImplicitEuler, IsStableUpToTwo) {
-    EXPECT_LT((size_after<SemiImplicitEuler, Oscillator>(0.999 * 2, 1000)), 100.0);  // on an ellipse 1 : 45
+    EXPECT_LT((size_after<SemiImplicitEuler, Oscillator>(0.999 * 2, 1000)), 100.0);  // bounded on an ellipse 1 : 45
     EXPECT_GT((size_after<SemiImplicitEuler, Oscillator>(1.001 * 2, 1000)), 1e10);
 }
 
@@ -115,7 +115,7 @@ TEST(Adams, TakesTwoEvaluationsAStep) {
     EXPECT_EQ(stepper.evaluations() - begun, 200);
 }
 
-/// An oscillator that is put back on the unit circle after every step, and remembers the last state it was asked about.
+/// An oscillator that is projected onto the unit circle after every step, and stores the state of its last evaluation.
 struct Settled : Oscillator {
     State last;
     void rate(const State& y, State& dydt) {

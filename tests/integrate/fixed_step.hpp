@@ -5,7 +5,7 @@
 
 namespace doppel {
 
-/// An adaptive pair at fixed step.
+/// An adaptive pair with fixed steps.
 template <System Model, const auto& pair>
 struct AtFixedStep {
     using State = typename Model::State;

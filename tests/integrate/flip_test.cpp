@@ -19,12 +19,12 @@ namespace flip_test {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// The angles that a double pendulum is released at, rad.
+/// The initial angles of a double pendulum, rad.
 struct Release {
     double theta1, theta2;
 };
 
-/// Evenly over the square of −180…180°.
+/// Evenly distributed over the square of −180…180°.
 std::vector<Release> some_releases(std::size_t count) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> some(-pi, pi);
@@ -51,7 +51,7 @@ std::vector<double> flips(const std::vector<Release>& releases, const Pendulum<d
     return times;
 }
 
-/// The first flip of one pendulum by different equations and code: TaylorStepper with its tolerance. At 1e-13, all of
+/// The first flip of one pendulum by other equations and code: TaylorStepper with a tolerance. At 1e-13, all of
 /// 110 flips within 20 s are within 2e-6 s of those in quad at 1e-24.
 double reference_flip(const Pendulum<double>& pendulum, double duration, double tolerance) {
     struct Outward {
@@ -81,7 +81,7 @@ double reference_flip(const Pendulum<double>& pendulum, double duration, double 
     return never;
 }
 
-/// Masses, lengths and gravity of which no two are alike.
+/// Unequal masses, lengths and gravity.
 Pendulum<double> uneven() {
     Pendulum<double> p;
     p.mass = {1, 3};
@@ -90,7 +90,7 @@ Pendulum<double> uneven() {
     return p;
 }
 
-/// From θ to the upright, s, of a single rod that is at θ with the rate it has from passing the bottom with `omega`:
+/// Time from θ to upright, s, of a single rod with the rate at θ that it has from passing the bottom with `omega`:
 ///     θ′² = ω² − 4 (g/l) sin² θ/2,   t = (2/ω) (K(k) − F(θ/2, k)),   k = 2 √(g/l) / ω
 double time_to_upright(double theta, double omega, double length, double gravity) {
     const double k = 2 * std::sqrt(gravity / length) / omega;
@@ -101,7 +101,7 @@ double rate_there(double theta, double omega, double length, double gravity) {
 }
 
 TEST(Flips, AreForbiddenBelowTheEnergyOfAnUprightRod) {
-    // −2 cosθ1 − cosθ2 < −2 + 1, where both hang the same: θ1 = 90° and θ2 = 180°, θ2 = 0 and θ1 = 90°
+    // −2 cosθ1 − cosθ2 < −2 + 1 for equal masses: at θ1 = 90° and θ2 = 180°, and at θ2 = 0 and θ1 = 90°
     constexpr double little = 1e-9;
     EXPECT_TRUE(flip_is_forbidden(released({}, {pi / 2 - little, 0})));
     EXPECT_FALSE(flip_is_forbidden(released({}, {pi / 2 + little, 0})));
@@ -109,7 +109,7 @@ TEST(Flips, AreForbiddenBelowTheEnergyOfAnUprightRod) {
     const double heavy = std::acos(5.0 / 8);
     EXPECT_TRUE(flip_is_forbidden(released(uneven(), {-heavy + little, 0})));
     EXPECT_FALSE(flip_is_forbidden(released(uneven(), {-heavy - little, 0})));
-    // the upper rod the lighter: W = 0.2 g, 1 g:  −0.2 − cosθ2 = −1.2 + 0.4
+    // the upper rod flips more easily: W = 0.2 g, 1 g:  −0.2 − cosθ2 = −1.2 + 0.4
     Pendulum<double> upper;
     upper.length = {0.1, 1};
     const double far = std::acos(0.6);
@@ -123,7 +123,7 @@ TEST(Flips, AreForbiddenBelowTheEnergyOfAnUprightRod) {
     EXPECT_TRUE(flip_is_forbidden(triple));
     triple.angle[1] = pi / 2 + little;
     EXPECT_FALSE(flip_is_forbidden(triple));
-    // hanging, the lower rod at a rate:  ½ m l² ω² = 2 m g l
+    // hanging, the lower rod with a rate:  ½ m l² ω² = 2 m g l
     Pendulum<double> struck;
     struck.rate = {0, 2 * std::sqrt(struck.gravity) - little};
     EXPECT_TRUE(flip_is_forbidden(struck));
@@ -131,7 +131,7 @@ TEST(Flips, AreForbiddenBelowTheEnergyOfAnUprightRod) {
     EXPECT_FALSE(flip_is_forbidden(struck));
 }
 
-/// The kernel itself, which knows of no bound.
+/// The kernel itself, without the energy bound.
 std::vector<double> kernel_flips(const std::vector<Release>& releases, const FlipSpec& spec = {}) {
     std::vector<double> times(releases.size(), -1);
     const std::atomic<bool> stop{false};
@@ -159,9 +159,9 @@ TEST(Flips, DoNotOccurWhereForbidden) {
 }
 
 TEST(Flips, OfASingleRodComeAtTheEllipticIntegral) {
-    // the pivot of the lower rod, a hundred thousand billion times as heavy, hangs still
+    // the upper mass, 10¹⁴ times as heavy, hangs at rest
     struct Case {
-        double omega, loose, tight;  // what errors may be at the usual tolerance and at a fine one, s
+        double omega, loose, tight;  // maximum error at the default tolerance and at a fine one, s
     };
     // 2 √g = 6.26099; measured 1.8e-12, 2.1e-10, 6.9e-8 and 2.4e-15, 2.2e-13, 8.1e-11
     for (const auto& [omega, loose, tight] :
@@ -175,7 +175,7 @@ TEST(Flips, OfASingleRodComeAtTheEllipticIntegral) {
             EXPECT_NEAR(flips({{0, theta}}, p, {.tolerance = 1e-12})[0], exact, tight) << omega << ' ' << theta;
             EXPECT_NEAR(reference_flip(released(p, {0, theta}), 20, 1e-13), exact, tight) << omega << ' ' << theta;
         }
-    // the lower mass weighs nothing, and its rod is long
+    // the lower mass is zero, and its rod is long
     Pendulum<double> p;
     p.mass = {1, 1e-13};
     p.length = {1, 10};
@@ -184,8 +184,8 @@ TEST(Flips, OfASingleRodComeAtTheEllipticIntegral) {
 }
 
 struct Agreement {
-    std::size_t wrong;  // flips not within 0.01 s of the reference
-    double early;       // s, the error that 99 % of the flips in the first five seconds keep below
+    std::size_t wrong;  // flips with an error above 0.01 s
+    double early;       // s, the 99th percentile of the errors in the first five seconds
 };
 Agreement agreement(const Pendulum<double>& pendulum, std::size_t count) {
     const auto releases = some_releases(count);
@@ -224,7 +224,7 @@ TEST(Flips, ComeWhenTheReferenceSaysInLongerRunsToo) {
     EXPECT_EQ(flip_tolerance(5), 1e-8);
     EXPECT_EQ(flip_tolerance(25), 1e-11);
     EXPECT_EQ(flip_tolerance(1000), 1e-14);
-    // all that flip after 20 s, of releases drawn by lot
+    // all flips after 20 s of random samples of releases
     const double duration = 30;
     const auto releases = some_releases(3000);
     const auto times = flips(releases, {}, {duration, flip_tolerance(duration)}),
@@ -243,7 +243,7 @@ TEST(Flips, ComeWhenTheReferenceSaysInLongerRunsToo) {
     EXPECT_GT(wrong_before, 0);  // measured 9 of 41
 }
 
-/// Between two releases whose flips are far apart in time lies one whose rod comes up to the upright, and no further.
+/// Between two releases with very different flip times, there is one whose rod just reaches the upright.
 TEST(Flips, AreFoundWhereTheRodTurnsBackWithinTheStep) {
     constexpr double tolerance = 1e-11;
     const FlipSpec spec{.duration = 5, .tolerance = tolerance};
@@ -260,7 +260,7 @@ TEST(Flips, AreFoundWhereTheRodTurnsBackWithinTheStep) {
                 (like_one ? one : other) = middle;
                 times[like_one ? 0 : 1] = time;
             }
-            if (!(std::abs(times[0] - times[1]) > 0.2)) continue;  // a steep slope
+            if (!(std::abs(times[0] - times[1]) > 0.2)) continue;  // a continuous change
             ++edges;
             for (const double theta : {one, other}) {
                 const double time = flips({{theta, theta2}}, {}, spec)[0];
@@ -316,7 +316,7 @@ TEST(Flips, HaveATimeWithinTheDurationOrNone) {
         for (int j = -12; j <= 12; ++j) grid.push_back({radians(15 * i), radians(15 * j)});
     for (const double time : flips(grid, {}, {.duration = 3}))
         EXPECT_TRUE((time >= 0 && time <= 3) || time == never) << time;
-    // the time asked for does not move a flip, and one that comes later is none
+    // the duration does not change a flip; a flip after it does not count
     const double time = flips({{2.5, 1}})[0];
     EXPECT_EQ(flips({{2.5, 1}}, {}, {.duration = std::nextafter(time, 0)})[0], never);
     EXPECT_EQ(flips({{2.5, 1}}, {}, {.duration = std::nextafter(time, 9)})[0], time);
@@ -330,7 +330,7 @@ ExitCode refusal(const Pendulum<double>& p, const FlipSpec& spec, std::size_t ti
 }
 
 TEST(Flips, FailedOnesAreNaNAndDoNotAffectOthers) {
-    // gravity so strong that a swing takes 1e-15 s
+    // such strong gravity that a swing takes 1e-15 s
     const auto calm = released({}, {2.5, 1});
     auto wild = calm;
     wild.gravity = 1e30;

@@ -8,7 +8,7 @@
 
 namespace doppel {
 
-/// Unequal links, in motion; two or three.
+/// Two or three unequal links in motion.
 template <class Scalar>
 Pendulum<Scalar> unequal(std::size_t links = 2) {
     Pendulum<double> p{{1.25, 0.5, 0.75}, {0.75, 1.5, 0.5}, {1.5, -0.5, 0.25}, {0.25, -1, 2}, 9.8};
@@ -16,7 +16,7 @@ Pendulum<Scalar> unequal(std::size_t links = 2) {
     return p.template cast<Scalar>();
 }
 
-/// The state so many steps after `start`, of the model of a pendulum or an assembly.
+/// The state after this number of steps from `start`, of the model of a pendulum or an assembly.
 template <class Which, class Model, class System>
 typename Model::State after(const System& system, const typename Model::State& start,
                             const typename Model::Scalar& step, long steps) {
@@ -31,7 +31,7 @@ double distance(const State& a, const State& b) {
     return static_cast<double>((a - b).cwiseAbs().maxCoeff());
 }
 
-/// There and back again: how far from the start.
+/// The distance from the start after running forwards and backwards.
 template <class Which, class Model>
 double way_back(double step, long steps) {
     const auto p = unequal<double>();
@@ -44,7 +44,7 @@ double way_back(double step, long steps) {
     return distance<typename Model::State>(end, start);
 }
 
-/// What a run leaves: errors of energy (J) and rods (m), largest in its first and its last tenth.
+/// The errors of a run: energy (J) and rods (m), the largest in its first and its last tenth.
 struct Errors {
     double early = 0, late = 0, rod = 0;
 };
@@ -70,7 +70,7 @@ Errors errors_of(const Pendulum<double>& p, double step, long steps) {
     return errors;
 }
 
-/// How many times the error at 0.5 s halves when the step does, from three step sizes.
+/// The order of the error at 0.5 s in the step, from three step sizes.
 template <class Which, class Model>
 double measured_order(std::size_t links, long steps) {
     const auto p = unequal<Quad>(links);
@@ -79,7 +79,7 @@ double measured_order(std::size_t links, long steps) {
     return std::log2(distance(coarse, middle) / distance(middle, fine));
 }
 
-/// How far SᵀJS is from J, where S is the Jacobian at z = (θ1, θ2, p1, p2) of `map`, by differences in quad.
+/// The difference between SᵀJS and J; S is the Jacobian at z = (θ1, θ2, p1, p2) of `map`, by differences in quad.
 template <class Map>
 double symplecticity_error(const Map& map, const State<Quad, 4>& z) {
     Eigen::Matrix<Quad, 4, 4> s, j;

@@ -16,7 +16,7 @@ namespace gauss_test {
 
 using Angles = DoublePendulum<double>;
 
-/// How far SᵀJS is from J, where S is the Jacobian of one step in canonical variables, by differences in Quad.
+/// The difference between SᵀJS and J; S is the Jacobian of one step in canonical variables, by differences in Quad.
 template <class Which, class Model>
 double symplecticity_error(const Quad& step) {
     const auto p = unequal<Quad>();
@@ -51,14 +51,14 @@ TEST(Gauss, ReturnsWhenTimeIsReversed) {
 }
 
 TEST(Gauss, KeepsEnergyOverAHundredThousandPeriods) {
-    // the slow mode of 30/0 takes 1.9 s: 1.9e5 s in steps of a tenth of a second
+    // the slow mode of 30/0 has a period of 1.9 s: a run of 1.9e5 s in steps of 0.1 s
     const auto gauss = errors_of<Gauss4, Angles>(released(30, 0), 0.1, 1'900'000);
     EXPECT_LT(gauss.late, 1.5 * gauss.early);  // measured 1.25
     EXPECT_LT(gauss.late, 2e-3);               // measured 9e-4 J
 }
 
 TEST(Gauss, HasNoEnergyDriftFromRounding) {
-    // steps so short that truncation hides: what is left is rounding, which must walk at random
+    // with steps so short that truncation is negligible, the rest is round-off, which must grow as a random walk
     const auto errors = errors_of<Gauss6, Angles>(released(30, 0), 1.0 / 512, 1'000'000);
     EXPECT_LT(errors.late, 4e-14);  // measured 7e-15 J of 30; 3e-13 without compensation, 2e-13 with a loose iteration
 }

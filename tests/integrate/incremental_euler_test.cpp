@@ -23,7 +23,7 @@ typename Model::State after(const Pendulum<double>& p, double h, long steps) {
     return stepper.state();
 }
 
-/// How far the incremental form ends from the plain one.
+/// The difference between the ends of the incremental form and the plain one.
 template <class Model>
 double apart(const Pendulum<double>& p, double seconds, double h = step) {
     const long steps = std::lround(seconds / h);
@@ -40,7 +40,7 @@ TEST(IncrementalEuler, IsUsedForEulerInDouble) {
 }
 
 TEST(IncrementalEuler, IsThePlainMethodUpToRounding) {
-    // regular motions, which keep small differences small; the plain form errs as much against quad
+    // regular motions, where small differences remain small; the plain form has the same error against quad
     using Angles = DoublePendulum<double>;
     using Two = RodChain<double, 2>;
     using Three = RodChain<double, 3>;
@@ -75,7 +75,7 @@ TEST(IncrementalEuler, StartsExactlyWhereItIsReleased) {
 }
 
 TEST(IncrementalEuler, LanesDoNotDependOnTheirNeighbours) {
-    // one lane fast, the others slow: the slow ones take the series all the same
+    // one fast lane and three slow ones: the slow lanes still use the series
     using Side = Lanes<4>;
     const double h = 1e-3;
     auto p = released(40, 60).cast<Side>();

@@ -13,9 +13,9 @@
 namespace doppel {
 namespace limits_test {
 
-// Closed forms and hard cases that every method meets, by the door that runs go through.
+// Closed forms and hard cases for every method, through the same interface as runs.
 
-/// A method at settings that leave it an error of some 1e-6 on motions of about a second.
+/// A method with settings for an error of about 1e-6 on motions of about a second.
 MotionSpec fine(Model model, const MethodEntry& method, const Pendulum<double>& p, Rational interval) {
     auto spec = stepping(model, method.name, p, 1);
     spec.sample_interval = interval;
@@ -52,7 +52,7 @@ TEST(Limits, TheExactEquilibriumStaysExactly) {
             for (std::size_t i = 0; i < links; ++i) {
                 EXPECT_EQ(end.bobs[i].x, 0) << links;
                 EXPECT_EQ(end.bobs[i].vx, 0) << links;
-                // heights are sums of rods, whose rounding may push them; angles know no height
+                // heights are sums of rods, where round-off may cause motion; angles are independent of the heights
                 EXPECT_NEAR(end.bobs[i].y, start.bobs[i].y, model == Model::angles ? 0 : 1e-12)
                     << links;  // measured 2.2e-13
             }
@@ -84,7 +84,7 @@ TEST(Limits, EqualLinksSwingInTheModesOfLaguerre) {
         const auto roots = laguerre_roots(n);
         for (int mode = 0; mode < n; ++mode) {
             EXPECT_NEAR(modes.eigenvalues()[mode] / roots[mode], 1, 5e-14);  // measured 9e-15
-            // g such that the period is a second
+            // g for a period of one second
             Pendulum<double> p{{}, {}, {}, {}, std::pow(2 * pi, 2) / roots[mode]};
             const Eigen::VectorXd shape = 1e-6 * modes.eigenvectors().col(mode).normalized();
             p.mass.assign(static_cast<std::size_t>(n), 1);
@@ -103,7 +103,7 @@ TEST(Limits, EqualLinksSwingInTheModesOfLaguerre) {
 }
 
 TEST(Limits, AVanishingUpperMassIsSimulatedOrRefused) {
-    // m1 → 0 with the links aligned: the condition of J M⁻¹ Jᵀ grows like 4 m2/m1, and the motion becomes stiff
+    // m1 → 0 with aligned links: the condition number of J M⁻¹ Jᵀ grows as 4 m2/m1, and the motion becomes stiff
     const std::map<std::string_view, double> maximum{
         {"dopri5", 2e-10}, {"dop853", 2e-10}, {"taylor", 5e-12}};  // m; measured 3.5e-11, 2.8e-11, 8.4e-13
     for (const double m1 : {1e-2, 1e-4, 1e-6}) {
@@ -118,7 +118,7 @@ TEST(Limits, AVanishingUpperMassIsSimulatedOrRefused) {
             try {
                 const auto seen = Course(tried).advance(1);
                 const double error = std::abs(seen.bobs[1].x - truth.bobs[1].x);
-                // right, or so wrong that the watch sees it: no quiet in-between
+                // either accurate, or so wrong that the checks detect it
                 const double scale = p.potential_range();
                 EXPECT_TRUE(error < 1e-3 || !(std::abs(seen.energy_change) < 1e-4 * scale))
                     << m1 << ": " << error << " m, " << seen.energy_change << " J";
@@ -155,7 +155,7 @@ TEST(Limits, NothingIsAllocatedInTheStepLoop) {
             for (auto* values : {&p.mass, &p.length}) values->assign(links, 1);
             p.angle.assign(links, 1.5);
             p.rate.assign(links, 0);
-            // what a sample allocates is the same, however many steps lead to it
+            // the allocations per sample are independent of the number of steps
             const auto allocated = [&](long steps, const char* tolerance) {
                 auto spec = stepping(model, method.name, p, 1000);
                 spec.steps_per_sample = steps;

@@ -19,7 +19,7 @@ using namespace counted;
 static_assert(HasSeries<Mechanism<double>> && HasSeries<Projected<Mechanism<Quad>>>);
 static_assert(!HasSeries<Baumgarte<Mechanism<double>>>);
 
-/// A bob on a rod, sprung to a second one that slides in a circle, and both to others.
+/// A bob on a rod with a spring to a second bob, which slides in a circular slot; both have springs to other particles.
 Assembly<double> sprung() {
     return {.particles = {{1.3, P(0.6, -0.8), P(0.8, 0.6)}, {0.7, P(2, 0.5), P(0, 1.1)}, {0.4, P(0.4, 1.2), P(-1, 0)}},
             .constraints = {Rod<double>{one, P(0, 0), 1}, SlotCircle<double>{two, P(1, 0.5), 1}},
@@ -27,7 +27,7 @@ Assembly<double> sprung() {
                        Spring<double>{three, one, 3, 0.4, 0.2}}};
 }
 
-/// Two beads in straight slots, and a bob on a rod from an anchored particle: all attract each other.
+/// Two beads in straight slots, and a bob on a rod from an anchored particle, all with mutual attraction.
 Assembly<double> attracted() {
     return {
         .particles = {{2, P(0, 0), P(1, 0.5)}, {3, P(1.5, -1), P(1, 0)}, {1, P(1.5, 0.2)}, {1, P(0, 2.2), P(1, 0.75)}},
@@ -37,7 +37,7 @@ Assembly<double> attracted() {
                    Droplet<double>{P(3, 3), 5, 0.8}, Gravity<double>{3}}};
 }
 
-/// The loop of four bars, a rod swinging from it, and a brace that is a damped spring.
+/// A four-bar loop with a rod hanging from it, braced by a damped spring.
 Assembly<double> looped() {
     auto parts = four_bars();
     parts.particles.push_back({0.5, P(2.9, 0.6), P(0.5, 0)});
@@ -46,14 +46,14 @@ Assembly<double> looped() {
     return parts;
 }
 
-/// The four bars turn: their velocities must be consistent.
+/// The four bars move: their velocities must be consistent.
 template <class S>
 State<S, Eigen::Dynamic> moving(Mechanism<S>& model, const Assembly<S>& assembly, const S& seconds) {
     return after(model, assembly, 10, S(seconds / S(10)));
 }
 
-/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^(order + 1) only if every
-/// coefficient is right. In quad; y′ by central differences.
+/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|. It shrinks as h^(order + 1) only if every
+/// coefficient is correct. In quad; y′ by central differences.
 double residual(const Assembly<double>& parts, int order, double h) {
     const auto assembly = parts.cast<Quad>();
     Mechanism<Quad> model(assembly);
@@ -103,7 +103,7 @@ TEST(MechanismSeries, AllocatesNothingOnceItIsRecorded) {
     }
 }
 
-/// What a series says of the way from the start of a mechanism.
+/// The error message of a series that runs from the start of a mechanism.
 std::string said_of(const Assembly<double>& parts, double h) {
     MechanismSeries<double> series(parts, 30);
     auto y = Mechanism<double>::start(parts), change = y;
@@ -116,7 +116,7 @@ std::string said_of(const Assembly<double>& parts, double h) {
 }
 
 TEST(MechanismSeries, NamesASingularConfigurationOnTheWay) {
-    // cranks of 1 m, a coupler of 2 m: in line after about 0.09 s, where they could go on as a parallelogram
+    // cranks of 1 m, a coupler of 2 m: aligned after about 0.09 s, where two continuations are possible
     Assembly<double> parts{
         .particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
         .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
@@ -132,7 +132,7 @@ TEST(MechanismSeries, NamesASingularConfigurationOnTheWay) {
 }
 
 TEST(MechanismSeries, PassesNearASingularConfiguration) {
-    // a light bob above a heavy one, through the place where both rods are in a line
+    // a light bob above a heavy one, passing the position where both rods are aligned
     for (const double light : {1e-2, 1e-4, 1e-6}) {
         Assembly<double> parts{
             .particles = {{light, P(-0.05, -1), P(1, -0.05)}, {1, P(0, -2), P(2, 0)}},
@@ -145,7 +145,7 @@ TEST(MechanismSeries, PassesNearASingularConfiguration) {
 TEST(MechanismSeries, NamesASpringWhoseEndsMeet) {
     Assembly<double> parts{.particles = {{1, P(1, 1)}}, .constraints = {}, .forces = {Gravity<double>{}}};
     parts.forces.push_back(Spring<double>{one, P(1, 1), 5, 0});
-    EXPECT_EQ(said_of(parts, 0.1), "no error");  // it is 5 N/m in any direction
+    EXPECT_EQ(said_of(parts, 0.1), "no error");  // its stiffness is 5 N/m in any direction
     parts.forces.push_back(Spring<double>{one, P(1, 1), 5, 1});
     EXPECT_EQ(said_of(parts, 0.1),
               "force 2 (spring 1–fixed): its ends are at the same place, where its direction is undefined; choose a "

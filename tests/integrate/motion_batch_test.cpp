@@ -11,7 +11,7 @@
 namespace doppel {
 namespace motion_batch_test {
 
-/// Chains that are released a degree apart.
+/// Chains with releases one degree apart.
 std::vector<MotionSpec> fan(Model model, std::string_view method, std::size_t links, std::size_t count) {
     std::vector<MotionSpec> specs;
     for (std::size_t k = 0; k < count; ++k) {
@@ -41,7 +41,7 @@ void expect_same(const Bobs<double>& seen, const Bobs<double>& expected) {
     }
 }
 
-/// Each motion as it goes alone, at the start and after many samples.
+/// Each motion equals its run alone, at the start and after many samples.
 void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int width, long samples = 6) {
     MotionBatch batch(specs, jobs);
     std::atomic<bool> never = false;
@@ -67,7 +67,7 @@ TEST(MotionBatch, EachMotionEqualsThatAlone) {
 }
 
 TEST(MotionBatch, CountsTurns) {
-    // thrown so that some go round, both ways; the lone motion's own turns are tested against angles
+    // fast enough for full turns in both directions; the turns of single motions are tested against angles
     auto specs = fan(Model::constraints, "euler", 2, 30);
     for (std::size_t k = 0; k < specs.size(); ++k) specs[k].chain->rate = {Quad(15 - static_cast<int>(k)), Quad(0)};
     expect_each_as_alone(specs, 1, register_widths().back(), 200);
@@ -93,7 +93,7 @@ TEST(MotionBatch, StepsOneByOneWhatIsNotSteppedAlike) {
 }
 
 TEST(MotionBatch, NamesTheFailedMotion) {
-    // two of them break down in the same sample, in different parts: the first is named whatever the threads do
+    // two of them fail in the same sample, in different groups: the error always names the first
     auto specs = fan(Model::constraints, "rattle", 2, 200);
     for (auto& spec : specs) spec.steps_per_sample = 1;
     for (const std::size_t k : {100u, 180u}) specs[k].chain->rate = {Quad(4000), Quad(-4000)};

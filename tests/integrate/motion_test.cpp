@@ -13,7 +13,7 @@
 namespace doppel {
 namespace motion_test {
 
-/// (θ1, θ2) at the end of `seconds` with steps of 1/rate.
+/// (θ1, θ2) after `seconds` with steps of 1/rate.
 Eigen::Vector2d end_angles(Model model, std::string_view method, const Pendulum<double>& p, long seconds, long rate) {
     auto spec = stepping(model, method, p, rate);
     spec.sample_interval = {1, 1};
@@ -41,7 +41,7 @@ TEST(Methods, AreListedFromTheRegistry) {
     EXPECT_EQ(find_method("ruler"), nullptr);
 }
 
-/// The force in the first of two rods, N: physics/angle_chain.hpp by elimination.
+/// The tension of the first of two rods, N: physics/angle_chain.hpp by elimination.
 double at_release(const Pendulum<double>& p) {
     const double D = p.angle[1] - p.angle[0], c = std::cos(D), m = p.mass[0] + p.mass[1];
     const double pull1 = p.length[0] * p.rate[0] * p.rate[0] + p.gravity * std::cos(p.angle[0]);
@@ -68,7 +68,7 @@ TEST(RungeKutta4, KeepsAngularMomentumWithoutGravity) {
 }
 
 TEST(Euler, LetsTheRodsDriftAsMuchAsWasMeasured) {
-    // P1 of the study's scheme after 10 s: rod error 3.8e-3 m at worst, energy error 1.4e-3 J
+    // P1 of the study's scheme after 10 s: maximum rod error 3.8e-3 m, energy error 1.4e-3 J
     auto spec = stepping(Model::constraints, "euler", released(90, 90), 120);
     spec.steps_per_sample = 250;
     Course run(spec);
@@ -95,7 +95,7 @@ TEST(Motion, DoesNotDependOnHowAdvanceIsDivided) {
              {std::pair{Model::angles, method.angles}, {Model::constraints, method.constraints}})
             for (const auto& degrees : {std::vector{90.0, 90.0}, {90.0, -20.0, 50.0}, {60.0, 0.0, 10.0, 40.0}}) {
                 if (!supports || method.adaptive) continue;
-                auto spec = stepping(model, method.name, from_rest(degrees), 1024);  // a double
+                auto spec = stepping(model, method.name, from_rest(degrees), 1024);  // 1/1024 is a double
                 spec.tolerance = 1e-8;
                 const auto often = Course(spec).advance(1024);
                 spec.sample_interval = {1, 1};
@@ -109,17 +109,17 @@ TEST(Motion, DoesNotDependOnHowAdvanceIsDivided) {
 }
 
 TEST(Motion, CountsWholeTurnsInBothModels) {
-    // thrown fast enough to go round: ω² l > 4 g at the bottom
+    // fast enough for full turns: ω² l > 4 g at the bottom
     auto p = released(0, 0);
     p.rate = {12, 12};
-    p.angle[1] += 2 * pi;  // a turn ahead from the start
+    p.angle[1] += 2 * pi;  // one turn ahead from the start
     const auto angles = end_angles(Model::angles, "rk4", p, 2, 30000),
                particles = end_angles(Model::constraints, "rk4", p, 2, 30000);
     EXPECT_GT(angles[0], 2 * pi);
     EXPECT_LT((angles - particles).norm(), 2e-11);  // measured 3e-12
 }
 
-/// One link that whirls for `seconds`, in double or quad.
+/// One link that rotates fast for `seconds`, in double or quad.
 Observation whirl(Model model, std::string_view method, double degrees_a_second, Precision precision,
                   Rational seconds) {
     const Pendulum<double> p{{1}, {1}, {0.5}, {radians(degrees_a_second)}, 9.8};
@@ -139,7 +139,7 @@ TEST(Motion, CountsTurnsHoweverFastAndHoweverSeldomSampled) {
         for (const auto model : {Model::constraints, Model::mechanism})
             for (const auto method : {"taylor", "dop853", "rattle6"})
                 EXPECT_NEAR(whirl(model, method, rate, Precision::in_double, {1, 1}).bobs[0].theta, truth, 1e-2)
-                    << method << ", " << rate;  // measured 4e-3 of rattle6 at 400 000°/s
+                    << method << ", " << rate;  // measured 4e-3 for rattle6 at 400 000°/s
     }
 }
 
@@ -193,7 +193,7 @@ TEST(Motion, CountsItsSteps) {
 }
 
 TEST(Motion, ObservesRodTensionsOnRequest) {
-    // one motion by three models, in two precisions, with and without projection; forces of physics/rod_chain.hpp
+    // one motion by three models, in two precisions, with and without projection; tensions of physics/rod_chain.hpp
     auto p = released(90, -20);
     p.mass = {1, 2.5};
     p.rate = {2, -3};
@@ -214,12 +214,12 @@ TEST(Motion, ObservesRodTensionsOnRequest) {
                 if (expected.empty()) expected = forces;
                 ASSERT_EQ(forces.size(), 2u);
                 for (std::size_t k = 0; k < 2; ++k)
-                    EXPECT_NEAR(forces[k], expected[k], 7e-10);  // measured 1.2e-10, of the steps
+                    EXPECT_NEAR(forces[k], expected[k], 7e-10);  // measured 1.2e-10, the error of the steps
             }
 }
 
 TEST(Motion, InQuadKeepsWhatDoubleRoundsAway) {
-    // two starts that no double tells apart
+    // two starts that are equal in double
     auto spec = stepping(Model::constraints, "rk4", released(50, 0), 1000);
     spec.precision = Precision::in_quad;
     auto twin = spec;

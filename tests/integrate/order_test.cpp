@@ -18,7 +18,7 @@
 namespace doppel {
 namespace order_test {
 
-/// Order of the interpolation: the error a quarter into the first step shrinks like step^(order + 1).
+/// Order of the interpolation: the error at a quarter of the first step shrinks as step^(order + 1).
 template <class Which>
 double interpolation_order(double coarse_tolerance, double fine_tolerance) {
     using Model = DoublePendulum<Quad>;
@@ -46,8 +46,8 @@ TEST(Interpolation, HasItsOrder) {
     EXPECT_NEAR(interpolation_order<Dop853>(1e-17, 1e-20), 7, 0.02);
 }
 
-// Butcher's conditions: for every rooted tree t of no more than `order` nodes Σ b_i φ_i(t) = 1/γ(t). A tree is the list
-// of its branches; they come sorted, so that each tree comes once.
+// Butcher's conditions: for every rooted tree t of at most `order` nodes Σ b_i φ_i(t) = 1/γ(t). A tree is the sorted
+// list of its branches, so that each tree occurs once.
 
 struct Tree {
     std::vector<Tree> branches;
@@ -112,7 +112,7 @@ Column elementary_weights(const Weights& w, const Tree& tree) {
     return phi;
 }
 
-/// The worst of the conditions that trees of `from` to `to` nodes pose.
+/// The largest residual of the conditions for trees of `from` to `to` nodes.
 double violation(const Weights& w, int from, int to) {
     double worst = 0;
     for (const auto& tree : trees_up_to(to)) {

@@ -20,7 +20,7 @@ inline Pendulum<double> from_rest(const std::vector<double>& degrees) {
     return p;
 }
 
-/// Nothing equal, everything moving.
+/// Unequal numbers, every link in motion.
 inline Pendulum<double> uneven(std::size_t links) {
     Pendulum<double> p{.mass = {}, .length = {}, .angle = {}, .rate = {}};
     for (std::size_t i = 0; i < links; ++i) {

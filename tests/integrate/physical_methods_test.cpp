@@ -20,7 +20,7 @@ namespace physical_methods_test {
 
 using InAngles = PhysicalChain<Quad>;
 
-/// log2 of what the error of the state, its time and work too, shrinks by when the step does by 2.
+/// log2 of the ratio of the errors for a step and half of it; the state includes its time and work.
 template <class Which, class Model>
 void expect_order(int links, long steps, double within) {
     for (const auto& p : {bodies<Quad>(static_cast<std::size_t>(links)), driven_bodies<Quad>(2)}) {
@@ -46,7 +46,7 @@ TEST(PhysicalOrder, OfGaussCollocationIsAsStated) {
     expect_order<Gauss6, InAngles>(3, 64, 0.05);  // measured 0.019
 }
 
-/// A motion of bodies, sampled at the end of `seconds`.
+/// A motion of rigid bodies, sampled after `seconds`.
 MotionSpec spec_of(const PhysicalPendulum<Quad>& p, std::string_view method, Rational seconds, long steps = 1) {
     MotionSpec spec;
     spec.chain = p.chain;
@@ -80,7 +80,7 @@ TEST(PhysicalModels, AgreeInQuad) {
 }
 
 TEST(PhysicalModels, StartFromRestAgainstQuadraticDrag) {
-    // where the speed, √v², has a series of no length
+    // where the speed √v² has a series of zero radius
     auto p = driven_bodies<Quad>(2);
     p.pivot = {};
     p.chain.rate = {Quad(0), Quad(0)};
@@ -88,7 +88,7 @@ TEST(PhysicalModels, StartFromRestAgainstQuadraticDrag) {
     spec.tolerance = parse_quad("1e-27");
     const auto truth = Course(spec).advance(1);
     spec.method = "taylor";
-    EXPECT_LT(apart(truth, Course(spec).advance(1)), 5e-25);  // measured 8e-26, of dop853
+    EXPECT_LT(apart(truth, Course(spec).advance(1)), 5e-25);  // measured 8e-26, the error of dop853
 }
 
 TEST(PhysicalModels, KeepEnergyLessWork) {
@@ -103,7 +103,7 @@ TEST(PhysicalModels, KeepEnergyLessWork) {
     EXPECT_LT(off(spec_of(p, "rk4", {2, 1}, 2000)), 2e-7);
 }
 
-/// How far SᵀJS is from J, where S is the Jacobian in (θ, p) of one step of the frictionless chain.
+/// The difference between SᵀJS and J; S is the Jacobian in (θ, p) of one step of the frictionless chain.
 template <class Which>
 double symplecticity_error(const PhysicalPendulum<Quad>& p) {
     InAngles model(p);
@@ -131,7 +131,7 @@ TEST(PhysicalModels, AreSteppedSymplecticallyByGauss) {
     EXPECT_LT(symplecticity_error<Gauss4>(bodies<Quad>(2)), 2e-22);  // measured 8e-24
     EXPECT_LT(symplecticity_error<Gauss6>(bodies<Quad>(2)), 2e-22);  // measured 2.0e-23
     EXPECT_GT(symplecticity_error<Rk4>(bodies<Quad>(2)), 1e-5);      // measured 1.5e-4
-    // as friction makes the flow itself
+    // friction makes the flow itself non-symplectic
     auto damped = bodies<Quad>(2);
     damped.friction.viscous = {Quad(0.125), Quad(0.25)};
     EXPECT_GT(symplecticity_error<Gauss6>(damped), 1e-2);  // measured 0.06

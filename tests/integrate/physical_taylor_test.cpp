@@ -38,7 +38,7 @@ TEST(PhysicalTaylor, AnEvenRodSwingsWithItsPeriod) {
     EXPECT_NEAR(after(p, 10 * period, 1e-15)[0], amplitude, 1e-12);  // measured 4e-16
 }
 
-/// exp(A t) y, by its series over 100 equal parts of t.
+/// exp(A t) y by its series over 100 equal parts of t.
 Eigen::Vector4d exponential(const Eigen::Matrix4d& a, double t, Eigen::Vector4d y) {
     const double h = t / 100;
     for (int part = 0; part < 100; ++part) {
@@ -52,7 +52,7 @@ Eigen::Vector4d exponential(const Eigen::Matrix4d& a, double t, Eigen::Vector4d 
 }
 
 TEST(PhysicalTaylor, SmallSwingsDecayAsInTheLinearSystem) {
-    // M θ″ + B θ′ + K θ = 0, of rods with friction at the joints and on the arms: exact but for the cube of the
+    // M θ″ + B θ′ + K θ = 0 of rods with friction at the joints and on the links: exact except for the cube of the
     // amplitude
     const double small = 1e-6;
     auto p = physical(Pendulum<double>{{1.2, 0.5}, {0.8, 1.1}, {small, -2 * small}, {0, 0}});
@@ -77,7 +77,7 @@ TEST(PhysicalTaylor, SmallSwingsDecayAsInTheLinearSystem) {
     }
 }
 
-/// Of small deviations from the upright over one period of the pivot: the trace of the map.
+/// The trace of the map of small deviations from the upright over one period of the pivot.
 double trace_of_period(double amplitude, double frequency) {
     double trace = 0;
     for (int i = 0; i < 2; ++i) {
@@ -90,7 +90,7 @@ double trace_of_period(double amplitude, double frequency) {
     return trace;
 }
 
-/// The least amplitude of the pivot that holds the upright.
+/// The smallest amplitude of the pivot that stabilises the upright.
 double least_amplitude(double frequency) {
     double low = 0.5 * std::sqrt(2 * 9.8) / frequency, high = 4 * low;
     for (int i = 0; i < 30; ++i) {
@@ -101,7 +101,7 @@ double least_amplitude(double frequency) {
 }
 
 TEST(PhysicalTaylor, TheUprightIsStableWhereKapitzaAndMathieuPredict) {
-    // Kapitza: a² ν² > 2 g l. Mathieu's edge: 4 g / (l ν²) = q²/2 − 7 q⁴/128 + 29 q⁶/2304 − 68687 q⁸/18874368, q = 2 a
+    // Kapitza: a² ν² > 2 g l. Mathieu's limit: 4 g / (l ν²) = q²/2 − 7 q⁴/128 + 29 q⁶/2304 − 68687 q⁸/18874368, q = 2 a
     // / l
     // Source  Abramowitz & Stegun, 20.2.25
     const double fast = least_amplitude(80);
@@ -115,7 +115,7 @@ TEST(PhysicalTaylor, TheUprightIsStableWhereKapitzaAndMathieuPredict) {
 }
 
 TEST(PhysicalTaylor, SeesARateThatDipsBelowZeroAndBackWithinAStep) {
-    // ω = 0.99 + sin t but for the drag |ω| ω, which turns over twice in 0.28 s of steps of some seconds
+    // ω = 0.99 + sin t except for the drag |ω| ω, which changes its sign twice in 0.28 s, within steps of some seconds
     PhysicalPendulum<double> p = physical(Pendulum<double>{{1}, {1}, {0}, {0.99}, 0});
     p.friction.link_quadratic = {0.01};
     p.torques = {{0, 1, 1, 0}};

@@ -19,7 +19,7 @@ namespace rattle_test {
 
 using Rods = RodChain<double, 2>;
 
-/// Drag on every particle, −k v a unit of mass: forces that depend on velocity.
+/// Drag on every particle, −k v per unit of mass: a force that depends on velocity.
 template <class Scalar, int N>
 struct Dragged : RodChain<Scalar, N> {
     using Half = typename RodChain<Scalar, N>::Half;
@@ -69,7 +69,7 @@ TEST(Rattle6, MeetsTheConditionsOfOrderSix) {
               2e-26);  // measured 3e-27
 }
 
-/// How far SᵀJS is from J, where S is the Jacobian of one step in (θ, p), by differences in Quad.
+/// The difference between SᵀJS and J; S is the Jacobian of one step in (θ, p), by differences in Quad.
 template <class Which>
 double symplecticity_error(const Quad& step) {
     using Model = RodChain<Quad, 2>;
@@ -109,14 +109,14 @@ TEST(Rattle, ReturnsWhenTimeIsReversed) {
 }
 
 TEST(Rattle, KeepsEnergyAndRodsOverAHundredThousandPeriods) {
-    // the slow mode of 30/0 takes 1.9 s: 1.9e5 s in steps of a twentieth of a second
+    // the slow mode of 30/0 has a period of 1.9 s: a run of 1.9e5 s in steps of 1/20 s
     const auto errors = errors_of<Rattle, Rods>(released(30, 0), 0.05, 3'800'000);
     EXPECT_LT(errors.late, 1.3 * errors.early);  // measured 1.14
     EXPECT_LT(errors.late, 0.1);                 // measured 0.040 J
     EXPECT_LT(errors.rod, 1e-15);                // measured 2.2e-16 m
 }
 
-/// A pendulum of one link that swings a hundred-thousandth of a radian, after steps of z / √(g/l).
+/// A pendulum of one link with an amplitude of 1e-5 rad, with steps of z / √(g/l).
 Quad least_energy(double z, long steps, Quad& largest) {
     const Pendulum<Quad> p{{Quad(1)}, {Quad(1)}, {Quad(1e-5)}, {Quad(0)}, Quad(9.8)};
     using Model = RodChain<Quad, 1>;
@@ -139,8 +139,8 @@ Quad least_energy(double z, long steps, Quad& largest) {
 }
 
 TEST(Rattle, KeepsEnergyWithinAQuarterOfZSquared) {
-    // leapfrog on the linear oscillator keeps v² + (1 − z²/4) ω² q²: energy falls by z²/4 at the bottom, and never
-    // rises
+    // leapfrog on the linear oscillator conserves v² + (1 − z²/4) ω² q²: the energy is lower by z²/4 at the bottom, and
+    // never higher
     for (const double z : {0.1, 0.5, 1.5}) {
         Quad largest;
         const Quad minimum = least_energy(z, 2000, largest);
@@ -158,7 +158,7 @@ TEST(Rattle, IsStableUpToZOfTwo) {
 }
 
 TEST(Rattle, IncludesFriction) {
-    // the same equations by Runge–Kutta: Baumgarte with α = 0 adds nothing to them
+    // the same equations by Runge–Kutta: Baumgarte's method with α = 0 does not change them
     const auto p = unequal<double>();
     using Model = Dragged<double, 2>;
     const auto start = Model::start(p), end = after<Rattle6, Model>(p, start, 1e-3, 1000);
@@ -171,14 +171,14 @@ TEST(Rattle, IncludesFriction) {
     EXPECT_GT(lost, 1);  // measured 4.6 J
 }
 
-/// The state after so many steps of 1/rate s.
+/// The state after this number of steps of 1/rate s.
 Mechanism<double>::State on_mechanism(const Assembly<double>& parts, double rate, long steps) {
     using Model = Mechanism<double>;
     return after<Rattle, Model>(parts, Model::start(parts), 1 / rate, steps);
 }
 
 TEST(Rattle, ContinuesWhereFrictionNearlyBalancesASpring) {
-    // two large forces on a bead in a slot, with a bob on it; the sum is rounded by far more than it amounts to
+    // two large forces on a bead in a slot, with a bob on it: round-off is far larger than their sum
     for (const auto& [damping, bound] : {std::pair{1e3, 5e-4}, {1e4, 4e-5}}) {
         const Assembly<double> parts{
             .particles = {{1, P(3, 0)}, {0.7, P(3.3, -1)}},
@@ -200,7 +200,7 @@ TEST(Rattle, FailsIfFrictionIsTooStrong) {
 }
 
 TEST(Rattle, ContinuesWhereOnlyRoundingIsLeft) {
-    // three links that gave up after 206 701 steps, at 1.3e-15 m²
+    // three links whose run failed after 206 701 steps, at 1.3e-15 m²
     const auto rad = [](std::vector<double> degrees) {
         for (auto& value : degrees) value = radians(value);
         return degrees;
@@ -233,7 +233,7 @@ TEST(Rattle, ContinuesInRandomScenes) {
     }
 }
 
-/// The same chain hung up elsewhere.
+/// The same chain with its pivot elsewhere.
 Assembly<double> hung_at(const Pendulum<double>& p, const Place<double>& pivot) {
     auto parts = parts_of(p);
     for (auto& particle : parts.particles) particle.place += pivot;
@@ -253,15 +253,15 @@ TEST(Rattle, ContinuesFarFromTheOrigin) {
         EXPECT_LT(Mechanism<double>(parts).length_error(on_mechanism(parts, 6000, 12'000)), 4e-16 * (2.5 + far))
             << far;  // measured 4e-16, 4e-15, 1e-13, 1e-10 m
     }
-    // a bead released at the origin, on a rod whose other end is not
+    // a bead released at the origin, on a rod with its other end elsewhere
     const Assembly<double> bead{
         .particles = {{1, P(0, 0)}}, .constraints = {Rod<double>{0, P(1, 0), 1}}, .forces = {Gravity<double>{}}};
     EXPECT_LT(Mechanism<double>(bead).length_error(on_mechanism(bead, 6000, 12'000)), 1e-15);  // measured 1.1e-16 m
 }
 
 TEST(Rattle, KeepsTheRodsOfALightFirstMass) {
-    // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings like a bead on a string under the
-    // weight of m2, at ω = √(2 m2 g / (l m1)), where steps are stable below 2 / ω
+    // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 oscillates like a bead on a string under the
+    // weight of m2, at ω = √(2 m2 g / (l m1)): steps are stable below 2 / ω
     for (const auto& [light, maximum] : {std::pair{1e-3, 1e-5}, {1e-6, 3e-9}, {1e-9, 5e-13}, {1e-12, 2e-13}}) {
         auto p = released(30, 30);
         p.mass[0] = light;

@@ -9,8 +9,8 @@
 namespace doppel {
 namespace reference_test {
 
-// Every method against a reference that two formulations certify: angles and constraints, both by Taylor series in
-// quad, which share no equation of motion. Starts, masses and lengths are unequal ones.
+// Every method against a reference confirmed by two formulations: angles and constraints, both by Taylor series in
+// quad, which share no equation of motion. Starts, masses and lengths are unequal.
 
 struct Case {
     const char* name;
@@ -54,16 +54,16 @@ std::vector<Quad> certified(const Pendulum<double>& p) {
     spec.model = Model::constraints;
     const auto again = exact_angles(spec);
     for (std::size_t i = 0; i < reference.size(); ++i) {
-        // particles know their angles up to whole turns
+        // particles give their angles only modulo whole turns
         const Quad difference = sin((reference[i] - again[i]) / 2) * 2;
         EXPECT_LT(abs(difference), parse_quad("1e-28")) << "the two formulations differ";  // measured 2e-29
     }
     return reference;
 }
 
-/// How a method is set for these cases.
+/// The settings of a method for these cases.
 struct Setting {
-    long steps_per_s;  // of a fixed step
+    long steps_per_s;  // with fixed steps
     double tolerance;  // of an adaptive method
 };
 
@@ -76,7 +76,7 @@ const std::map<std::string_view, Setting> settings{
     {"rattle", {20'000, 0}},   {"rattle6", {1'000, 0}},
 };
 
-/// The greatest angle error of a method at its setting, measured, rad; case by case.
+/// The measured maximum angle errors of a method at its setting, rad, for each case.
 struct Measured {
     std::string_view method;
     Model model;
@@ -110,7 +110,7 @@ constexpr Measured measured[]{
 };
 // clang-format on
 
-/// What an error may be: five times the measured one, and no less than some roundings of an angle.
+/// The allowed error: five times the measured one, and at least a few round-off errors of an angle.
 double allowed(double error) {
     return std::max(5 * error, 5e-15);
 }

@@ -17,7 +17,7 @@ namespace stabilise_test {
 
 using Chain = RodChain<double, 2>;
 
-/// What a run of P1 (90/90) leaves, largest: errors of rods (m), of energy (J), and J v (m²/s).
+/// Maximum errors in a run of P1 (90/90): rods (m), energy (J), and J v (m²/s).
 struct Errors {
     double rod = 0, energy = 0, slip = 0;
 };
@@ -67,7 +67,7 @@ TEST(Projected, KeepsTheOrderOfTheMethod) {
 }
 
 TEST(Projected, MovesToTheConstraintsAndNoFurther) {
-    // already there: nothing changes; a heavy mass moves less than a light one
+    // already on the constraints: no change; a heavy mass moves less than a light one
     Pendulum<double> p = released(40, -20);
     p.mass = {1, 100};
     p.rate = {1, -2};
@@ -95,7 +95,7 @@ TEST(Projected, ReachesTheDigitsOfTheScalar) {
 }
 
 TEST(Projected, KeepsTheRodsOfALightFirstMass) {
-    // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 swings at √(2 m2 g / (l m1))
+    // aligned links: the condition number of J M⁻¹ Jᵀ is 4 m2 / m1, and m1 oscillates at √(2 m2 g / (l m1))
     for (const auto& [light, maximum] : {std::pair{1e-3, 2e-10}, {1e-6, 2e-13}, {1e-9, 3e-13}, {1e-12, 3e-13}}) {
         auto p = released(30, 30);
         p.mass[0] = light;
@@ -107,7 +107,7 @@ TEST(Projected, KeepsTheRodsOfALightFirstMass) {
 }
 
 TEST(Projected, FailsIfALightMassWouldHaveToJump) {
-    // aligned links that are a millimetre too far apart: the light mass in between would be thrown aside
+    // aligned links a millimetre too far apart: the light mass between them would move far to one side
     auto p = released(30, 30);
     p.mass[0] = 1e-9;
     Projected<Chain> model(p);
@@ -118,7 +118,7 @@ TEST(Projected, FailsIfALightMassWouldHaveToJump) {
 }
 
 TEST(Projected, FailsIfNoPointOnTheConstraintsIsFound) {
-    // a rod without length has no direction: J M⁻¹ Jᵀ is 0
+    // a rod of zero length has no direction: J M⁻¹ Jᵀ is 0
     const auto p = released(0, 0);
     Projected<Chain> model(p);
     Chain::State y = Chain::State::Zero(8);
@@ -127,7 +127,7 @@ TEST(Projected, FailsIfNoPointOnTheConstraintsIsFound) {
     EXPECT_EQ(said.rfind("projection: the constraints still have an error of ", 0), 0u) << said;
 }
 
-/// How C of a hanging rod, stretched by 1e-9 m, goes on: after `steps` steps of Euler or Runge–Kutta with α dt = z.
+/// The growth of C, for a hanging rod stretched by 1e-9 m, after `steps` steps of Euler or Runge–Kutta with α dt = z.
 template <class Which>
 double growth(double z, long steps) {
     const double step = 1e-3;
@@ -151,7 +151,7 @@ TEST(Baumgarte, IsStableBelowTheLimitOfTheMethod) {
 }
 
 TEST(Baumgarte, CorrectsErrorsByItsEquation) {
-    // C″ = −2α C′ − α² C at a state off the constraints: J a + J̇ v, by the model's own operations
+    // C″ = −2α C′ − α² C at a state off the constraints: J a + J̇ v, by the model's own functions
     Pendulum<double> p = released(40, -20);
     p.mass = {1.25, 0.5};
     p.rate = {1, -2};

@@ -7,7 +7,7 @@
 
 namespace doppel {
 
-/// A chain that goes by a fixed step of 1/rate s; one step a sample.
+/// A chain with a fixed step of 1/rate s; one step per sample.
 inline MotionSpec stepping(Model model, std::string_view method, const Pendulum<double>& p, long rate) {
     MotionSpec spec;
     spec.chain = p.cast<Quad>();
@@ -18,7 +18,7 @@ inline MotionSpec stepping(Model model, std::string_view method, const Pendulum<
     return spec;
 }
 
-/// The motion that a spec comes to, and its samples.
+/// The motion of a spec, and its samples.
 struct Course {
     std::unique_ptr<Motion> motion;
     std::atomic<bool> never = false;

@@ -18,7 +18,7 @@ using namespace counted;
 template <class S>
 using Vector = State<S, Eigen::Dynamic>;
 
-/// Where a mechanism is after so many seconds.
+/// The state of a mechanism after `seconds`.
 template <class Which, class S>
 Vector<S> end_of(const Assembly<S>& parts, const S& seconds, const S& tolerance) {
     Mechanism<S> model(parts);
@@ -32,7 +32,7 @@ double apart(const Vector<S>& a, const Vector<S>& b) {
     return static_cast<double>(S((a - b).cwiseAbs().maxCoeff()));
 }
 
-/// Springs with damping, attraction, a near droplet, straight and round slots, and a loop.
+/// Springs with damping, attraction, a near droplet, straight and circular slots, and a loop.
 Assembly<double> of_everything() {
     auto parts = four_bars();
     parts.particles.push_back({0.7, P(3.5, 2)});
@@ -61,7 +61,7 @@ TEST(TaylorMechanism, FollowsDop853) {
 }
 
 TEST(TaylorMechanism, OrbitClosesAfterKeplersPeriod) {
-    // released at the far end of an ellipse of semi-axis a and eccentricity e: T = 2π √(a³ / GM), v² = GM/a (1−e)/(1+e)
+    // released at the apocentre of an ellipse, semi-axis a, eccentricity e: T = 2π √(a³ / GM), v² = GM/a (1−e)/(1+e)
     for (const double e : {0.0, 0.5, 0.9}) {
         const Quad a(2), strength(3), eccentricity(e);
         const Quad far = a * (Quad(1) + eccentricity);
@@ -93,10 +93,10 @@ TEST(TaylorMechanism, KeepsEnergyAndRods) {
     EXPECT_LT(std::abs(static_cast<double>(Quad(model.energy(end) - model.energy(start)))),
               1e-31);  // J; measured 1.2e-32
     const Quad moved = model.length_error(end) - model.length_error(start);
-    EXPECT_LT(std::abs(static_cast<double>(moved)), 3e-33);  // m; measured 4e-34, of the 2e-16 that doubles start with
+    EXPECT_LT(std::abs(static_cast<double>(moved)), 3e-33);  // m; measured 4e-34, of the initial 2e-16 of doubles
 }
 
-/// Two links of 1 m and 1 kg at rest, and the study's droplet a mile to their right.
+/// Two links of 1 m and 1 kg at rest, and the study's droplet one mile to their right.
 Assembly<Quad> hanging(double degrees, bool beside_a_droplet) {
     Pendulum<Quad> p = from_rest({degrees, degrees}).cast<Quad>();
     for (auto& angle : p.angle) angle = Quad(degrees) * pi_of<Quad>() / Quad(180);
@@ -107,8 +107,8 @@ Assembly<Quad> hanging(double degrees, bool beside_a_droplet) {
 }
 
 TEST(TaylorMechanism, ADropletHasItsTheoreticalEffect) {
-    // both links in one line at rest, and so M = ((2, 1), (1, 1)) for the angles: each bob takes up the part across the
-    // line of the droplet's pull on itself
+    // both links aligned at rest, so M = ((2, 1), (1, 1)) for the angles: each bob has the acceleration by the droplet
+    // across the line
     const auto at = hanging(79, false).particles;
     const double t = 1e-4, sine = static_cast<double>(at[0].place[0]), cosine = -static_cast<double>(at[0].place[1]);
     const auto with = end_of<Taylor>(hanging(79, true), Quad(t), Quad(1e-32));
@@ -121,7 +121,7 @@ TEST(TaylorMechanism, ADropletHasItsTheoreticalEffect) {
     }
 }
 
-// --- what it refuses
+// Errors.
 
 std::string error_of(const Assembly<double>& parts, double seconds, double tolerance) {
     const auto [code, said] = test::thrown_by([&] { end_of<Taylor>(parts, seconds, tolerance); });
@@ -136,7 +136,7 @@ TEST(TaylorMechanism, FailsIfBodiesCollide) {
 }
 
 TEST(TaylorMechanism, PassesThroughTheMiddleOfASpring) {
-    // straight through it, where the pull jumps: x = 1 − 9 sin t, then x = cos τ + v sin τ − 1
+    // straight through the centre, where the force jumps: x = 1 − 9 sin t, then x = cos τ + v sin τ − 1
     const Assembly<double> parts{
         .particles = {{1, P(1, 0), P(-9, 0)}}, .constraints = {}, .forces = {Spring<double>{one, P(0, 0), 1, 1}}};
     const double tau = 2 - std::asin(1 / 9.0), v = -9 * std::sqrt(1 - 1 / 81.0);
@@ -158,7 +158,7 @@ TEST(TaylorMechanism, StaysInEquilibrium) {
 }
 
 TEST(TaylorMechanism, FallsAndHangsFromRest) {
-    // nothing but gravity; a spring let go where it is at rest, or where it has no length
+    // gravity only; a spring released at its rest length, or with zero length
     Assembly<double> parts{.particles = {{1, P(0, 0)}}, .constraints = {}, .forces = {Gravity<double>{}}};
     EXPECT_NEAR(end_of<Taylor>(parts, 2.0, 1e-12)[1], -0.5 * 9.8 * 4, 1e-14);  // measured 0
     for (const double length : {0.0, 1.0}) {

@@ -17,8 +17,8 @@ namespace taylor_series_test {
 template <class Scalar>
 using Vector = State<Scalar, Eigen::Dynamic>;
 
-/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks like h^order only if every
-/// coefficient is right. In quad; y′ by central differences.
+/// Residual of the equations of motion along a series, |y′(h) − f(y(h))|, which shrinks as h^order only if every
+/// coefficient is correct. In quad; y′ by central differences.
 template <class Model>
 double residual(const Pendulum<double>& p, int order, double h) {
     const auto q = p.cast<Quad>();
@@ -40,7 +40,7 @@ double residual(const Pendulum<double>& p, int order, double h) {
     return worst;
 }
 
-/// `more` orders of the rates than asked for.
+/// Expects that the residual shrinks as h^(order + more).
 template <class Model>
 void expect_series_solves(const Pendulum<double>& p, int more = 0) {
     for (int order : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
@@ -59,7 +59,7 @@ TEST(TaylorSeries, SolvesTheEquationsOfMotionOrderByOrder) {
     expect_series_solves<RodChain<Quad, Eigen::Dynamic>>(uneven(5), 1);
 }
 
-/// Coefficient k of the rates: what a series of order k has more than one of order k − 1, at h = 1.
+/// Coefficient k of the rates: the difference between the series of orders k and k − 1, at h = 1.
 template <class Series, class Scalar>
 Vector<Scalar> coefficient(const Pendulum<Scalar>& p, const Vector<Scalar>& y, int k) {
     Series with(p, k), without(p, k - 1);

@@ -21,7 +21,7 @@ namespace taylor_test {
 template <class Scalar, int N>
 using Stepper = TaylorStepper<AngleChain<Scalar, N>>;
 
-/// Where a motion ends.
+/// The end of a motion.
 template <class Model, class Scalar = typename Model::Scalar>
 typename Model::State end_of(const Pendulum<Scalar>& p, const Scalar& seconds, const Scalar& tolerance, int order = 0) {
     Model model(p);
@@ -30,7 +30,7 @@ typename Model::State end_of(const Pendulum<Scalar>& p, const Scalar& seconds, c
     return stepper.state();
 }
 
-/// The greatest difference of an angle.
+/// The largest difference of the angles.
 template <class One, class Other>
 double angle_error(const One& one, const Other& other) {
     double worst = 0;
@@ -39,7 +39,7 @@ double angle_error(const One& one, const Other& other) {
     return worst;
 }
 
-/// A problem, how sensitive its end is to its start, and its end to some 27 digits.
+/// A problem, the sensitivity of its end to its start, and its end to about 27 digits.
 template <int N>
 struct Problem {
     Pendulum<double> pendulum;
@@ -59,7 +59,7 @@ struct Problem {
 const Problem<2> p1{from_rest({90, 90}), 10, 80}, p2{from_rest({30, 0}), 60, 21}, p3{from_rest({150, 90}), 5, 320};
 const Problem<3> p4{from_rest({120, 0, 0}), 5, 1040};
 
-/// Calls test(name, problem) for all.
+/// Calls test(name, problem) for all problems.
 template <class Test>
 void for_each_problem(Test&& test) {
     test("P1", p1);
@@ -79,17 +79,17 @@ TEST(Taylor, ErrorIsToleranceTimesSensitivity) {
 }
 
 TEST(Taylor, HandlesVanishingCoefficientsAtEveryOrder) {
-    // from rest at 90/90 three in four coefficients vanish, whatever the order
+    // from rest at 90/90, three of four coefficients are zero, whatever the order
     for (int order : {8, 9, 10, 11, 12, 13, 14, 15, 16, 20, 24})
         for (double tolerance : {1e-6, 1e-9})
             EXPECT_LT(p1.error(tolerance, order), 80 * tolerance) << order;  // measured ≤ 42 tolerance
 }
 
 TEST(Taylor, ReturnsAfterTheExactPeriod) {
-    // Gauss 1799: T = 2π √(l/g) / agm(1, cos(A/2)). A quarter of it leads to the bottom.
+    // Gauss 1799: T = 2π √(l/g) / agm(1, cos(A/2)). After a quarter of it the pendulum is at the bottom.
     using Model = AngleChain<Quad, Eigen::Dynamic>;
     struct Case {
-        double amplitude, bottom, back;  // °; what the angle may err by there, rad
+        double amplitude, bottom, back;  // °; allowed errors of the angle there, rad
     };
     // measured 2.5e-32, 7.5e-31, 5.8e-31, 1.3e-30 and 1.2e-32, 7.2e-31, 1.2e-29, 2.4e-27
     for (const auto& [amplitude, at_bottom, at_end] :
@@ -110,7 +110,7 @@ TEST(Taylor, ReturnsAfterTheExactPeriod) {
 }
 
 TEST(Taylor, HoldsInsideEveryStep) {
-    // some twenty samples a step, against quad
+    // about twenty samples per step, against quad
     const auto p = p1.pendulum;
     AngleChain<double, 2> model(p);
     AngleChain<Quad, 2> exact_model(p.cast<Quad>());
@@ -135,7 +135,7 @@ TEST(Taylor, StepsDoNotDependOnSampling) {
     EXPECT_EQ(once.smallest_step(), often.smallest_step());
     EXPECT_EQ(once.evaluations(), once.steps() * once.order());
     for (int k = 0; k < 4; ++k)
-        EXPECT_NEAR(once.state()[k], often.state()[k], 1e-13);  // measured 2e-14: 1e-4 is no double
+        EXPECT_NEAR(once.state()[k], often.state()[k], 1e-13);  // measured 2e-14: 1e-4 is not a double
     often.advance(0);
     EXPECT_EQ(once.steps(), often.steps());
 }
@@ -167,7 +167,7 @@ TEST(Taylor, KeepsRodsOfAProjectedModel) {
     static_assert(!HasSeries<Baumgarte<RodChain<double, 2>>>);
 }
 
-// --- what it refuses
+// Errors.
 
 template <class Action>
 std::string error_of(ExitCode code, Action&& action) {

@@ -16,7 +16,7 @@ State<double, 8> places(double first, double second, double rate1 = 0, double ra
     return released_as_particles<double, 2>(chain(first, second, rate1, rate2));
 }
 
-/// The angles that turns make of what places tell.
+/// The angles of Turns from positions.
 Bobs<double> seen(const Turns& turns, const State<double, 8>& y) {
     auto bobs = bobs_of_particles(chain(0, 0), y);
     turns.add_to(bobs);
@@ -24,7 +24,7 @@ Bobs<double> seen(const Turns& turns, const State<double, 8>& y) {
 }
 
 TEST(Turns, AreCountedBothWaysFromAnyStart) {
-    // one rod goes round ever faster, up to 0.4 turns a look, the other to and fro over the top, from some turns ahead
+    // one rod rotates ever faster, up to 0.4 turns per sample; the other oscillates over the top, some turns ahead
     const auto first = [](int n) { return 7.5 - 1.2e-3 * n * n; };
     const auto second = [](int n) { return -20 + 9 * std::sin(0.25 * n); };
     Turns turns({first(0), second(0)});
@@ -39,7 +39,7 @@ TEST(Turns, AreCountedBothWaysFromAnyStart) {
 }
 
 TEST(Turns, AreKeptWhereARodPointsStraightUp) {
-    // there the angle is π or −π by the sign of a zero; places may give either for what was released as the other
+    // there the angle is π or −π, by the sign of a zero; positions may give either one
     for (const double released : {pi, -pi, 3 * pi, -3 * pi})
         for (const double x : {0.0, -0.0, 1e-20, -1e-20}) {
             Turns turns({released, released});
@@ -59,7 +59,7 @@ TEST(Turns, AreNotAddedWhereNotFollowed) {
 }
 
 TEST(Turns, AreCountedForMoreThanHalfATurnBetweenUpdates) {
-    // 30 rad and −20 rad a look, at rates that grow to twice and fall to nothing
+    // 30 rad and −20 rad per sample; the first rate doubles, the second falls to zero
     const auto first = [](double n) { return 15 * n + 0.15 * n * n; };
     const auto second = [](double n) { return 3 - 20 * n + 0.2 * n * n; };
     const auto at = [&](double n) { return places(first(n), second(n), 15 + 0.3 * n, -20 + 0.4 * n); };
@@ -74,7 +74,7 @@ TEST(Turns, AreCountedForMoreThanHalfATurnBetweenUpdates) {
 }
 
 TEST(Turns, AreNotCountedForARodThatSwingsToAndFro) {
-    // by 0.9 rad about the top, as a light mass between heavy ones does, up to 8 rad of a swing between two looks
+    // by 0.9 rad about the top, like a light mass between heavy ones; up to 8 rad of motion between two samples
     const auto angle = [](double t) { return pi + 0.9 * std::sin(4000 * t); };
     const auto rate = [](double t) { return 0.9 * 4000 * std::cos(4000 * t); };
     Turns turns({angle(0), 0});
