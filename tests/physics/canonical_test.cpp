@@ -18,7 +18,7 @@ namespace canonical_test {
 using Angles = AngleChain<Quad, Eigen::Dynamic>;
 using Bodies = PhysicalChain<Quad>;
 
-/// The first rate's index in a state, and the number of rates.
+/// The index of the first rate in a state, and the number of rates.
 template <class Model>
 std::pair<Eigen::Index, Eigen::Index> rates_of(const Model&, const typename Model::State& y) {
     return {y.size() / 2, y.size() / 2};
@@ -36,7 +36,7 @@ Quad energy_of(const PhysicalPendulum<Quad>& p, const Bodies& model, const Bodie
     return moved.kinetic + moved.potential;
 }
 
-/// A model, its Hamilton's form and its start.
+/// A model, its Hamiltonian form and its start.
 template <class Model, class Description>
 struct Form {
     using State = typename Model::State;
@@ -76,8 +76,8 @@ Pendulum<Quad> unequal(std::size_t links) {
     return random_pendulum(random, links).cast<Quad>();
 }
 
-/// Calls check(form) for each model that has Hamilton's form: chains of points, and bodies, with a fixed or driven
-/// pivot.
+/// Calls check(form) for each model with a Hamiltonian form: chains of points and of rigid bodies, with a fixed or a
+/// driven pivot.
 template <class Check>
 void for_each_form(const Check& check) {
     const auto named = [&](const char* name, auto form) {
@@ -98,7 +98,7 @@ double largest(const State& y) {
 }
 
 TEST(Canonical, MomentaAreTheSlopesOfKineticEnergyAndVelocitiesComeBack) {
-    // T is a square in ω, so central differences are exact
+    // T is quadratic in ω, so central differences are exact
     for_each_form([](auto& f) {
         const auto z = f.momenta(f.y);
         const auto [first, count] = rates_of(f.model, f.y);
@@ -115,7 +115,7 @@ TEST(Canonical, MomentaAreTheSlopesOfKineticEnergyAndVelocitiesComeBack) {
 }
 
 TEST(Canonical, IsTheModelsMotion) {
-    // dz/dt along the motion of the model in (θ, ω), by differences; of bodies time and work too
+    // dz/dt along the motion of the model in (θ, ω), by differences; for rigid bodies also of time and work
     for_each_form([](auto& f) {
         const Quad step(1e-11);
         const auto move = (step * f.rate(f.y)).eval();
@@ -145,7 +145,7 @@ TEST(Canonical, AsksForNoMemory) {
     EXPECT_EQ(allocations() - before, 0);
 }
 
-/// The largest error of a turning angle on a walk whose steps are `step`, in units of ε.
+/// The largest error of a changing angle over steps of `step`, in units of ε.
 template <class Scalar>
 double error_of_turning(double step) {
     CachedSinCos<Scalar> turning;
@@ -164,7 +164,7 @@ double error_of_turning(double step) {
 TEST(CachedSinCos, IsSineAndCosineToRounding) {
     for (const double step : {1.0, 1.2e-2, 1e-3, 1e-6}) {
         EXPECT_LT(error_of_turning<double>(step), 1.0) << step;       // measured 0.84
-        EXPECT_LT(error_of_turning<Quad>(step * 1e-3), 1.6) << step;  // measured 0.75, against sines as rounded
+        EXPECT_LT(error_of_turning<Quad>(step * 1e-3), 1.6) << step;  // measured 0.75, against rounded sines
     }
     CachedSinCos<double> down;
     EXPECT_EQ(down.at(0.0).sin, 0.0);

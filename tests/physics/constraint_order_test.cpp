@@ -14,8 +14,8 @@ namespace constraint_order_test {
 
 using Column = State<double, Eigen::Dynamic>;
 
-/// A chain of rods in a zigzag from the origin, its rods listed in a random order where `shuffled`, with its end held by
-/// two more rods where `looped`.
+/// A zigzag chain of rods from the origin. `shuffled`: its rods are listed in random order; `looped`: two more rods
+/// hold its end.
 Assembly<double> chain(std::size_t links, bool shuffled, bool looped) {
     Assembly<double> made{.particles = {}, .constraints = {}, .forces = {Gravity<double>{}}};
     std::vector<std::size_t> order(links);
@@ -47,7 +47,7 @@ TEST(ConstraintOrder, KeepsAFewNumbersForEachOfTenThousandLinks) {
     for (const bool looped : {false, true}) {
         const auto parts = chain(10000, false, looped);
         const ConstraintSet<double> set(parts.constraints, inverse_masses(parts));
-        // a diagonal, and what is beside it on both sides; a loop adds the distance of its ends
+        // the diagonal and its neighbours on both sides; a loop adds the distance of its ends
         EXPECT_LE(set.blank_matrix().entries(), (looped ? 8 : 4) * set.constraints()) << looped;
     }
 }
@@ -61,7 +61,7 @@ TEST(ConstraintOrder, GivesTheSameMultipliersAsADenseMatrix) {
         auto gradients = set.blank_gradients();
         set.update(q, gradients);
 
-        // J row by row of the constraints, from what it does to unit velocities
+        // J row by row of the constraints, from its products with unit velocities
         Eigen::MatrixXd j(set.constraints(), q.size());
         for (Eigen::Index c = 0; c < q.size(); ++c) {
             Column s(set.constraints());

@@ -61,7 +61,7 @@ TEST(Models, OnRodsFallAsTheAnglesDo) {
     expect_falls_as_the_angles_do<Eigen::Dynamic>(12);
 }
 
-/// The rates at a stage, nearby and further away, are those found from nothing.
+/// The rates at a stage, near the last state or far from it, equal those computed anew.
 template <class Model>
 void expect_stages_reuse_angles(std::size_t links) {
     std::mt19937 random(11);

@@ -11,7 +11,7 @@
 namespace doppel {
 namespace light_mass_test {
 
-/// Every pattern of light and whole masses, of links that are 1e-3 rad from aligned and turn at different rates.
+/// Every pattern of light and unit masses, with links 1e-3 rad from aligned that rotate at different rates.
 template <class Check>
 void for_each_pattern(std::size_t links, double light, const Check& check) {
     for (unsigned pattern = 0; pattern < 1u << links; ++pattern) {
@@ -26,7 +26,7 @@ void for_each_pattern(std::size_t links, double light, const Check& check) {
     }
 }
 
-/// The error of the accelerations of `model` against the same in quad at the same state, relative to the largest.
+/// The error of the accelerations of `model` against quad at the same state, relative to the largest one.
 template <template <class> class Model, class Description>
 double error_of(const Description& description) {
     Model<double> model(description);
@@ -73,7 +73,7 @@ TEST(LightMasses, KeepTheirAccelerations) {
 
 TEST(LightMasses, KeepTheirAccelerationsAsBodies) {
     for (const double light : {1e-2, 1e-4, 1e-6, 1e-8})
-        for (const double share : {1.0, 0.5}) {  // centre at the end, or in the middle of an even rod
+        for (const double share : {1.0, 0.5}) {  // centre of mass at the end, or in the middle of a uniform rod
             for (const std::size_t links : {2u, 3u, 5u}) {
                 double worst = 0;
                 for_each_pattern(links, light, [&](const auto& chain) {

@@ -12,7 +12,7 @@ namespace mechanism_errors_test {
 
 using namespace counted;
 
-// What is said of mechanisms that cannot be.
+// Error messages of impossible mechanisms.
 
 const std::string no_fault = "no error";
 
@@ -27,7 +27,7 @@ struct BadPart {
     const char* error;
 };
 
-/// Each in a loop of four bars: a sixth constraint, or the only force.
+/// Each bad part is added to a four-bar loop, as the sixth constraint or the only force.
 void expect_faults(const std::vector<BadPart>& bad_parts) {
     for (const auto& [part, error] : bad_parts) {
         auto parts = four_bars();
@@ -106,7 +106,7 @@ TEST(MechanismErrors, OfRedundantConstraints) {
     });
 }
 
-// A start may be off by 1e-9 of the size, whatever that is.
+// The error of a start may be at most 1e-9 of the mechanism's size.
 TEST(MechanismErrors, IsMeasuredByTheSizeOfTheMechanism) {
     for (const double size : {0.01, 1.0, 100.0}) {
         const auto off_by = [&](double share) {
@@ -125,7 +125,7 @@ TEST(MechanismErrors, OfAStartThatLeavesTheConstraints) {
     EXPECT_EQ(error_of(parts),
               "constraint 1 (anchor of particle 1): the start violates it at 0.5 m/s; start particle 1 "
               "at (0, 0) m/s");
-    // the particle that is named is the constraint's
+    // the error names the constraint's particle
     parts = {.particles = {{1, P(0, 0)}, {1, P(3, 4), P(5, 0)}},
              .constraints = {Rod<double>{two, P(0, 0), 5}},
              .forces = {}};
@@ -135,8 +135,8 @@ TEST(MechanismErrors, OfAStartThatLeavesTheConstraints) {
     EXPECT_EQ(error_of(parts), no_fault);
 }
 
-/// A parallelogram of cranks of 1 m and a coupler of 2 m that swings through the place where all three lie in a line:
-/// there it may go on as a parallelogram or crosswise, and nothing decides.
+/// A parallelogram of cranks of 1 m and a coupler of 2 m, which passes a position with all three aligned.
+/// There it could continue as a parallelogram or crossed, and the equations do not decide.
 Assembly<double> parallelogram() {
     return {.particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
             .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
@@ -156,7 +156,7 @@ TEST(MechanismErrors, OfASingularConfigurationHoweverLongTheSteps) {
         EXPECT_NE(said.find(") m; choose a start that does not lead there, or leave the constraint out"),
                   std::string::npos);
     }
-    // up to where it turns back in time, it moves
+    // if it turns back before that position, it moves
     auto slower = parallelogram();
     for (auto& particle : slower.particles) particle.velocity /= 8;
     Mechanism<double> model(slower);
@@ -174,7 +174,7 @@ TEST(MechanismErrors, OfAMotionThatDiverges) {
 }
 
 TEST(MechanismErrors, OfRodsWithLargeErrors) {
-    // two hinged rods are never singular; so far out that both ends are one, the second has no direction left
+    // two hinged rods are never singular; so far out that both ends coincide in double, the second rod has no direction
     const Pendulum<double> p{{1, 1}, {1, 1}, {1, 2}, {0, 0}, 9.8};
     const auto parts = parts_of(p);
     Mechanism<double> model(parts);
@@ -187,7 +187,7 @@ TEST(MechanismErrors, OfRodsWithLargeErrors) {
 }
 
 TEST(MechanismErrors, IsNotReportedForAValidStart) {
-    // what rounding leaves at the start of a bead at the origin is measured by where its slot is
+    // the round-off error of a bead that starts at the origin is compared with the size of its slot
     EXPECT_EQ(error_of({.particles = {{1, P(0, 0)}},
                         .constraints = {SlotLine<double>{one, P(0.1, 0.3), P(1, 3)}},
                         .forces = {Gravity<double>{}}}),

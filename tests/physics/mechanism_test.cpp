@@ -31,7 +31,7 @@ TEST(Mechanism, ConstraintsMakePendulumsAndSlopesOfClosedForm) {
         const auto dydt = rate_at_start(parts);
         EXPECT_LT((dydt.tail<2>() - expected).norm(), 1e-14) << parts.particles.size();  // measured 1.6e-15
         if (parts.particles.size() == 2) {
-            EXPECT_LT(dydt.segment<2>(4).norm(), 1e-15);  // the anchored one stays
+            EXPECT_LT(dydt.segment<2>(4).norm(), 1e-15);  // the anchored particle does not move
         }
     };
     // θ″ = −(g/l) sinθ: at rest, a = l θ″ (cosθ, sinθ)
@@ -39,7 +39,7 @@ TEST(Mechanism, ConstraintsMakePendulumsAndSlopesOfClosedForm) {
                          .constraints = {Anchor<double>{one, P(1, 2)}, Rod<double>{two, one, 2}},
                          .forces = {Gravity<double>{}}},
                         P(-9.8 * 0.6 * 0.8, -9.8 * 0.6 * 0.6));
-    // in a circular slot, at v = 2 m/s: v²/r to the centre besides
+    // in a circular slot at v = 2 m/s there is also v²/r to the centre
     expect_acceleration({.particles = {{2, P(0.6, -0.8), P(1.6, 1.2)}},
                          .constraints = {SlotCircle<double>{one, P(0, 0), 1}},
                          .forces = {Gravity<double>{}}},
@@ -52,7 +52,7 @@ TEST(Mechanism, ConstraintsMakePendulumsAndSlopesOfClosedForm) {
 }
 
 TEST(Mechanism, DampedSpringDecaysAsItShould) {
-    // r″ = −(k/μ) (r − l) − (c/μ) r′ between two masses, μ = m1 m2 / (m1 + m2):
+    // r″ = −(k/μ) (r − l) − (c/μ) r′ of two masses, μ = m1 m2 / (m1 + m2):
     // r = l + A e^(−βt) (cos νt + (β/ν) sin νt) ,  β = c/2μ ,  ν² = k/μ − β²
     Assembly<double> parts{.particles = {{1, P(0, 0)}, {3, P(0.9, 1.2)}},
                            .constraints = {},
@@ -72,7 +72,7 @@ TEST(Mechanism, DampedSpringDecaysAsItShould) {
 }
 
 TEST(Mechanism, AttractionKeepsACircularOrbit) {
-    // two bodies, distance d: ω² = G (m1 + m2) / d³, so that a is −ω² r
+    // two bodies at distance d: ω² = G (m1 + m2) / d³, so a = −ω² r
     const double G = 2, m1 = 3, m2 = 1, d = 2, omega2 = G * (m1 + m2) / (d * d * d);
     const Assembly<double> parts{.particles = {{m1, P(-0.5, 0)}, {m2, P(1.5, 0)}},
                                  .constraints = {},
@@ -83,7 +83,7 @@ TEST(Mechanism, AttractionKeepsACircularOrbit) {
     EXPECT_NEAR(Mechanism<double>(parts).energy(Mechanism<double>::start(parts)), -G * m1 * m2 / d, 1e-15);
 }
 
-/// A mass that falls, and 0.034 g a mile to its right, as in the study.
+/// A falling mass, and 0.034 g one mile to its right, as in the study.
 template <class S>
 Assembly<S> beside_a_droplet() {
     return {.particles = {{S(1), At<S>(S(0), S(0))}},
@@ -98,7 +98,7 @@ TEST(Mechanism, DropletHasAnEffectOnlyInQuad) {
     EXPECT_NEAR(static_cast<double>(expected), 8.8e-22, 0.05e-22);
     EXPECT_LT(static_cast<double>(abs(Quad(dydt[2] / expected - 1))), 2e-33);  // measured 0
 
-    // straight above it lightens the mass, but not in double
+    // exactly above, it reduces the weight, but not in double
     auto above = beside_a_droplet<Quad>();
     std::get<Droplet<Quad>>(above.forces[1]).place = At<Quad>(Quad(0), Quad(1609));
     EXPECT_NE(rate_at_start(above)[3], Quad(-98) / Quad(10));
@@ -156,7 +156,7 @@ TEST(Mechanism, GradientsAreThoseOfTheValues) {
 }
 
 TEST(Mechanism, ErrorsOfASlotAreDistancesFromIt) {
-    // the line through the origin along (4, 3): (0.6, 0.8) is 0.8 · 0.8 − 0.6 · 0.6 beside it, however long (4, 3) is
+    // the distance of (0.6, 0.8) from the line along (4, 3) is 0.8 · 0.8 − 0.6 · 0.6, for any length of (4, 3)
     State<double, 2> q(0.6, 0.8);
     for (const double size : {1.0, 0.01}) {
         const Constraint<double> slot = SlotLine<double>{one, P(0, 0), size * P(4, 3)};
@@ -165,9 +165,9 @@ TEST(Mechanism, ErrorsOfASlotAreDistancesFromIt) {
 }
 
 TEST(Mechanism, SolvesForMultipliersBetweenTwoPositions) {
-    // J(q1) M⁻¹ Jᵀ(q0) x, put together by pull() and constraint_velocity(), must come back as x
+    // J(q1) M⁻¹ Jᵀ(q0) x, from pull() and constraint_velocity(); solving must return x
     auto parts = four_bars();
-    parts.particles.push_back({1, P(1.5, 2)});  // braced: the matrix fills up as it is factored
+    parts.particles.push_back({1, P(1.5, 2)});  // braced: the factorisation adds entries to the matrix
     for (const std::size_t corner : {two, three}) parts.constraints.push_back(Rod<double>{5 - 1, corner, 1});
     Mechanism<double> model(parts);
     const State<double, Eigen::Dynamic> q0 = model.start(parts).head(10);

@@ -8,12 +8,12 @@ namespace doppel {
 template <class S>
 using At = Place<S>;
 using P = Place<double>;
-/// Particles as messages count them.
+/// Indices of particles, named as messages number them.
 namespace counted {
 inline constexpr std::size_t one = 0, two = 1, three = 2, four = 3;
 }
 
-/// The state after so many steps of rk4.
+/// The state after this number of rk4 steps.
 template <class S>
 State<S, Eigen::Dynamic> after(Mechanism<S>& model, const Assembly<S>& assembly, long steps, const S& step) {
     Rk4::Stepper<Mechanism<S>> stepper(model, model.start(assembly), step);
@@ -21,7 +21,7 @@ State<S, Eigen::Dynamic> after(Mechanism<S>& model, const Assembly<S>& assembly,
     return stepper.state();
 }
 
-/// A loop of four bars: two cranks of 1 and 1.5 m on anchored particles 2 m apart, and a coupler.
+/// A four-bar loop: two cranks of 1 and 1.5 m on anchored particles 2 m apart, and a coupler.
 inline Assembly<double> four_bars() {
     using namespace counted;
     const P left(0.6, 0.8), right(2 + 0.9, 1.2);

@@ -10,7 +10,7 @@
 
 namespace doppel {
 
-/// Of the bodies at y, whose pivot may move.
+/// The energies of the bodies at y, whose pivot may move.
 template <class Scalar>
 Energies<Scalar> energies_at(const PhysicalPendulum<Scalar>& p, const PhysicalChain<Scalar>& model,
                              const typename PhysicalChain<Scalar>::State& y) {
@@ -21,7 +21,7 @@ Energies<Scalar> energies_at(const PhysicalPendulum<Scalar>& p, const PhysicalCh
     return energies(p, bobs, {Scalar(0), place.x, place.y, velocity.x, velocity.y});
 }
 
-/// Lagrange's equations of bodies, by hand: M_ij = K_ij cos(θ_i − θ_j), with S_i = m_i a_i + l_i Σ_{k>i} m_k,
+/// Lagrange's equations of rigid bodies: M_ij = K_ij cos(θ_i − θ_j), with S_i = m_i a_i + l_i Σ_{k>i} m_k,
 /// K_ij = l_i S_j (i < j), K_ii = I_i + m_i a_i² + l_i² Σ_{k>i} m_k.
 struct Lagrange {
     Eigen::MatrixXd k;
@@ -47,7 +47,7 @@ struct Lagrange {
     }
 };
 
-/// θ″ of bodies without friction or drive by elimination, M θ″ = f: another way to every model's accelerations.
+/// θ″ of bodies without friction or drive by elimination, M θ″ = f: independent of the models' computation.
 /// f_i = −Σ K_ij sin(θ_i − θ_j) ω_j² − g S_i sinθ_i.
 inline Eigen::VectorXd by_elimination(const PhysicalPendulum<double>& p) {
     const Lagrange lagrange(p);
@@ -64,7 +64,7 @@ inline Eigen::VectorXd by_elimination(const PhysicalPendulum<double>& p) {
     return lagrange.mass(theta).ldlt().solve(f);
 }
 
-/// q_k″ = Σ_{j≤k} l_j (θ_j″ (cos, sin) + ω_j² (−sin, cos)) of the bobs of a chain, by elimination.
+/// q_k″ = Σ_{j≤k} l_j (θ_j″ (cos, sin) + ω_j² (−sin, cos)) of the bobs of a chain, with θ″ by elimination.
 inline std::vector<Eigen::Vector2d> accelerations_of_bobs(const Pendulum<double>& p) {
     const auto alpha = by_elimination(physical(p));
     std::vector<Eigen::Vector2d> all;

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// A pendulum with everything unequal, at a state drawn from a seed.
+/// A pendulum with random unequal numbers.
 inline Pendulum<double> random_pendulum(std::mt19937& random, std::size_t links = 2) {
     std::uniform_real_distribution<double> size(0.3, 3), angle(-3, 3), rate(-5, 5);
     Pendulum<double> p{{}, {}, {}, {}, 9.8 * size(random)};

@@ -10,7 +10,7 @@ namespace physical_chain_test {
 
 using Chain = PhysicalChain<double>;
 
-/// Nothing equal, at a state drawn from a seed: bodies, and nothing besides.
+/// Rigid bodies with random unequal numbers, without friction or drive.
 PhysicalPendulum<double> random_bodies(std::mt19937& random, std::size_t links) {
     std::uniform_real_distribution<double> part(0.2, 1.4);
     auto p = physical(random_pendulum(random, links));
@@ -41,7 +41,7 @@ TEST(PhysicalChain, OfBodiesSolvesLagrangesEquations) {
 
 TEST(PhysicalChain, AtRestBelowCoulombsTorqueStaysAtRestExactly) {
     auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {0.3, 0.2}, {0, 0}});
-    p.friction.coulomb = {10, 5};  // held take 7.7 and 1.9 N m
+    p.friction.coulomb = {10, 5};  // at rest they need 7.7 and 1.9 N m
     Chain chain(p);
     const auto y = Chain::start(p);
     auto rate = y;
@@ -51,7 +51,7 @@ TEST(PhysicalChain, AtRestBelowCoulombsTorqueStaysAtRestExactly) {
     p.friction.coulomb = {10, 1.9};
     Chain slips(p);
     slips.rate(y, rate);
-    EXPECT_EQ(rate[2 + 1], 0);  // the first joint holds
+    EXPECT_EQ(rate[2 + 1], 0);  // the first joint sticks
     EXPECT_LT(rate[3 + 1], 0);
 }
 
@@ -68,7 +68,7 @@ TEST(PhysicalChain, AHeldJointTurnsWithTheLinkAbove) {
 }
 
 TEST(PhysicalChain, AJointIsHeldThatIsHeldWhileAnotherSlides) {
-    // with both at rest the second would take 1.5 N m more than it has; it takes less once the first slides
+    // to hold both, the second joint would need 1.5 N m more than it has; it needs less once the first one slides
     auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {pi / 3, pi / 3}, {0, 0}});
     p.friction.coulomb = {3, 1};
     const auto alpha = accelerations(p);
@@ -83,7 +83,7 @@ TEST(PhysicalChain, AReversingJointIsHeldIfFrictionAllows) {
     Chain chain(p);
     auto y = Chain::start(p);
     chain.take_modes(y);
-    EXPECT_EQ(y[2 + 1], 1e-3);  // however slow, it slides
+    EXPECT_EQ(y[2 + 1], 1e-3);  // it slides, however slowly
     EXPECT_EQ(chain.margin(y), 1e-3);
     y[2 + 1] = -1e-18;
     EXPECT_LT(chain.margin(y), 0);
@@ -91,7 +91,7 @@ TEST(PhysicalChain, AReversingJointIsHeldIfFrictionAllows) {
     EXPECT_EQ(y[2 + 1], 0);
     EXPECT_GT(chain.margin(y), 0);
 
-    p.friction.coulomb = {1, 5};  // the first turns round at once
+    p.friction.coulomb = {1, 5};  // the first joint turns at once
     Chain slides(p);
     y = Chain::start(p);
     slides.take_modes(y);

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// Bodies of which none is like another, in motion, without friction or drive.
+/// Unequal rigid bodies in motion, without friction or drive.
 template <class Scalar>
 PhysicalPendulum<Scalar> bodies(std::size_t links) {
     PhysicalPendulum<double> p{{{}, {}, {}, {}, 9.8}, {}, {}, {}, {}, {}};
@@ -22,8 +22,8 @@ PhysicalPendulum<Scalar> bodies(std::size_t links) {
     return p.template cast<Scalar>();
 }
 
-/// The same with viscous friction, drag on links and ends, a motor at the first and the last joint, and a pivot that
-/// moves.
+/// The same with viscous friction, drag on links and ends, a motor at the first and the last joint, and a moving
+/// pivot.
 template <class Scalar>
 PhysicalPendulum<Scalar> driven_bodies(std::size_t links) {
     auto p = bodies<double>(links);

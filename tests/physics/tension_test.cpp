@@ -82,8 +82,8 @@ TEST(Tension, IsTheSameForEveryModel) {
 }
 
 TEST(Tension, OfAMechanismIsThatOfItsRodsAlone) {
-    // a bridge of two rods, 60° to the vertical, from anchors; between them a hanging mass; a bead on a slot between:
-    // 2 T cos60° = m g, and the rod below bears its own mass besides
+    // a bridge of two rods, 60° to the vertical; a mass in the middle, another one below it, and a bead in a slot:
+    // 2 T cos60° = m g, and the lower rod carries only its own mass
     using namespace counted;
     const double s = std::sqrt(3.0);
     Assembly<double> bridge{
@@ -95,7 +95,7 @@ TEST(Tension, OfAMechanismIsThatOfItsRodsAlone) {
 }
 
 TEST(Tension, CountsForcesOtherThanWeight) {
-    // a spring that pulls down on the bob: T = m g + k (d − l)
+    // a spring pulls the bob down: T = m g + k (d − l)
     using namespace counted;
     Assembly<double> parts{.particles = {{2, P(0, -1)}},
                            .constraints = {Rod<double>{one, P(0, 0), 1}},
@@ -104,7 +104,7 @@ TEST(Tension, CountsForcesOtherThanWeight) {
 }
 
 TEST(Tension, IsNoNumberWhereItIsNotDetermined) {
-    // two rods in one line between fixed places, and the mass between them pushed sideways
+    // two aligned rods between fixed points, and a lateral force on the mass between them
     using namespace counted;
     const Assembly<double> parts{.particles = {{1, P(0, 0)}},
                                  .constraints = {Rod<double>{one, P(-1, 0), 1}, Rod<double>{one, P(1, 0), 1}},
