@@ -15,7 +15,7 @@ TEST(Distance, CountsMassesPlacesAndVelocities) {
     b[1].x = 3;
     b[0].vy = 6;
     EXPECT_DOUBLE_EQ(state_space_distance(a, b), 7);
-    b[0].theta = b[1].omega = 100;  // not part of it: x, y and their rates say the same
+    b[0].theta = b[1].omega = 100;  // not part of the distance: x, y and their rates contain the same information
     EXPECT_DOUBLE_EQ(state_space_distance(a, b), 7);
 }
 

@@ -14,7 +14,7 @@ TEST(Growth, IsClassifiedByItsExponent) {
     for (const auto& [power, expected] :
          {std::pair{0.0, Kind::bounded}, {0.5, Kind::root}, {1.0, Kind::linear}, {2.0, Kind::steeper}}) {
         errors.clear();
-        // another law before the last two decades leaves no trace
+        // another power law before the last two decades has no effect
         for (const double t : times) errors.push_back(t < 99 ? 7 : std::pow(t, power));
         const auto growth = growth_of(times, errors, std::nan(""));
         EXPECT_NEAR(growth.exponent, power, 2e-15);  // measured 0

@@ -61,7 +61,7 @@ TEST(Exponent, OfEquilibriaInClosedForm) {
 }
 
 TEST(Exponent, TangentEquationsAgreeWithTheClosedForm) {
-    // at the upright equilibrium but for a rate that starts the integration, and so briefly that it stays there
+    // at the upright equilibrium, with a small rate to force the integration, and too short a time to leave it
     for (const auto& [links, maximum] :
          {std::pair{1, 2e-11}, {2, 1e-5}, {3, 2e-5}, {5, 2e-5}}) {  // measured 2e-12, 1.2e-6, 2.2e-6, 3.7e-6
         auto p = uneven(static_cast<std::size_t>(links));
@@ -86,7 +86,7 @@ TEST(Exponent, DistinguishesRegularFromChaotic) {
     EXPECT_FALSE(is_regular(exponent(driven(1.15))));
     EXPECT_FALSE(is_regular(exponent(rods(from_rest({140, 0})))));
     EXPECT_TRUE(is_regular(exponent(rods(from_rest({20, 0})))));
-    // a damped swing, and a driven one of one period, lose all that sets two apart: at the rate b/(2J) where they
+    // a damped motion, and a driven one of period one, converge at the rate b/(2J) where they
     // oscillate
     const double gamma = 0.25 * std::sqrt(9.8 / 0.8);
     auto damped = driven(0);
@@ -96,7 +96,7 @@ TEST(Exponent, DistinguishesRegularFromChaotic) {
 }
 
 TEST(Exponent, OfRegularMotionIsThatOfLinearGrowth) {
-    // the tangent of a single pendulum grows like t, whose exponent is ln(T/t0) / (T − t0); its oscillation adds more
+    // the tangent of a single pendulum grows as t, with the exponent ln(T/t0) / (T − t0); its oscillation adds to it
     const ExponentSpec spec{.duration_s = 1000, .transient_s = 100};
     const double linear = std::log(10.0) / 900;
     const Exponent e = largest_exponent(from_rest({120}), spec, never);
@@ -105,7 +105,7 @@ TEST(Exponent, OfRegularMotionIsThatOfLinearGrowth) {
     EXPECT_LT(e.uncertainty, 2 * linear);
 }
 
-/// The equation of driven() and its tangent's by hand, by Runge and Kutta's method in steps of 0.01; in units of
+/// The equation of driven() and its tangent equation, by Runge–Kutta 4 in steps of 0.01; in units of
 /// √(g/l).
 double by_hand(double gamma, double quality, double transient, double duration) {
     using Numbers = Eigen::Array4d;  // θ, θ′, δθ, δθ′
@@ -143,10 +143,10 @@ TEST(Exponent, IsThatOfTheEquationByHand) {
 
 struct Sea {
     std::vector<double> degrees;
-    double apart;  // rad, from release to release
+    double apart;  // rad, difference between successive releases
 };
 
-/// The shares of releases whose runs four times as long end within the uncertainty, and within twice of it.
+/// The shares of releases where runs four times as long end within the uncertainty, and within twice the uncertainty.
 std::pair<double, double> shares(const std::vector<Sea>& seas, int releases) {
     double once = 0, twice = 0;
     for (const auto& [degrees, apart] : seas)
@@ -162,7 +162,7 @@ std::pair<double, double> shares(const std::vector<Sea>& seas, int releases) {
     return {once / all, twice / all};
 }
 
-// With DOPPEL_ALL_SEAS in the environment, of all the seas and twice as many releases, which takes some minutes.
+// With DOPPEL_ALL_SEAS in the environment, for all seas and twice as many releases, which takes some minutes.
 TEST(Exponent, UncertaintyCoversRunsFourTimesAsLong) {
     std::vector<Sea> chaotic{{{90, 90}, 1e-9}}, sticky{{{70, 0}, 1e-6}}, regular{{{30, 0}, 1e-9}};
     int releases = 20;
@@ -176,7 +176,7 @@ TEST(Exponent, UncertaintyCoversRunsFourTimesAsLong) {
             for (const double angle : {10.0, 60.0}) regular.push_back({{angle, 0}, apart});
         }
     }
-    // the libraries' last digits decide which runs these are: 2/3 and 9/10, less three times the binomial deviation
+    // round-off of the libraries decides which runs these are: 2/3 and 9/10, less three times the binomial deviation
     const auto minimum = [&](double part, const std::vector<Sea>& seas) {
         return part - 3 * std::sqrt(part * (1 - part) / (static_cast<double>(seas.size()) * releases));
     };
@@ -189,7 +189,7 @@ TEST(Exponent, UncertaintyCoversRunsFourTimesAsLong) {
 }
 
 TEST(Exponent, UncertaintyIsNotMuchMoreThanTheScatter) {
-    // starts so close that they sample one chaotic sea, and soon independently
+    // starts so close that they sample one chaotic sea, and become independent soon
     constexpr int runs = 16;
     double mean = 0, uncertainty = 0;
     std::vector<double> values;
@@ -206,7 +206,7 @@ TEST(Exponent, UncertaintyIsNotMuchMoreThanTheScatter) {
 }
 
 TEST(Exponent, OfATransientIsMarkedAsUnsettled) {
-    // a weak drive: chaos for as long as the run, then a cycle; 38 % of such exponents are within their uncertainty
+    // a weak drive: chaotic during the run, later periodic; 38 % of such exponents are within their uncertainty
     auto driven = physical(from_rest({120}));
     driven.friction.viscous = {0.02};
     driven.torques = {{.joint = 0, .amplitude = 2, .frequency = 0.8 * pi}};
@@ -224,7 +224,7 @@ TEST(Exponent, OfATransientIsMarkedAsUnsettled) {
 }
 
 TEST(Exponent, DoesNotDependOnUnitsOfMassAndLength) {
-    // four times the lengths at twice the period, and all masses by seven: torques by 28, friction by 56
+    // lengths times 4, periods times 2, masses times 7: torques times 28, friction times 56
     auto p = driven(1.15);
     const ExponentSpec spec{.duration_s = 12, .transient_s = 2, .tolerance = 1e-11};
     const auto usual = largest_exponent(p, spec, never);

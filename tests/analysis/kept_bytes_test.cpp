@@ -16,9 +16,9 @@
 #include <map>
 #include <string>
 
-// What tables are made of, to the last bit, against what is kept in kept_bytes.txt: the same on every processor and with
-// every C library. Runs are chaotic, so that one bit that differs becomes all of them. tests/check-arm64 runs these on
-// another processor. A change of the order of sums changes the bits: tests/update-kept-bytes keeps the new ones.
+// The bits of tables, compared with kept_bytes.txt: they are equal on every processor and with
+// every C library. Runs are chaotic, so one different bit soon changes all of them. tests/check-arm64 runs these on
+// another processor. A change of the order of sums changes the bits: tests/update-kept-bytes stores the new ones.
 
 namespace doppel {
 namespace kept_bytes_test {
@@ -49,7 +49,7 @@ Pendulum<double> released(std::size_t links) {
     return p;
 }
 
-/// 20 s of a motion, as a table has it.
+/// 20 s of a motion with all columns of a table.
 std::string hash_of(const std::string& method, Model model, std::size_t links) {
     MotionSpec spec{.chain = released(links).cast<Quad>(), .parts = {}, .model = model, .method = method};
     spec.steps_per_sample = 25;
@@ -94,7 +94,7 @@ std::string hash_of_twins(const MotionSpec& side, std::size_t links) {
     return hash.text();
 }
 
-/// Of each method and model, at two, three and six links; of twins in angles, and in constraints.
+/// The hashes of each method and model, at two, three and six links, and of pairs in angles and in constraints.
 std::map<std::string, std::string> hashes() {
     std::map<std::string, std::string> all;
     for (const auto& method : methods())

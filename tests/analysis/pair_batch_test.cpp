@@ -37,7 +37,7 @@ Course course_of(const Pendulum<double>& p, MotionSpec side) {
     return Course(side);
 }
 
-/// The same mean from two motions of the films, each stepped alone.
+/// The same mean from two motions, each computed alone as for a film.
 double average_of_films(const PendulumPair& twins, const PairBatchSpec& run) {
     auto a = course_of(twins.a, run.a), b = course_of(twins.b, run.b);
     const double start = state_space_distance(a.observe().bobs, b.observe().bobs);
@@ -51,7 +51,7 @@ double average_of_films(const PendulumPair& twins, const PairBatchSpec& run) {
     return sum / static_cast<double>(counted);
 }
 
-/// PendulumPair apart in an angle, in a mass, in everything; as many as fill no register evenly.
+/// Pairs that differ in an angle, in a mass, or in everything; their number is not a multiple of any register width.
 std::vector<PendulumPair> some_twins(std::size_t count = 13) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> some(0.5, 2), angle(-3, 3);
@@ -93,12 +93,12 @@ TEST(PendulumPair, MayDifferInTheirEquationsMethodsAndSteps) {
 
 TEST(PendulumPair, ShareThePendulumsTheyHaveInCommon) {
     const auto run = both(Model::angles);
-    std::vector<PendulumPair> chain;  // each one's twin is the next one's sibling
+    std::vector<PendulumPair> chain;  // the second pendulum of each pair is the first one of the next pair
     for (int i = 0; i < 9; ++i) chain.push_back({released(10 * i, 0), released(10 * (i + 1), 0)});
     chain.push_back(chain[4]);
     chain.push_back({chain[2].b, chain[2].a});
     chain.push_back(chain[4]);
-    chain.back().b.gravity = 9.9;  // in gravity alone another
+    chain.back().b.gravity = 9.9;  // differs in gravity only
     const auto averages = averages_of(chain, run);
     for (std::size_t i = 0; i < chain.size(); ++i) EXPECT_EQ(averages[i], average_of_films(chain[i], run)) << i;
     EXPECT_EQ(averages[9], averages[4]);
@@ -116,7 +116,7 @@ TEST(PendulumPair, OfEqualPendulumsHasNoAverage) {
 }
 
 TEST(PendulumPair, ThatFailsHasNoAverageAndDoesNotAffectOthers) {
-    // steps that tear the wild ones apart and suit the calm ones, which swing once in an hour
+    // steps that are too long for the fast pairs but not for the slow ones, which have a period of about an hour
     auto calm = released(20, -10);
     calm.gravity = 1e-6;
     const PendulumPair wild{released(170, 10), released(171, 10)};
@@ -126,7 +126,7 @@ TEST(PendulumPair, ThatFailsHasNoAverageAndDoesNotAffectOthers) {
     for (const auto model : {Model::angles, Model::constraints}) {
         auto run = both(model);
         run.a.steps_per_sample = run.b.steps_per_sample = 1;
-        run.a.sample_interval = run.b.sample_interval = {1, 2};  // as the step
+        run.a.sample_interval = run.b.sample_interval = {1, 2};  // equal to the step
         run.samples = 3000;
         const auto averages = averages_of({one, wild, other, wild}, run);
         EXPECT_TRUE(std::isnan(averages[1])) << averages[1];

@@ -6,7 +6,7 @@
 
 namespace doppel {
 
-/// Rods whose mass is spread evenly along them.
+/// Uniform rods in place of point masses.
 inline PhysicalPendulum<double> rods(Pendulum<double> chain) {
     auto p = physical(chain);
     for (std::size_t i = 0; i < chain.links(); ++i) {

@@ -18,12 +18,12 @@ MotionSpec chain(std::vector<double> angle_deg) {
     return spec;
 }
 
-/// How far apart two angles are, rad, up to whole turns: from sines in quad, so that no turn costs a digit.
+/// The difference of two angles modulo whole turns, rad: from sines in quad, so that turns cost no digits.
 double apart(const Quad& one, const Quad& other) {
     return std::abs(static_cast<double>(Quad(2 * sin(Quad((one - other) / 2)))));
 }
 
-/// The end of a motion by another method or equations than those of the reference, in quad.
+/// The end of a motion by a method or equations other than those of the reference, in quad.
 Bobs<Quad> end_by(MotionSpec spec, const char* method, const char* tolerance, const Rational& seconds) {
     spec.method = method;
     spec.precision = Precision::in_quad;
@@ -35,7 +35,7 @@ Bobs<Quad> end_by(MotionSpec spec, const char* method, const char* tolerance, co
 }
 
 TEST(ErrorMeasure, ResolvesErrorsBelowTheRoundingOfTurnsInQuad) {
-    // a planted error, and as many turns between the two as one formulation counts and the other does not
+    // a known error, and whole turns that one formulation counts and the other does not
     for (const int turns : {0, 1, -1, 7, 11, 13, 15, 1000})
         for (const double planted : {0.0, 3e-30, -1e-17, 2e-9}) {
             const Quad one = parse_quad("1.234567890123456789012345678901234"), turn = 2 * pi_of<Quad>();
@@ -45,7 +45,7 @@ TEST(ErrorMeasure, ResolvesErrorsBelowTheRoundingOfTurnsInQuad) {
             b.exact[0].theta = one + turns * turn + Quad(planted);
             EXPECT_NEAR(ErrorMeasure{}.distance(a, b), std::abs(planted), 1e-30 * (1 + std::abs(turns)))
                 << turns << ' ' << planted;  // measured 0.1 of it
-            // and where one of them is in double
+            // and if one of them is in double
             rounded.bobs = {{.mass = 1, .x = 0, .y = 0, .vx = 0, .vy = 0}};
             rounded.bobs[0].theta = static_cast<double>(b.exact[0].theta);
             const double rounding = std::abs(static_cast<double>(Quad(b.exact[0].theta - Quad(rounded.bobs[0].theta))));
@@ -73,12 +73,12 @@ TEST(ErrorMeasure, IsThatOfTheWorst) {
 }
 
 TEST(Reference, ComparesEveryAngleModuloTurns) {
-    // P3 ends with θ2 = 2.89 π; one link that turns eleven times
+    // P3 ends with θ2 = 2.89 π; one link makes eleven turns
     auto turning = chain({0});
     turning.chain->rate[0] = 4000 * pi_of<Quad>() / 180;
     for (const auto& [spec, seconds] : {std::pair{chain({150, 90}), 5L}, {turning, 1L}}) {
         const auto reference = reference_end(spec, {seconds, 1}, never);
-        EXPECT_GT(reference.disagreement, 0);      // blind, it was 0
+        EXPECT_GT(reference.disagreement, 0);      // 0 if the comparison missed differences
         EXPECT_LT(reference.disagreement, 1e-28);  // measured 3e-31, 6e-30
         EXPECT_GT(static_cast<double>(abs(reference.end.exact.back().theta)), pi);
     }
@@ -87,7 +87,7 @@ TEST(Reference, ComparesEveryAngleModuloTurns) {
 TEST(Reference, AgreesWithOtherEquationsAndAnotherMethod) {
     const auto spec = chain({150, 90});
     const auto reference = reference_end(spec, {5, 1}, never);
-    // the lower rod turns over: as particles its angle ends a whole turn away
+    // the lower rod makes a turn: with constraints its angle ends a whole turn away
     EXPECT_GT(std::abs(static_cast<double>(reference.end.exact.at(1).theta)), 2 * pi);
     auto rods = spec;
     rods.model = Model::constraints;
@@ -108,7 +108,7 @@ TEST(Reference, OfOneLinkAfterItsPeriod) {
     }
     MotionSpec spec;
     spec.chain = Pendulum<Quad>{{1}, {1}, {pi_of<Quad>() / 2}, {0}, 1};
-    // gravity such that the period is one second
+    // gravity for a period of one second
     const Quad root = 2 * pi_of<Quad>() / a;
     spec.chain->gravity = root * root;
     const auto reference = reference_end(spec, {1, 1}, never);
@@ -138,7 +138,7 @@ TEST(Reference, RefusesWhereTheTwoDisagree) {
 }
 
 TEST(Reference, OfAMechanismByTwoTolerances) {
-    // a mass that circles on a spring of rest length 0, without gravity: x = cos t, y = sin t
+    // a mass in circular motion on a spring of rest length 0, without gravity: x = cos t, y = sin t
     MotionSpec spec;
     spec.model = Model::mechanism;
     spec.parts.emplace();
@@ -156,7 +156,7 @@ double sensitivity(const std::vector<double>& angle_deg, const Rational& seconds
 }
 
 TEST(Sensitivity, OfTheFourProblems) {
-    // by tangent equations in dual numbers, once: 80.25, 20.59, 319.7, 1043.6; in another program 80, 21, 320, 1040
+    // from tangent equations in dual numbers: 80.25, 20.59, 319.7, 1043.6; in another program 80, 21, 320, 1040
     EXPECT_NEAR(sensitivity({90, 90}, {10, 1}), 80.25, 0.005);
     EXPECT_NEAR(sensitivity({30, 0}, {60, 1}), 20.59, 0.005);
     EXPECT_NEAR(sensitivity({150, 90}, {5, 1}), 319.7, 0.05);
@@ -164,10 +164,10 @@ TEST(Sensitivity, OfTheFourProblems) {
 }
 
 TEST(Sensitivity, OfSmallSwingsInClosedForm) {
-    // one link near its rest: θ(t) = θ(0) cos ωt; near the upright: cosh ωt
+    // one link near the bottom: θ(t) = θ(0) cos ωt; near the upright: cosh ωt
     const double rate = std::sqrt(9.8);
     EXPECT_NEAR(sensitivity({1e-7}, {2, 1}), std::abs(std::cos(2 * rate)), 1e-10);
-    EXPECT_NEAR(sensitivity({180}, {6, 1}) / std::cosh(6 * rate), 1, 1e-10);  // of 7e7
+    EXPECT_NEAR(sensitivity({180}, {6, 1}) / std::cosh(6 * rate), 1, 1e-10);  // relative to 7e7
 }
 
 TEST(Sensitivity, IsOfChainsOfPointMassesAlone) {

@@ -26,9 +26,9 @@ TEST(ReferenceTrajectory, OfAMotionInDoubleIsInQuadWhereThatCostsLittle) {
     const auto wide = reference_trajectory(spec, 50, 2, enough, never);
     EXPECT_TRUE(wide.is_wider);
     ASSERT_EQ(wide.seen.size(), 51u);
-    EXPECT_LT(wide.uncertainty.back(), 2e-14);  // of numbers rounded once
+    EXPECT_LT(wide.uncertainty.back(), 2e-14);  // the error of numbers rounded once
     EXPECT_GT(wide.uncertainty.back(), 1e-16);
-    // against quad at another tolerance
+    // compared with quad at another tolerance
     auto finer = spec;
     finer.precision = Precision::in_quad;
     finer.tolerance = parse_quad("1e-28");

@@ -25,7 +25,7 @@ State<double, 4> state_at(const Pendulum<double>& p, const SectionPoint& point) 
     return y;
 }
 
-/// Above that of hanging at rest, J.
+/// The energy above that of hanging at rest, J.
 double energy_above(const Pendulum<double>& p, const State<double, 4>& y) {
     return energy(bobs_of_angles(p, y), p.gravity) + p.potential_range() / 2;
 }
@@ -52,7 +52,7 @@ TEST(Section, PointsAreOnItAndHaveTheEnergyAskedFor) {
 }
 
 TEST(Section, PointsAreLocatedInTime) {
-    // the motion at the time told, by the same method at finer tolerance without any look back
+    // the motion at the given time, by the same method with a smaller tolerance and without interpolation
     const auto release = releases_of_energy(odd_one(), 15, 3)[2];
     const auto points = poincare_section(release, {.crossings = 8}, never);
     Model model(release);
@@ -68,7 +68,7 @@ TEST(Section, PointsAreLocatedInTime) {
     }
 }
 
-/// The passages of θ1 through 0 upwards after the start and before `to`, s, by its signs 2e-5 s apart, by dop853.
+/// The times at which θ1 passes 0 upwards after the start and before `to`, s, from its signs 2e-5 s apart, by dop853.
 std::vector<double> passages(const Pendulum<double>& p, double to) {
     Model model(p);
     Dop853::Stepper<Model> stepper(model, Model::start(p), 1e-13);
@@ -84,11 +84,11 @@ std::vector<double> passages(const Pendulum<double>& p, double to) {
 }
 
 TEST(Section, ReturnsThatAllButTouchAreFound) {
-    // unit masses and lengths; θ1 passes 0 upwards for hundredths of a second
+    // unit masses and lengths; θ1 is above 0 for hundredths of a second only
     for (const auto& [energy_J, orbit, time_s] : {std::tuple{5.88, 4u, 74.448}, {14.7, 9u, 171.162}}) {
         auto release = releases_of_energy({}, energy_J, 24)[orbit];
         const auto before = poincare_section(release, {.crossings = 500, .longest_s = time_s + 1e-3}, never).back();
-        // chaos parts any two computations of so long a time: on from the last crossing before
+        // two computations of so long a chaotic motion diverge: start again at the last crossing before
         const auto y = state_at(release, before);
         release.angle = {y[0], y[1]};
         release.rate = {y[2], y[3]};
@@ -101,7 +101,7 @@ TEST(Section, ReturnsThatAllButTouchAreFound) {
 }
 
 TEST(Section, IsItsOwnMirrorImageBackwardsInTime) {
-    // (−θ1, −θ2, p1, p2) is the motion run backwards
+    // (−θ1, −θ2, p1, p2) is the motion with time reversed
     const auto release = releases_of_energy(odd_one(), 12, 7)[4];
     const auto points = poincare_section(release, {.crossings = 21}, never);
     const auto end = state_at(release, points.back());
@@ -116,12 +116,12 @@ TEST(Section, IsItsOwnMirrorImageBackwardsInTime) {
 }
 
 TEST(Section, CountsWholeTurnsInTheOrderOfTime) {
-    // without gravity, outstretched and turning as one, it crosses once a turn; turning the other way, never upwards
+    // without gravity, stretched and rotating as one, it crosses once per turn; in the other direction it never does
     auto p = odd_one();
     p.gravity = 0;
     p.angle = {0, 0};
     p.rate = {3, 3};
-    // measured 1.3e-13; so coarse that the first step is of three turns and a half, 1.7e-4
+    // measured 1.3e-13; with a first step of three and a half turns, 1.7e-4
     for (const auto& [tolerance, crossings, maximum] : {std::tuple{1e-13, 10, 7e-13}, {1e-2, 3, 1e-3}}) {
         const auto points = poincare_section(p, {.crossings = crossings, .tolerance = tolerance}, never);
         ASSERT_EQ(points.size(), static_cast<std::size_t>(crossings));
@@ -133,7 +133,7 @@ TEST(Section, CountsWholeTurnsInTheOrderOfTime) {
 }
 
 TEST(Section, ReleasesAreSpreadByMultiplesOfThePlasticNumber) {
-    // Roberts 2018: fractions of ½ + k/ρ and ½ + k/ρ², along θ2 and, there, along p2
+    // Roberts 2018: fractions of ½ + k/ρ and ½ + k/ρ², along θ2 and along p2 at this θ2
     auto p = odd_one();
     for (const double gravity : {9.8, 0.5, 0.0}) {
         p.gravity = gravity;

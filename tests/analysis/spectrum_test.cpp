@@ -24,7 +24,7 @@ double sum_of(const SpectrumSample& sample) {
 }
 
 TEST(Spectrum, KeepsTheVolume) {
-    // Liouville: the canonical volume stays, at every time, for any masses and lengths
+    // Liouville: the canonical volume is constant in time, for any masses and lengths
     for (const std::size_t links : {1, 2, 3, 4})
         for (const auto& sample :
              lyapunov_spectrum(physical(uneven(links)), {.duration_s = 10, .samples = 10}, never)) {
@@ -34,7 +34,7 @@ TEST(Spectrum, KeepsTheVolume) {
 }
 
 TEST(Spectrum, OfTheUprightEquilibriumInClosedForm) {
-    // λ² = g (2 ± √2), each with both signs; what the first frame makes of it decays like 1/t, so between two times
+    // λ² = g (2 ± √2), each with both signs; the effect of the initial frame decays as 1/t, so compare two times
     const auto samples = lyapunov_spectrum(physical(from_rest({180, 180})), {.duration_s = 4.5, .samples = 3}, never);
     const double strong = std::sqrt(9.8 * (2 + std::sqrt(2.0))), weak = std::sqrt(9.8 * (2 - std::sqrt(2.0)));
     const double exact[] = {strong, weak, -weak, -strong};
@@ -56,7 +56,7 @@ TEST(Spectrum, DoesNotDependOnTheIntervalOfOrthonormalisation) {
         EXPECT_NEAR(rarely.exponents[i], often.exponents[i], 1e-11) << i;  // measured 1.4e-12
 }
 
-/// C_jk = −∂Q_j/∂ω_k of viscous joints, of drag on links and on ends by their velocity.
+/// C_jk = −∂Q_j/∂ω_k of viscous joints, and of drag on links and ends due to their velocity.
 Eigen::MatrixXd damping(const PhysicalPendulum<double>& p, const Eigen::VectorXd& theta, const Eigen::VectorXd& omega) {
     const auto n = theta.size();
     const auto& f = p.friction;
@@ -99,7 +99,7 @@ double mean_contraction(const PhysicalPendulum<double>& p, double seconds, int s
 TEST(Spectrum, SumsToWhatFrictionDoesToTheVolume) {
     const auto apart = [](const PhysicalPendulum<double>& p, double seconds, int steps) {
         const auto end = lyapunov_spectrum(p, {.duration_s = seconds, .samples = 3, .tolerance = 1e-13}, never).back();
-        EXPECT_EQ(end.exponents.size(), 2 * p.chain.links());  // neither the time nor the work has one
+        EXPECT_EQ(end.exponents.size(), 2 * p.chain.links());  // no exponent of the time or the work
         const double expected = mean_contraction(p, seconds, steps);
         EXPECT_LT(expected, -0.05);
         return std::abs(sum_of(end) - expected);
@@ -112,7 +112,7 @@ TEST(Spectrum, SumsToWhatFrictionDoesToTheVolume) {
     three.friction.link_linear = {0.02, 0, 0.03};
     three.friction.drag_linear = {0, 0.02, 0.03};
     EXPECT_LT(apart(three, 10, 20000), 1e-11);  // measured 4e-13
-    // driven; the squares of rates have corners at 0
+    // driven; the squares of rates have kinks at 0
     auto arms = two;
     arms.friction.link_quadratic = {0.05, 0.08};
     arms.pivot = {0.2, 0.1, 5.5, 0.5};
@@ -130,7 +130,7 @@ TEST(Spectrum, WithoutFrictionComesInPairsOfWhichTwoVanish) {
     }
     EXPECT_NEAR(pair_mismatch({1, {3, 2, -1.5, -2.75}}), 0.5, 1e-15);
     EXPECT_NEAR(pair_mismatch({1, {3, 2, -1.5, -2}}), 1, 1e-15);
-    // a drive takes the energy's exponent away, but no volume
+    // a drive removes the zero exponent of the energy, but conserves the volume
     auto pushed = bodies<double>(2);
     pushed.pivot = {0, 0.2, 6, 0};
     pushed.torques = {{1, 0.7, 3.5, 0.25}};
@@ -139,7 +139,7 @@ TEST(Spectrum, WithoutFrictionComesInPairsOfWhichTwoVanish) {
         1e-10);
 }
 
-/// Eigenvalues of M θ″ + C θ′ + K θ = 0 about hanging, the greatest real part first.
+/// Real parts of the eigenvalues of M θ″ + C θ′ + K θ = 0 about hanging at rest, the largest first.
 std::vector<double> real_parts(const PhysicalPendulum<double>& p) {
     const auto n = static_cast<Eigen::Index>(p.chain.links());
     const Lagrange lagrange(p);
@@ -156,7 +156,7 @@ std::vector<double> real_parts(const PhysicalPendulum<double>& p) {
 }
 
 TEST(Spectrum, AtRestHasTheRealPartsOfTheEigenvalues) {
-    // overdamped: four real ones; what the first frame makes of it decays like 1/t, so between two times
+    // overdamped: four real ones; the effect of the initial frame decays as 1/t, so compare two times
     auto p = rods({{1.2, 0.7}, {0.9, 1.1}, {0, 0}, {0, 0}});
     p.friction.link_linear = {12, 2.5};
     const auto exact = real_parts(p);
@@ -165,7 +165,7 @@ TEST(Spectrum, AtRestHasTheRealPartsOfTheEigenvalues) {
     for (std::size_t i = 0; i < 4; ++i)
         EXPECT_NEAR(2 * all[1].exponents[i] - all[0].exponents[i], exact[i], 4e-9) << i;  // measured 4e-10
     EXPECT_NEAR(largest_exponent(p, {}, never).value, exact[0], 3e-14);                   // measured 2.2e-15
-    // one link swings: after a whole period of e^(−γt), all tangents are as they were but for that
+    // one link oscillates: after a whole period, all tangents return, multiplied by e^(−γt)
     auto one = rods({{1.2}, {0.9}, {0}, {0}});
     one.friction.viscous = {0.2};
     const double inertia = 1.2 * 0.9 * 0.9 / 3, gamma = 0.2 / (2 * inertia);
@@ -177,7 +177,7 @@ TEST(Spectrum, AtRestHasTheRealPartsOfTheEigenvalues) {
 }
 
 TEST(Spectrum, ResolvesContractionBeyondAllDigits) {
-    // e^(−2000) in a part of the time that an undamped one would take
+    // a contraction of e^(−2000) in less time than an undamped swing takes
     auto p = rods({{1.2}, {0.9}, {0}, {0}});
     p.friction.viscous = {600};
     const auto exact = real_parts(p);

@@ -19,11 +19,11 @@ Pendulum<double> chain(std::vector<double> mass, std::vector<double> angle) {
     return p;
 }
 
-/// The energy above hanging after `steps` steps, of that at the start, by the method itself: a single link of ω = 1
+/// The ratio of the energy above hanging after `steps` steps of the method to that at the start: a single link of ω = 1
 /// rad/s at a small angle.
 double energy_left(const char* method, double z, long steps) {
     const bool rods = std::string_view(method).starts_with("rattle");
-    constexpr double amplitude = 1e-10;  // even a millionfold of it is small
+    constexpr double amplitude = 1e-10;  // small even after growth by a factor of a million
     const Pendulum<Quad> link{.mass = {1}, .length = {1}, .angle = {Quad(amplitude)}, .rate = {0}, .gravity = 1};
     const auto motion = make_motion({.chain = link,
                                      .parts = {},
@@ -54,7 +54,7 @@ TEST(EnergyGrowth, IsThatOfOneStepInClosedForm) {
 }
 
 TEST(EnergyGrowth, IsThatOfTheSteppers) {
-    // where nothing but the growing root is left; measured 7e-16, 1.3e-14, 9.1e-14
+    // where only the growing root remains; measured 7e-16, 1.3e-14, 9.1e-14
     for (const auto& [method, z, steps, maximum] :
          {std::tuple{"euler", 0.3, 20L, 5e-15}, {"midpoint", 0.5, 20L, 7e-14}, {"rk4", 1.5, 20L, 5e-13}})
         EXPECT_NEAR(energy_left(method, z, steps) / energy_growth(method, z, steps), 1, maximum) << method;
@@ -107,11 +107,11 @@ TEST(SmallOscillations, OfTwoMassesAreInClosedForm) {
 }
 
 TEST(SmallOscillations, ShareTheEnergyOfTheRelease) {
-    // released in one of them: θ2 = ∓√2 θ1
+    // released in one of the modes: θ2 = ∓√2 θ1
     EXPECT_NEAR(small_oscillations(chain({1, 1}, {0.1, -0.1 * std::sqrt(2.0)}))[1].share, 1, 5e-16);  // measured 0
     EXPECT_NEAR(small_oscillations(chain({1, 1}, {0.1, 0.1 * std::sqrt(2.0)}))[1].share, 0, 2e-30);   // measured 2e-31
     auto pushed = chain({1, 1}, {0, 0});
-    EXPECT_EQ(small_oscillations(pushed)[1].share, 1);  // no energy: all of it in the fastest
+    EXPECT_EQ(small_oscillations(pushed)[1].share, 1);  // without energy, the fastest mode has all of it
     pushed.rate = {1, std::sqrt(2.0)};
     EXPECT_NEAR(small_oscillations(pushed)[0].share, 1, 5e-16);  // measured 0
 }
@@ -123,7 +123,7 @@ TEST(StepLimit, OfAVeryLongTimeIsThatOfStability) {
          {std::pair{"semi-implicit-euler", 2.0}, {"rattle", 2.0}, {"rk4", 2 * std::sqrt(2.0)}, {"rattle6", 2.53263}})
         EXPECT_NEAR(5 * step_limit(method, fast, long_time, 10).value(), z, 2e-5) << method;  // measured 3e-6
     EXPECT_FALSE(step_limit("gauss6", fast, long_time, 10));
-    EXPECT_FALSE(step_limit("rk4", fast, 0.4, 10));  // too short a time for any step
+    EXPECT_FALSE(step_limit("rk4", fast, 0.4, 10));  // too short a time for any limit
 }
 
 TEST(StepLimit, OfEulerAndMidpointIsWhereTheyHaveGrown) {
@@ -158,7 +158,7 @@ TEST(ReleasedEnergy, IsThatAboveHanging) {
     EXPECT_NEAR(released_energy(p),
                 energy(bobs_of_angles(p, released_in_angles<double, Eigen::Dynamic>(p)), p.gravity) - bottom,
                 5e-14);  // measured 7.1e-15
-    // with θ = 10⁻⁷ the level alone would leave two digits
+    // with θ = 10⁻⁷ the difference of the heights alone would have only two digits
     EXPECT_NEAR(released_energy({.angle = {1e-7, 0}}) / (0.5 * 9.8 * 2e-14), 1, 5e-15);  // measured 1e-15
 }
 
@@ -180,7 +180,7 @@ TEST(GreatestEnergyErrors, AreThoseOfTheSamplesAndNaNForAFailedRun) {
                     for (int n = 0; n < 8; ++n) {
                         motion->advance(never);
                         const double error = std::abs(motion->observe().energy_change);
-                        maximum = error <= maximum ? maximum : error;  // NaN stays
+                        maximum = error <= maximum ? maximum : error;  // keeps NaN
                     }
                     maximum /= released_energy(releases[i].cast<double>());
                     EXPECT_TRUE(errors[i] == maximum || (std::isnan(errors[i]) && !(maximum <= failure_error)))
@@ -189,7 +189,7 @@ TEST(GreatestEnergyErrors, AreThoseOfTheSamplesAndNaNForAFailedRun) {
                 }
             }
     EXPECT_GT(blown, 10);
-    // a method that gives up
+    // a method that fails
     const MotionSpec coarse{.method = "gauss4", .sample_interval = {3, 1}, .steps_per_sample = 1};
     EXPECT_TRUE(std::isnan(max_energy_errors(coarse, releases, 8, never).back()));
 }

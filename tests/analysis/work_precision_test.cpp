@@ -7,7 +7,7 @@
 namespace doppel {
 namespace work_precision_test {
 
-/// A study of outcomes of these costs, each with a tenth of the error before, from 0.1 on.
+/// A step-size study with these costs, each with a tenth of the previous error, from 0.1 on.
 StepStudy study(const std::string& method, Model model, const std::vector<double>& costs,
                 const ExternalMethod* external = nullptr) {
     StepStudy made{{model, method, external}, {}};
@@ -21,7 +21,7 @@ StepStudy study(const std::string& method, Model model, const std::vector<double
 
 const ExternalMethod one{"one", true, 0, 1, {}}, two{"two", true, 0, 1, {}};
 
-/// Two problems. At 0.1 "slow" is the last, at 0.001 nobody else comes so far on the second.
+/// Two problems. At 0.1 "slow" ranks last; at 0.001 only "slow" reaches the accuracy on the second.
 const std::vector<std::vector<StepStudy>> problems{
     {study("slow", Model::angles, {7, 8, 9, 10}), study("fast", Model::angles, {9, 9, 9, 9}),
      study("fast", Model::constraints, {1, 2, 4, 8}), study("even", Model::angles, {2, 3, 4.5, 9}),
@@ -29,7 +29,7 @@ const std::vector<std::vector<StepStudy>> problems{
     {study("slow", Model::angles, {7, 8, 9, 10}), study("fast", Model::angles, {1, 2}),
      study("even", Model::angles, {2, 3})}};
 
-/// The first repeat alone looks for break-downs on the way.
+/// Only the first repeat detects failures during the run.
 TEST(Merged, LeavesOutTheTimesOfFailedRuns) {
     const StepResult good{.setting = 0.1, .error = 0.01, .cpu_s = 3}, bad{.setting = 0.2},
         unseen{.setting = 0.2, .error = 0, .cpu_s = 1};
@@ -42,18 +42,18 @@ TEST(Merged, LeavesOutTheTimesOfFailedRuns) {
 
 TEST(BestModels, WinAtMostPowersOfTen) {
     const auto best = best_models(problems[0], Cost::time);
-    ASSERT_EQ(best.size(), 5u);  // in their order
+    ASSERT_EQ(best.size(), 5u);  // in the given order
     EXPECT_EQ(best[1], &problems[0][2]);
     EXPECT_EQ(best_models(problems[0], Cost::evaluations)[1], &problems[0][1]);
 }
 
 TEST(Ranked, IsByTheSumOfTheRanks) {
     using Names = std::vector<std::string>;
-    // at 0.1: fast, even, slow on both
+    // at 0.1: fast, even, slow on both problems
     EXPECT_EQ(ranked(problems, Cost::time, std::array{0.11}, false), (Names{"fast", "even", "slow"}));
-    // at 0.001 fast and even share the last rank of the second problem: ranks 0 + 1, 1 + 1, 2 + 0
+    // at 0.001, fast and even share the last rank on the second problem: ranks 0 + 1, 1 + 1, 2 + 0
     EXPECT_EQ(ranked(problems, Cost::time, std::array{0.0011}, false), (Names{"fast", "slow", "even"}));
-    // the least cost counts, in whatever model, and whatever costs are
+    // the lowest cost counts, for any model and any kind of cost
     EXPECT_EQ(ranked(problems, Cost::evaluations, std::array{0.11}, false), (Names{"slow", "even", "fast"}));
     EXPECT_EQ(ranked(problems, Cost::time, std::array{0.11}, true), (Names{"peer:one", "peer:two"}));
     EXPECT_TRUE(ranked({}, Cost::time, std::array{0.1}, false).empty());
