@@ -56,7 +56,7 @@ TEST(Csv, NumbersComeBackAsTheyWere) {
     std::getline(lines, line);
     for (const double x : numbers) {
         ASSERT_TRUE(std::getline(lines, line));
-        // strtod of glibc rounds exactly: an oracle of its own
+        // glibc's strtod rounds correctly, independently of our reader
         ASSERT_EQ(std::bit_cast<std::uint64_t>(std::strtod(line.c_str(), nullptr)), std::bit_cast<std::uint64_t>(x))
             << line;
         ASSERT_EQ(line.back(), '\r');

@@ -37,7 +37,7 @@ Ratio seconds(std::int64_t ticks, AVRational base) {
     return {ticks * base.num, base.den};
 }
 
-/// The boxes at the top level of an MP4 each start with their length (big endian, 32 bits) and name.
+/// Each box at the top level of an MP4 starts with its length (big endian, 32 bits) and its name.
 bool moov_comes_first(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     for (unsigned char head[8]; file.read(reinterpret_cast<char*>(head), 8);) {
@@ -75,7 +75,7 @@ void describe(const AVFormatContext& format, const AVStream& stream, Video& vide
     video.duration = seconds(stream.duration, stream.time_base);
 }
 
-/// In ticks of its stream.
+/// The duration in ticks of the stream.
 std::int64_t duration_of(const AVFrame& frame) {
 #if LIBAVUTIL_VERSION_INT >= AV_VERSION_INT(57, 30, 100)  // FFmpeg 6
     return frame.duration;
@@ -84,7 +84,7 @@ std::int64_t duration_of(const AVFrame& frame) {
 #endif
 }
 
-/// One component of a frame on the scale of 8 bits, whatever planes and bits it lies in.
+/// One component of a frame, scaled to 8 bits, for any layout of planes and bits.
 std::vector<double> component(const AVFrame& frame, int which) {
     const AVPixFmtDescriptor& about = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
     const bool chroma = (which == 1 || which == 2) && !(about.flags & AV_PIX_FMT_FLAG_RGB);
@@ -137,7 +137,7 @@ Video read_video(const std::filesystem::path& path, const std::function<void(con
     check(avformat_find_stream_info(opened, nullptr) >= 0 && format->nb_streams == 1, path, "not one stream");
     const AVStream& stream = *format->streams[0];
     const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
-    // libav's own leaves alpha out
+    // libav's own decoder ignores alpha
     if (stream.codecpar->codec_id == AV_CODEC_ID_VP9) decoder = avcodec_find_decoder_by_name("libvpx-vp9");
     check(decoder, path, "no decoder");
     const std::unique_ptr<AVCodecContext, Free> codec(avcodec_alloc_context3(decoder));

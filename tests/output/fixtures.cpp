@@ -104,7 +104,7 @@ Picture noise(Size size, unsigned seed) {
 }
 
 FullDisk::FullDisk(std::uintmax_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);  // write() answers EFBIG instead
+    std::signal(SIGXFSZ, SIG_IGN);  // so that write() returns EFBIG instead
     rlimit limit{};
     getrlimit(RLIMIT_FSIZE, &limit);
     limit.rlim_cur = bytes;

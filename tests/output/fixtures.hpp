@@ -15,33 +15,33 @@
 
 namespace doppel::test {
 
-/// An empty folder for the test that runs.
+/// An empty folder for the current test.
 std::filesystem::path fresh_folder();
 
 std::string bytes_of(const std::filesystem::path& path);
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 
-/// What fork() gave. Throws std::system_error where it failed: kill(-1, …) would end every process there is.
+/// The result of fork(). Throws std::system_error if it failed, because kill(-1, …) would end every process.
 inline int forked(int child) {
     if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
     return child;
 }
 
-/// Frame k of something like ours: a dark ground, two pendulums with antialiased discs and fading trails, thin lines.
+/// Frame k of a scene like a film's: dark background, two pendulums with antialiased discs, fading trails, thin lines.
 Picture moving_scene(Size size, long k);
 
 /// Writes `frames` of scene(size, k) as a video; returns its path.
 std::filesystem::path film(const std::filesystem::path& path, const VideoOptions& options, long frames,
                            Picture (*scene)(Size, long) = moving_scene);
 
-/// Every byte drawn anew: nothing can compress it.
+/// Random bytes, which cannot be compressed.
 Picture noise(Size size, unsigned seed);
 
 inline std::vector<Rect> whole(Size size) {
     return {{0, 0, size.width, size.height}};
 }
 
-/// Files of this process cannot grow beyond `bytes` while it lives: a full disk, wherever the tests run.
+/// Limits the files of this process to `bytes` during its lifetime: the same as a full disk, on any file system.
 class FullDisk {
 public:
     explicit FullDisk(std::uintmax_t bytes);
@@ -54,10 +54,10 @@ struct Video;
 
 /// BT.709 in limited range, chroma in the centre.
 void expect_bt709(const Video& video);
-/// The same, H.264, yuv420p, the index at the front.
+/// The same, and H.264, yuv420p, the index at the front.
 void expect_tags(const Video& video);
 
-/// What `action` threw: its exit code, and that the message holds `words`.
+/// Expects that `action` throws an Error with this exit code, whose message contains `words`.
 void expect_error(ExitCode code, const std::vector<std::string>& words, const std::function<void()>& action);
 
 }  // namespace doppel::test

@@ -1,4 +1,4 @@
-// What holds of every format; mp4 alone: video_test.cpp.
+// Tests of all formats; for mp4 only: video_test.cpp.
 #include "output/decoded.hpp"
 #include "output/fixtures.hpp"
 #include "output/libav_encoder.hpp"
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr Size small{320, 180}, tiny{96, 64};
 using Pixel = std::array<std::uint8_t, 4>;
 
-/// The scene, clear where it is dark: opacity follows the brightest colour.
+/// The scene with transparent dark pixels: opacity follows the brightest colour.
 Picture clear_scene(Size size, long k) {
     Picture picture = moving_scene(size, k);
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
@@ -38,7 +38,7 @@ struct Kind {
     PixelFormat pixel_format;
     bool transparent;
     const char *codec_found, *pixels_found;
-    double psnr;  // dB, of the worst frame; measured
+    double psnr;  // dB, of the frame with the lowest value; measured
 };
 constexpr auto yuv420 = PixelFormat::yuv420, yuv444 = PixelFormat::yuv444, yuv420_10 = PixelFormat::yuv420_10;
 constexpr std::array kinds{
@@ -76,7 +76,7 @@ std::string name_of(const testing::TestParamInfo<Kind>& kind) {
 class Formats : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(All, Formats, testing::ValuesIn(kinds), name_of);
 
-/// Every encoder and container once.
+/// Every encoder and every container once.
 class Encoders : public testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(All, Encoders, testing::Values(kinds[0], kinds[6], kinds[7], kinds[10], kinds[12]), name_of);
 
@@ -91,7 +91,7 @@ TEST(Encoder, ReportsLibavsErrors) {
     expect_error(ExitCode::io_failed,
                  {"x.mp4: libx264 refuses crf = abc: Unable to parse ", "option value \"abc\": Invalid argument"},
                  [&] { encoder.send_frame(0, 1); });
-    // each is said once
+    // each is reported once
     encoding.encoder_options = {{"no-such-option", "1"}};
     Encoder other(fresh_folder() / "y.mp4", encoding, never_stopped);
     expect_error(ExitCode::io_failed, {"libx264 refuses no-such-option = 1: Option not found"},
@@ -149,13 +149,13 @@ TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
         EXPECT_EQ(video.metadata.at("comment"), "title: Three thousandths of a degree\ncomment: butterfly – 90.003°");
     } else {
         EXPECT_EQ(video.metadata.at("title"), "Three thousandths of a degree");
-        // PNG: a dash is beyond Latin-1, and libav does not read iTXt
+        // PNG: a dash is not in Latin-1, and libav does not read iTXt
         EXPECT_EQ(video.metadata.count("comment"), kind.format == FilmFormat::apng ? 0u : 1u);
         EXPECT_EQ(video.metadata["comment"], kind.format == FilmFormat::apng ? "" : "butterfly – 90.003°");
     }
-    // SVT-AV1 4.2 (beside FFmpeg 9) spends less at the same crf than 1.4: measured 42.3 and 47.1 dB, 8 and 10 bits
+    // SVT-AV1 4.2 (with FFmpeg 9) uses fewer bits at the same crf than 1.4: measured 42.3 and 47.1 dB, 8 and 10 bits
     const bool is_newer_av1 = std::string_view(kind.codec) == "av1" && avcodec_version() >= AV_VERSION_INT(62, 0, 0);
-    // palettegen of libavfilter 10 finds other colours than that of 8: measured 58.9 dB
+    // palettegen of libavfilter 10 chooses other colours than that of 8: measured 58.9 dB
     const double allowed = is_newer_av1 ? 7.0 : kind.format == FilmFormat::gif ? 3.5 : 1.0;
     EXPECT_GT(worst, kind.psnr - allowed);
     const double alpha_floor = !kind.transparent ? 0.0 : kind.format == FilmFormat::apng ? 1e8 : 46.0;  // measured 48.2
@@ -164,7 +164,7 @@ TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
 
 TEST_P(Encoders, OnlyWhatChangedNeedsToBeTaken) {
     const Kind& kind = GetParam();
-    if (kind.format == FilmFormat::gif) return;  // what is taken more often weighs more in the palette
+    if (kind.format == FilmFormat::gif) return;  // the palette depends on how often a frame is added
     auto options = options_of(kind);
     const auto square = [](long k) {
         Picture picture = clear_scene(small, 0);
@@ -201,7 +201,7 @@ TEST_P(Encoders, AFullDiskIsAlwaysAnError) {
         const FullDisk full(static_cast<std::uintmax_t>(room));
         expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { film(path, options, 6); });
     }
-    // nothing is left beside the part that its owner removes
+    // no other file remains beside the partial file, which its owner removes
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
     expect_error(ExitCode::io_failed, {"none/x", "No such file"}, [&] { make_video_sink(folder / "none/x", options); });
 }
@@ -216,7 +216,7 @@ TEST_P(Encoders, DestroyedUnfinishedLeavesNothingBeside) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 }
 
-/// The worst that error_of(frame) finds in a film of a still picture, whose columns are of one colour each.
+/// The maximum of error_of(frame) in a film of a constant picture whose columns each have one colour.
 double worst_of_columns(PixelFormat pixel_format, int crf, const std::function<Pixel(int x)>& color_of,
                         const std::function<double(const Luma&)>& error_of) {
     Picture picture(small);
@@ -232,7 +232,7 @@ double worst_of_columns(PixelFormat pixel_format, int crf, const std::function<P
 }
 
 TEST(FormatsDetail, MoreBitsAndFullChromaCarryMore) {
-    // red and blue lines of one pixel: half the chroma cannot tell them apart
+    // red and blue lines of one pixel: chroma at half the resolution cannot resolve them
     const auto worst_chroma = [](PixelFormat pixel_format) {
         const auto stripe = [](int x) {
             return Pixel{std::uint8_t(x % 2 ? 200 : 20), 40, std::uint8_t(x % 2 ? 20 : 200), 255};
@@ -251,7 +251,7 @@ TEST(FormatsDetail, MoreBitsAndFullChromaCarryMore) {
     EXPECT_LT(worst_chroma(yuv444), 6.0);   // measured
     EXPECT_GT(worst_chroma(yuv420), 30.0);  // measured
 
-    // a ramp from 100 to 103: 8 bits have a step or two, 10 bits have several
+    // a ramp from 100 to 103: 8 bits have one or two steps, 10 bits have several
     const auto levels = [](PixelFormat pixel_format) {
         const auto grey = [](int x) { return std::uint8_t(100 + 4 * x / small.width); };
         const auto ramp = [&](int x) { return Pixel{grey(x), grey(x), grey(x), 255}; };

@@ -76,8 +76,8 @@ TEST(Gif, UnchangedPixelsKeepTheirColours) {
     EXPECT_GT(colours.size(), 200u);
 }
 
-/// A square of one colour moves over others, and a line comes with it; only what changed is taken, the last frame
-/// rests.
+/// A square of one colour moves over others, and a line appears with it; only changed parts are stored, and the last
+/// frame is constant.
 TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
     const auto path = fresh_folder() / "x.gif";
     Picture picture(small);
@@ -96,12 +96,12 @@ TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
     EXPECT_GT(worst, 50.0);
     const std::string bytes = bytes_of(path);
     EXPECT_NE(bytes.find("NETSCAPE2.0"), std::string::npos);
-    EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // for ever
+    EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // no end
     EXPECT_EQ(bytes.back(), '\x3b');
 }
 
 TEST(Gif, WhatChangedStandsWhereItBelongs) {
-    // a square of one colour moves over another, and a line comes with it; only what changed is taken
+    // a square of one colour moves over another, and a line appears with it; only changed parts are stored
     const auto path = fresh_folder() / "x.gif";
     const auto scene = [](int k) {
         Picture picture(small);
@@ -143,11 +143,11 @@ TEST(Gif, FramesThatWaitTakeNoMemory) {
         return memory.uordblks + memory.hblkhd;
     };
     const auto before = take(0, 20);
-    EXPECT_LT(take(20, 220), before + 10'000'000);  // those 200 frames have 46 MB
+    EXPECT_LT(take(20, 220), before + 10'000'000);  // those 200 frames have 46 MB in all
 }
 
 TEST(Gif, EndsInItsCommentWhereThereIsOne) {
-    // GIF89a, 24 and 27: 21 FE, blocks of at most 255 bytes after their lengths, a block of none; then 3B
+    // GIF89a, 24 and 27: 21 FE, blocks of at most 255 bytes with their lengths, an empty block; then 3B
     const auto folder = fresh_folder();
     const auto ends_as = [&](const Metadata& metadata, const std::string& end) {
         const auto path = film(
@@ -159,7 +159,7 @@ TEST(Gif, EndsInItsCommentWhereThereIsOne) {
     EXPECT_TRUE(ends_as({{"a", "bc"}}, start + '\5' + "a: bc" + none + ';'));
     EXPECT_TRUE(ends_as({{"a", std::string(253, 'b')}},
                         start + '\xff' + "a: " + std::string(252, 'b') + '\1' + 'b' + none + ';'));
-    EXPECT_TRUE(ends_as({}, none + ';'));  // of the last frame
+    EXPECT_TRUE(ends_as({}, none + ';'));  // the end of the last frame
     EXPECT_FALSE(ends_as({}, none + none + ';'));
 }
 
@@ -184,7 +184,7 @@ TEST(Apng, FramesTimesAndWordsAreExact) {
     EXPECT_EQ(types.back(), "IEND");
     EXPECT_EQ(frames, 6u);
     EXPECT_EQ(std::ranges::count(types, "fcTL"), 6);
-    EXPECT_EQ(plays, 0u);  // for ever
+    EXPECT_EQ(plays, 0u);  // repeats without end
     EXPECT_EQ(delays, (std::set<std::pair<unsigned, unsigned>>{{1001, 30000}}));
     EXPECT_EQ(texts,
               (std::vector<std::string>{std::string("Title\0"

@@ -9,8 +9,8 @@
 
 namespace doppel::test {
 
-/// Fails where `actual` is not tests/golden/NAME.png by the golden policy, and leaves what it takes to see why; with
-/// DOPPEL_UPDATE_GOLDENS=1 makes it the golden (tests/update-goldens).
+/// Fails if `actual` differs from tests/golden/NAME.png by the golden policy, and saves the files that show why. With
+/// DOPPEL_UPDATE_GOLDENS=1 it becomes the golden picture (tests/update-goldens).
 inline void expect_golden(const std::string& name, const Picture& actual) {
     const auto golden = std::filesystem::path(DOPPEL_SOURCE_DIR) / "tests/golden" / (name + ".png");
     if (const char* update = std::getenv("DOPPEL_UPDATE_GOLDENS"); update && std::strcmp(update, "1") == 0) {

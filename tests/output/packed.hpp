@@ -15,7 +15,7 @@ extern "C" {
 
 namespace doppel::test {
 
-/// What deflated() made.
+/// The input of deflated(), from its result.
 inline std::string inflated(const std::string& base64) {
     std::string bytes(AV_BASE64_DECODE_SIZE(base64.size()), '\0'), plain(std::size_t{1} << 24, '\0');
     const int size =
@@ -29,7 +29,7 @@ inline std::string inflated(const std::string& base64) {
     return plain;
 }
 
-/// What the scripts of a packed page read.
+/// The data that the scripts of a packed page read.
 inline nlohmann::ordered_json data_of(const std::string& page) {
     const std::string start = "<script type=\"text/packed\" id=\"data\">";
     const auto begin = page.find(start) + start.size();

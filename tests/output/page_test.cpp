@@ -11,7 +11,7 @@ namespace page_test {
 
 using test::fresh_folder;
 
-/// What stands between two strings, at every place.
+/// Every text between `start` and `end`.
 std::vector<std::string> all_between(const std::string& text, const std::string& start, const std::string& end) {
     std::vector<std::string> found;
     for (auto at = text.find(start); at != std::string::npos; at = text.find(start, at)) {
@@ -48,7 +48,7 @@ TEST(HtmlPage, ItsPolicyAllowsItsVeryScriptsAndStylesAndNoNetwork) {
     for (const auto& [tag, directive] : {std::pair("script", "script-src"), {"style", "style-src"}}) {
         std::string sources = directive;
         const auto contents = all_between(text, fmt::format("<{}>", tag), fmt::format("</{}>", tag));
-        EXPECT_EQ(contents.size(), 2u);  // without the empty script; beside the shared style
+        EXPECT_EQ(contents.size(), 2u);  // without the empty script; in addition to the shared style
         for (const auto& content : contents) sources += fmt::format(" 'sha256-{}'", base64(sha256_digest(content)));
         EXPECT_NE(policies[0].find("; " + sources + ";"), std::string::npos) << policies[0];
     }

@@ -53,7 +53,7 @@ TEST(Png, WordsCanBeReadBack) {
     const Picture picture = noise({64, 48}, 3);
     const Metadata words{{"title", "Sensitivity, 90.003°"}, {"comment", "θ → π"}, {"encoder", "doppel 0.1"}};
     const auto check_words = [&](const std::filesystem::path& path) {
-        // libav reads tEXt, but not iTXt; and FFmpeg 7.1 no letter beyond ASCII
+        // libav reads tEXt, but not iTXt; FFmpeg 7.1 reads no letter outside ASCII
         EXPECT_EQ(read_video(path).metadata.at("software"), "doppel 0.1");
         const auto bytes = test::bytes_of(path);
         EXPECT_NE(bytes.find(std::string("tEXtTitle\0Sensitivity, 90.003\xb0", 30)), std::string::npos);
@@ -69,7 +69,7 @@ TEST(Png, WordsCanBeReadBack) {
 }
 
 TEST(Png, SizesMayChangeFromPictureToPicture) {
-    // a thread's memory is used again: larger, smaller, in any order
+    // a thread reuses its memory: for larger and smaller pictures in any order
     const auto folder = fresh_folder();
     for (const Size size : {Size{40, 30}, Size{400, 300}, Size{1, 1}, Size{300, 7}, Size{7, 300}, Size{800, 600}}) {
         const Picture picture = noise(size, 5);
@@ -94,7 +94,7 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
     write_bytes(folder / "garbage.png", "this is no picture");
     expect_error(ExitCode::io_failed, {"garbage.png", "decoded"}, [&] { read_png(folder / "garbage.png"); });
     expect_error(ExitCode::io_failed, {"is not a regular file"}, [&] { read_png(folder); });
-    // none that would block, or has no end
+    // neither a file that would block nor one without end
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     for (const auto& path : {folder / "pipe", std::filesystem::path("/dev/zero")})
         expect_error(ExitCode::io_failed, {path.string(), "is not a regular file"}, [&] { read_png(path); });
@@ -143,12 +143,12 @@ TEST(PngSink, StopsWhenAsked) {
     sink->take(noise(size, 1), whole(size));
     stop = true;
     expect_error(ExitCode::interrupted, {"interrupted"}, [&] {
-        sink->take(noise(size, 2), whole(size));  // a thread may have seen it by then
+        sink->take(noise(size, 2), whole(size));  // a thread may have detected it by then
         sink->finish();
     });
 }
 
-/// Four bytes, the highest first.
+/// Four bytes, big endian.
 std::string number(std::size_t value) {
     std::string bytes;
     for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
@@ -161,7 +161,7 @@ std::string chunk_of(const std::string& type, const std::string& content) {
     return number(content.size()) + checked + number(libdeflate_crc32(0, checked.data(), checked.size()));
 }
 
-// Room is made only for what a file can hold: stb_image alone took 2 GB for the first and 1 GB for the second.
+// Memory is limited to what the file can contain: stb_image allocated 2 GB for the first file and 1 GB for the second.
 TEST(Png, RejectsLengthsBeyondTheFile) {
     const auto folder = fresh_folder();
     const auto path = folder / "x.png";
@@ -177,12 +177,12 @@ TEST(Png, RejectsLengthsBeyondTheFile) {
     const auto data = bytes.find("IDAT") - 4;
     refused(data, {"\x7f\0\0\0", 4}, fmt::format("the chunk at byte {} is longer than the file", data));
     refused(16, {"\0\0\x40\0\0\0\x40\0", 8}, "16384x16384 pixels cannot be in");
-    // 3 bytes a pixel: one pixel more than the file can hold, and as many
+    // 3 bytes per pixel: one pixel more than the file can contain, and exactly as many
     const auto in_a_row = [](std::size_t pixels) { return number(pixels) + number(1); };
     refused(16, in_a_row(344 * bytes.size() + 1), "pixels cannot be in");
     refused(16, in_a_row(344 * bytes.size()), "not enough pixels");
     bytes.resize(data);
-    bytes += {"\x7f\0\0\0IDAT", 8};  // and there the file ends
+    bytes += {"\x7f\0\0\0IDAT", 8};  // the file ends here
     refused(0, "", fmt::format("the chunk at byte {} is longer than the file", data));
     write_png(path, noise({8, 8}, 5));
     std::ofstream(path, std::ios::binary | std::ios::app) << "what follows the picture";
@@ -241,7 +241,7 @@ TEST(Png, ColorsOtherThanSrgbAreAnError) {
 TEST(PngSink, HasThreadsForWhatFitsIntoMemory) {
     EXPECT_EQ(png_threads(7, {64, 36}), 7);
     EXPECT_GE(png_threads(0, {64, 36}), 1);
-    EXPECT_LE(png_threads(1024, {3840, 2160}), 12);  // 2 GiB of them
+    EXPECT_LE(png_threads(1024, {3840, 2160}), 12);  // 2 GiB for all of them
     EXPECT_EQ(png_threads(64, {16384, 16384}), 1);
 }
 

@@ -1,4 +1,4 @@
-// Several files that take their places together, whatever happens on the way.
+// Several files are published together, or none, after any interruption.
 #include "output/fixtures.hpp"
 #include "output/system_calls.hpp"
 #include "output/transaction.hpp"
@@ -27,7 +27,7 @@ Contents contents(const fs::path& folder) {
     return all;
 }
 
-/// A run that writes a film, pictures and a manifest, all of which say `word`.
+/// A run that writes a film, pictures and a manifest, which all contain `word`.
 void run(const fs::path& folder, const std::string& word) {
     Transaction files(folder);
     write_bytes(files.file("x.mp4"), word);
@@ -43,7 +43,7 @@ void run(const fs::path& folder, const std::string& word) {
     files.publish();
 }
 
-/// An empty folder, in memory where there is one: hundreds of runs wait for a disk for minutes.
+/// An empty folder, in memory if possible: on a disk, hundreds of runs take minutes.
 class QuickFolder {
 public:
     QuickFolder() {
@@ -57,12 +57,12 @@ public:
     fs::path path;
 };
 
-/// Nothing is synced and nothing fails.
+/// Syncs do nothing, and no call fails.
 int as_always(const std::string& /*call*/) {
     return 0;
 }
 
-/// The folder as the run "old" and a failed one after it left it.
+/// The folder after the run "old" and a failed run after it.
 fs::path after_old_run(const fs::path& folder) {
     watch_calls(as_always);
     run(folder, "old");
@@ -72,7 +72,7 @@ fs::path after_old_run(const fs::path& folder) {
     return folder;
 }
 
-/// What the folder holds after a whole run "new".
+/// The contents of the folder after the complete run "new".
 Contents after_new_run(const fs::path& where) {
     const auto folder = after_old_run(where / "expected");
     watch_calls(as_always);
@@ -85,7 +85,7 @@ int no_exchange(const std::string& call) {
     return call == "renameat2" ? EINVAL : 0;
 }
 
-/// Whether the folder is as the run "new" left it; a failed run's file from before may stay until the next whole run.
+/// Whether the folder equals that of the run "new"; the file of an earlier failed run may remain until the next run.
 bool is_new(Contents found, const Contents& expected) {
     found.erase("x.failed.csv");
     return found == expected;
@@ -106,7 +106,7 @@ TEST(Publication, IsAllNewOrAllOldWheneverItIsKilled) {
             const auto expected_old = contents(folder);
             killed = killed_before(
                 ++kills, [&] { run(folder, "new"); }, system);
-            // at any moment something whole has every name, where two names can be exchanged
+            // if names can be exchanged, every name has a complete file at any moment
             for (const auto& [name, word] : expected_old)
                 EXPECT_TRUE(system || name == "x.failed.csv" || fs::exists(folder / name)) << kills << ", " << name;
             watch_calls(as_always);
@@ -151,7 +151,7 @@ TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
     const QuickFolder quick;
     const auto folder = after_old_run(quick.path / "folder");
     std::map<std::string, int> before,
-        after;  // calls before a name of the folder changes, and after the last that does
+        after;  // calls before the first rename in the folder, and after the last one
     bool begun = false;
     watch_calls([&](const std::string& call) {
         const bool moves = call == "renameat2" || call == "rename";
@@ -163,7 +163,7 @@ TEST(Publication, IsOnTheDiskBeforeTheFirstNameChanges) {
     run(folder, "new");
     watch_calls({});
     EXPECT_EQ(before["syncfs"], 1);  // the pictures
-    EXPECT_EQ(before["fsync"], 5);   // two files, the folder of pictures, the folder with their names, the note of it
+    EXPECT_EQ(before["fsync"], 5);   // two files, the folder of pictures, the folder with their names, its record
     EXPECT_EQ(after["fsync"], 1);    // the folder with their new names
 }
 
@@ -195,7 +195,7 @@ TEST(Publication, WhereAFileCannotTakeItsPlaceTheNextRunMovesItIn) {
     }
 }
 
-// what is there now is somebody's, and what waits for its place is kept
+// a file that somebody put there is not replaced, and the waiting file is kept
 TEST(Publication, IsNotCompletedOverAFileThatSomebodyPutThere) {
     const QuickFolder quick;
     const auto expected_new = after_new_run(quick.path);
@@ -281,7 +281,7 @@ TEST(Transaction, ALiveRunIsNotDisturbedWithoutLocks) {
         live.publish();
     }
     EXPECT_EQ(contents(folder), (Contents{{"x.csv", "half a tab"}}));
-    // nor is it told from one that was killed
+    // nor can it be distinguished from a killed run
     const pid_t child = forked(fork());
     if (child == 0) {
         Transaction killed(folder, "run", "", {.force = true});
@@ -296,7 +296,7 @@ TEST(Transaction, ALiveRunIsNotDisturbedWithoutLocks) {
     EXPECT_TRUE(fs::is_empty(folder));
 }
 
-// pictures that compare is given may have any name
+// pictures to compare may have any name
 TEST(Transaction, ANameWithLineBreaksIsOneName) {
     const auto folder = fresh_folder();
     write_bytes(folder / "x.csv", "somebody's");

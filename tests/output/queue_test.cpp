@@ -19,7 +19,7 @@ TEST(Queue, KeepsOrderAndBound) {
     std::jthread giver([&] {
         for (int k = 0; k < 20'000; ++k) {
             queue.push(k);
-            // pushed - popped is never less than what is in the queue, and at most one more: a pop not yet counted
+            // pushed - popped is at least the queue's length and at most one more, for a pop not yet counted
             maximum = std::max(maximum.load(), ++pushed - popped.load());
         }
         queue.close();
@@ -47,7 +47,7 @@ TEST(Queue, CloseWakesProducersAndConsumers) {
         empty.close();
     }
     EXPECT_TRUE(refused && ended);
-    EXPECT_EQ(full.pop(), 1);  // what is in it can still be taken
+    EXPECT_EQ(full.pop(), 1);  // remaining items can still be popped
     EXPECT_EQ(full.pop(), std::nullopt);
 }
 

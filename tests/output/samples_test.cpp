@@ -27,7 +27,7 @@ std::vector<std::uint8_t> bytes_of_area(const Picture& picture, const Rect& area
     return bytes;
 }
 
-/// The samples of a picture, plane by plane.
+/// The samples of a picture, for each plane.
 std::vector<std::vector<int>> planes_of(const Picture& picture, AVPixelFormat format) {
     const Rect all{0, 0, picture.size.width, picture.size.height};
     const auto bytes = bytes_of_area(picture, all, format);
@@ -49,14 +49,14 @@ struct Exact {
     double y, cb, cr;
 };
 
-/// ITU-R BT.709-6 in double: E = Kr R + Kg G + Kb B, and the differences of B and R from it.
+/// ITU-R BT.709-6 in double: E = Kr R + Kg G + Kb B, and the differences B − E and R − E.
 Exact exact(double r, double g, double b, double scale) {
     const double e = 0.2126 * r + 0.7152 * g + 0.0722 * b;
     return {scale * (16 + 219 * e / 255), scale * (128 + 224 * (b - e) / 1.8556 / 255),
             scale * (128 + 224 * (r - e) / 1.5748 / 255)};
 }
 
-/// Of the mean of by×by pixels.
+/// The same for the mean of by×by pixels.
 Exact exact_mean(const Picture& picture, int x, int y, int by, double scale) {
     double mean[3] = {};
     for (int i = 0; i < by * by; ++i)
@@ -83,7 +83,7 @@ TEST(Samples, AreTheExactFormulaRounded) {
                 const std::size_t i = std::size_t(y) * (size.width / by) + x;
                 worst_chroma = std::max({worst_chroma, std::abs(e.cb - planes[1][i]), std::abs(e.cr - planes[2][i])});
             }
-        // rounding alone costs 0.5; the coefficients' 16 bits add the rest
+        // rounding alone has an error of 0.5; the 16 bits of the coefficients add the rest
         EXPECT_LT(worst_luma, 0.504) << int(format);    // measured 0.5012, of 10 bits 0.5014
         EXPECT_LT(worst_chroma, 0.504) << int(format);  // measured 0.5012
     }
@@ -127,7 +127,7 @@ TEST(Samples, ColoursAndAlphaStayWhereTheyAreKept) {
     for (std::size_t i = 3; i < even.rgba.size(); i += 4) even.rgba[i] = static_cast<std::uint8_t>(7 * i);
     const auto planes = planes_of(even, AV_PIX_FMT_YUVA420P);
     for (std::size_t i = 0; i < planes[3].size(); ++i) EXPECT_EQ(planes[3][i], even.rgba[4 * i + 3]);
-    EXPECT_EQ(planes_of(even, AV_PIX_FMT_YUV420P)[1], planes[1]);  // colour is no darker where alpha is low
+    EXPECT_EQ(planes_of(even, AV_PIX_FMT_YUV420P)[1], planes[1]);  // low alpha does not darken colours
 }
 
 TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {

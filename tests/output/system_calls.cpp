@@ -1,4 +1,4 @@
-// Stands before the C library's functions of these names, in this program alone.
+// Replaces the C library's functions of these names, in this program only.
 #include "output/system_calls.hpp"
 
 #include "output/fixtures.hpp"
@@ -20,7 +20,7 @@ Function* next(const char* name) {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-/// Whether the call is to fail; errno says how.
+/// Whether the call must fail; sets errno.
 bool fails(const char* name) {
     if (!watch) return false;
     errno = watch(name);
@@ -61,7 +61,7 @@ int open(const char* name, int flags, ...) {
     va_end(rest);
     return fails("open") ? -1 : next<int(const char*, int, ...)>("open")(name, flags, mode);
 }
-int open64(const char* name, int flags, ...) {  // of libraries
+int open64(const char* name, int flags, ...) {  // called by libraries
     va_list rest;
     va_start(rest, flags);
     const auto mode = va_arg(rest, unsigned);

@@ -5,14 +5,14 @@
 
 namespace doppel::test {
 
-/// What happens to the calls by which this process changes files, where a test arms it: each is announced before it is
-/// made, and the test may end the process, or have the call fail with the errno that it returns (0: it is made). To
-/// sync then does nothing: only who is killed, not a disk without power, is tested.
+/// Intercepts the calls by which this process changes files, if a test enables it. Each call is reported before it is
+/// made; the test may end the process, or let the call fail with the errno that it returns (0: the call is made). Syncs
+/// then do nothing: this tests killed processes, not disks that lose power.
 using CallWatch = std::function<int(const std::string& call)>;
 void watch_calls(CallWatch watch);
 
-/// Does `action` in a process of its own, which is killed before its n-th call, from 1; false where it had fewer and did
-/// not kill itself.
+/// Runs `action` in a child process, which is killed before its n-th call (from 1). Returns false if it made fewer
+/// calls and so was not killed.
 /// `other` decides on the calls before.
 bool killed_before(int n, const std::function<void()>& action, const CallWatch& other = {});
 

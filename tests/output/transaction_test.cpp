@@ -22,7 +22,7 @@ using namespace test;
 
 namespace fs = std::filesystem;
 
-/// All that is below `folder`, as paths relative to it.
+/// All paths below `folder`, relative to it.
 std::set<std::string> listing(const fs::path& folder) {
     std::set<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -42,14 +42,14 @@ void write_picture(Transaction& files, const std::string& name) {
     write_bytes(files.directory("frames") / name, "picture");
 }
 
-/// What a listing has while a run has these files in its hidden folder.
+/// The listing of a folder while a run has these files in its hidden folder.
 Names in_hidden(const Names& names) {
     Names all{hidden, lock};
     for (const auto& name : names) all.insert(hidden + "/" + name);
     return all;
 }
 
-/// A manifest that names the files; `folder` holds something of each name.
+/// A manifest with these names; creates each in `folder`.
 void write_record(const fs::path& folder, const std::vector<std::string>& names) {
     std::string files;
     for (const auto& name : names) files += fmt::format(R"({}"{}": {{}})", files.empty() ? "" : ", ", name);
@@ -80,7 +80,7 @@ TEST(Transaction, DestroyedUnpublishedLeaveNothing) {
         write_picture(files, "0.png");
         files.file("never written");
     }
-    EXPECT_EQ(listing(out), Names{"a"});  // which was there before
+    EXPECT_EQ(listing(out), Names{"a"});  // existed before
 }
 
 TEST(Transaction, FoldersWithOtherThingsInThemStay) {
@@ -146,7 +146,7 @@ TEST(Transaction, AFailedPublicationLeavesAllFilesUnchanged) {
     {
         Transaction files(out / "a");
         write_part(files, "x.csv", "table");
-        files.file("x.mp4");  // asked for, never written
+        files.file("x.mp4");  // requested, but never written
         expect_error(ExitCode::io_failed, {"x.mp4", "No such file"}, [&] { files.publish(); });
     }
     EXPECT_EQ(listing(out), Names{});
@@ -188,7 +188,7 @@ TEST(Transaction, LinksAndPipesBelowTheFolderAreNeverFollowed) {
     fs::create_directory(out / "elsewhere");
     fs::create_directory_symlink("elsewhere", out / "link");
     expect_error(ExitCode::io_failed, {"link is a symbolic link"}, [&] { Transaction(out / "link"); });
-    Transaction(out / "link/x").file("x.csv");  // the way there is the person's
+    Transaction(out / "link/x").file("x.csv");  // the user made the link in the path
     EXPECT_EQ(listing(out / "elsewhere"), Names{});
 }
 
@@ -208,7 +208,7 @@ TEST(Transaction, WhatIsNotDoppelsIsNeverReplaced) {
     fs::create_directory(out / "frames/000001.png");
     expect_error(ExitCode::io_failed, {(out / "frames/000001.png").string()}, [&] { files.directory("frames"); });
     fs::remove(out / "frames/000001.png");
-    // that comes while the run is on
+    // a file that appears during the run
     write_picture(files, "000000.png");
     write_part(files, "x.mp4", "video");
     write_bytes(out / "x.mp4", "my video");
@@ -225,9 +225,9 @@ TEST(Transaction, KnowsWhatDoppelMadeByItsContentToo) {
     Transaction files(out);
     files.file("x.png");
     files.directory("frames");
-    write_bytes(out / "y.csv", "sample,time_s,theta1_rad,theta2_rad\r\n");  // of a measured track, too
+    write_bytes(out / "y.csv", "sample,time_s,theta1_rad,theta2_rad\r\n");  // also from a measured track
     expect_error(ExitCode::io_failed, {"y.csv"}, [&] { files.file("y.csv"); });
-    write_bytes(out / "y.png", bytes_of(out / "x.png").substr(0, 33));  // without the words
+    write_bytes(out / "y.png", bytes_of(out / "x.png").substr(0, 33));  // without its text chunks
     expect_error(ExitCode::io_failed, {"y.png"}, [&] { files.file("y.png"); });
 }
 
@@ -237,10 +237,10 @@ TEST(Transaction, ReplacesChangedFilesOnlyIfForced) {
     write_bytes(out / "record.json", R"({"doppel": {}, "files": {"x.toml": {"bytes": 9, "sha256": ")" +
                                          sha256_of_text("by Doppel") + R"("}}})");
     Transaction(out).file("x.toml");
-    write_bytes(out / "x.toml", "by a hand");  // as long
+    write_bytes(out / "x.toml", "by a hand");  // changed by a user, with the same length
     expect_error(ExitCode::io_failed, {"x.toml", "--force"}, [&] { Transaction(out).file("x.toml"); });
     Transaction(out, "run", "", {.force = true}).file("x.toml");
-    // what an earlier run's manifest says of it does not make it Doppel's again, nor the reverse
+    // the entry of an earlier run in a manifest does not make the file Doppel's again, nor the reverse
     write_bytes(out / "later.json",
                 R"({"doppel": {}, "files": {}, "earlier_files": {"x.toml": {"bytes": 9, "sha256": ")" +
                     sha256_of_text("by a hand") + R"("}}})");
@@ -344,7 +344,7 @@ TEST(Transaction, LockTheFolderForOneRun) {
         Transaction files(out / "a");
         expect_error(ExitCode::try_again, {(out / "a").string() + ": ", "another run, process " + pid, "--out"},
                      [&] { Transaction(out / "a"); });
-        Transaction shard(out / "a", "shard-1-of-2");  // of another name
+        Transaction shard(out / "a", "shard-1-of-2");  // with another name
         EXPECT_EQ(listing(out / "a"), (Names{hidden, lock, ".doppel-shard-1-of-2", ".doppel-shard-1-of-2/.lock"}));
         write_part(files, "x.csv", "sample,time_s,");
         files.publish();
@@ -365,7 +365,7 @@ TEST(Transaction, RemovesFilesOfAKilledRun) {
     auto left = in_hidden({"x.mp4", "frames", "frames/0.png"});
     left.insert("x.mp4.part");
     EXPECT_EQ(listing(out), left);
-    { Transaction files(out, "another"); }  // is not concerned
+    { Transaction files(out, "another"); }  // is independent of it
     EXPECT_EQ(listing(out), left);
     {
         Transaction files(out);

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr Size small{480, 270};
 
-// libav opens a file by its name, after it was made
+// libav opens a file by its name after it was created
 TEST(Video, FollowsNoLinkWithItsName) {
     const auto folder = fresh_folder();
     for (const auto& [format, name] : {std::pair{FilmFormat::mp4, "x.mp4"},
@@ -66,7 +66,7 @@ TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     }
 }
 
-/// The start of each frame that a player can begin with, s.
+/// The times of the key frames, s.
 std::vector<double> key_times(const fs::path& path) {
     std::vector<double> times;
     AVFormatContext* format = nullptr;
@@ -98,7 +98,7 @@ TEST(Mp4, CanBeEnteredEveryFiveSeconds) {
     }
 }
 
-// The default's crf is veryfast's for the eye; the quantizers of ten bits are others.
+// The default's crf looks as good as veryfast's; ten bits have other quantizers.
 TEST(Mp4, HasEqualQualityWithBothPresetsAndDepths) {
     const auto folder = fresh_folder();
     const auto noise_of = [&](const char* preset, PixelFormat pixels) {
@@ -118,7 +118,7 @@ TEST(Mp4, AFullDiskIsAlwaysAnError) {
     const auto path = fresh_folder() / "x.mp4.part";
     const VideoOptions options{.size = small};
     const auto size = static_cast<long>(fs::file_size(film(path, options, 60)));
-    // in the header, the packets, the index, and while the packets move to make room for it at the front
+    // in the header, the packets, the index, and while the packets move to make space for the index at the front
     for (const long room : {0L, 10L, size / 2, size - 5000, size - 1500, size - 500, size - 1}) {
         const FullDisk full(static_cast<std::uintmax_t>(room));
         expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { film(path, options, 60); });
@@ -141,7 +141,7 @@ TEST(Mp4, DestroyedUnfinishedStopsAtOnce) {
     const Size large{1920, 1080};
     const Picture a = noise(large, 1), b = moving_scene(large, 1);
     const auto folder = fresh_folder();
-    // by the clock of the process, which does not run while others have the cores
+    // CPU time, which does not advance while other processes run
     const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
     const auto fed = [&](int frames) {
         auto sink = make_video_sink(folder / "x.mp4", {.size = large, .preset = "medium"});
@@ -155,7 +155,7 @@ TEST(Mp4, DestroyedUnfinishedStopsAtOnce) {
     auto sink = fed(20);
     const double end = now();
     sink.reset();
-    EXPECT_LT(now() - end, 2 * a_frame);  // measured 0.74 to 0.97, and 20 where the queue is encoded to its end
+    EXPECT_LT(now() - end, 2 * a_frame);  // measured 0.74 to 0.97, and 20 if the queue is encoded to its end
 }
 
 TEST(Mp4, NamesItsLibraries) {
