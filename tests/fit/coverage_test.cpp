@@ -10,8 +10,8 @@ namespace coverage_test {
 
 using namespace test;
 
-/// How often the truth lies within ± 1.96 standard errors: of all fitted parameters together ("") and of each; and how
-/// often residuals look like noise ("white").
+/// How often the true values lie within ± 1.96 standard errors, for all parameters together ("") and for each; and
+/// how often the residuals look like noise ("white").
 std::map<std::string_view, double> coverage_of(int trials, const Parameters& truth, const ModelSpec& model,
                                                double noise) {
     std::map<std::string_view, double> shares;
@@ -30,7 +30,7 @@ std::map<std::string_view, double> coverage_of(int trials, const Parameters& tru
     return shares;
 }
 
-// Trials that share all parameters: 200 of them tell a share of 95 % within 1.5 % for one parameter.
+// All trials share their parameters: 200 of them determine a share of 95 % to 1.5 % for one parameter.
 // DOPPEL_LONG_FIT=1 runs 1000.
 TEST(FitCoverage, NineteenOfTwentyIntervalsContainTheTruth) {
     auto truth = lab_arms();
@@ -43,7 +43,7 @@ TEST(FitCoverage, NineteenOfTwentyIntervalsContainTheTruth) {
     for (const auto& [key, share] : shares) EXPECT_NEAR(share, 0.945, 0.045) << key;  // measured 0.92 to 0.96
 }
 
-// Friction of three kinds tells apart badly: intervals are wide, and still right. 200 trials with DOPPEL_LONG_FIT=1.
+// Three kinds of friction are hard to distinguish: the intervals are wide, but correct. DOPPEL_LONG_FIT=1: 200 trials.
 TEST(FitCoverage, IsRightForEveryKindOfFriction) {
     const bool is_long = std::getenv("DOPPEL_LONG_FIT");
     const double share = coverage_of(is_long ? 200 : 25, lab_arms(), model_of(false, 3, Drag::carried), 3e-4)[""];

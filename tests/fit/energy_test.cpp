@@ -7,14 +7,14 @@ namespace energy_test {
 
 using namespace test;
 
-/// How many standard errors the loss of energy is from 0.
+/// The difference of the energy loss from 0, in standard errors.
 double errors_from_zero(const Track& track, const Parameters& guess) {
     const auto fit = fitted(model_of(false, 1), guess, track, {.step_share = 0.2, .relative = 5e-4});
     const auto loss = energy_loss({track, no_stop, 2}, fit).value();
     return loss.share / loss.standard_error;
 }
 
-/// How the fit of a track, or of it played backwards, ends.
+/// The result of the fit of a track, or of the track with time reversed.
 std::pair<int, std::string> ending_of(const Track& track, bool backwards, Bodies bodies = Bodies::automatic) {
     return ending([&] { return backwards ? reversed(track) : track; }, bodies);
 }
@@ -41,7 +41,7 @@ TEST(FitEnergy, TracksPlayedBackwardsAreRefused) {
     }
 }
 
-/// Nothing is lost or gained: of so many tracks none is near five standard errors.
+/// The energy is constant: none of these tracks comes close to five standard errors.
 TEST(FitEnergy, TracksWithoutFrictionAreTaken) {
     const auto truth = lab_arms(false);
     double squares = 0;
@@ -59,7 +59,7 @@ TEST(FitEnergy, TracksWithoutFrictionAreTaken) {
         }
 }
 
-/// Encoders that are read one after the other, in either order, are no engine.
+/// A lag between the two encoders, of either sign, does not count as a gain or loss of energy.
 TEST(FitEnergy, ALagIsNotTakenForEnergy) {
     const auto truth = lab_arms(false);
     for (const double by : {-0.004, -0.002, 0.002, 0.004})
@@ -67,7 +67,7 @@ TEST(FitEnergy, ALagIsNotTakenForEnergy) {
             auto lagging = truth;
             lagging[lag] = by;
             const auto track = simulated(lagging, Drag::own, {.noise = 1e-3, .seed = seed});
-            // measured up to 1.1; by a fit that knows no lag 3.9
+            // measured up to 1.1; 3.9 for a fit without a lag
             EXPECT_LT(std::abs(errors_from_zero(track, truth)), 3) << by << " " << seed;
         }
 }

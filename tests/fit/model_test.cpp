@@ -9,7 +9,7 @@ using namespace test;
 
 const LinkState somewhere{0.7, -1.1, 2.3, -3.1};
 
-/// The angles, rad, at samples of a motion from somewhere.
+/// The angles, rad, at the samples of a motion from `start`.
 std::vector<std::array<double, 2>> angles_of(const Parameters& p, Drag drag, const LinkState& start, double step,
                                              std::size_t samples, double interval) {
     Flow<> flow({.drag = drag}, p, start, step);
@@ -29,8 +29,8 @@ double worst_of(const std::vector<std::array<double, 2>>& one, const std::vector
     return worst;
 }
 
-/// Points, bodies, drag of either law; and joints that turn over, stick and slip: a swing of much dry friction until it
-/// rests.
+/// Points, bodies, drag of either law; and joints that change direction, stick and slip, with strong Coulomb friction
+/// until the pendulum rests.
 TEST(FitFlow, AgreesWithThePhysicsModule) {
     auto dry = lab_arms();
     dry[coulomb_1] = 4, dry[coulomb_2] = 3;
@@ -74,7 +74,7 @@ TEST(FitPhysical, RatiosRoundTrip) {
             EXPECT_NEAR(pendulum.chain.length[0], gravity * 0.88 / 50, 1e-15);  // g C/D2
             EXPECT_NEAR(pendulum.inertia[1], mass * std::pow(pendulum.center[1], 2) / 3, 1e-15);
         }
-    // a second arm that takes most of the first one's inertia for its own joint is more compact
+    // if most of the first link's inertia comes from the second link's mass, the second link is more compact
     auto p = lab_arms(false);
     p[inertia] = 1.2 * 0.88 * 0.88;
     expect_there_and_back(p, pendulum_of(fitted_pendulum(p, {}, {})));

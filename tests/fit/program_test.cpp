@@ -29,7 +29,7 @@ test::Outcome fit(const fs::path& folder, const std::vector<fs::path>& files,
 
 const std::vector<fs::path> lab{data / "piece-00.csv", data / "piece-02.csv", data / "piece-04.csv"};
 
-/// A track as files.
+/// Writes the pieces of a track as files.
 std::vector<fs::path> files_of(const fs::path& folder, const Track& track) {
     std::vector<fs::path> files;
     for (const auto& piece : track.pieces) {
@@ -62,7 +62,7 @@ double worst_difference(const std::vector<double>& one, const std::vector<double
     return worst;
 }
 
-/// How far the angles of a preset's run are from the first piece of a track that it was fitted to, rad: the worst.
+/// The maximum difference, rad, between the angles of a preset's run and the first piece of the track it was fitted to.
 double worst_of_preset(const fs::path& folder, const std::string& name, const TrackPiece& piece, const char* hz) {
     const auto run =
         test::doppel(folder, {"simulate", fmt::format("out/{0}/{0}.toml", name), "--set", "scene.duration_s=2", "--set",
@@ -74,7 +74,7 @@ double worst_of_preset(const fs::path& folder, const std::string& name, const Tr
                     worst_difference(columns["a_theta2_rad"], piece.angle[1]));
 }
 
-/// The real pendulum: what README and docs/fit.md say of it.
+/// The real pendulum: the statements of README and docs/fit.md.
 TEST(FitProgram, FitsARealPendulum) {
     const auto folder = fresh_folder();
     const auto result = fit(folder, lab, {"--name", "lab"});
@@ -96,7 +96,7 @@ TEST(FitProgram, FitsARealPendulum) {
     EXPECT_NEAR(json["track"]["period"]["seconds"].get<double>(), 5.334, 0.005);
     EXPECT_EQ(json["models"].size(), 9u);
     EXPECT_EQ(read_png(folder / "out/lab/lab.png").size, (Size{1600, 1300}));
-    // the preset, of bodies, dry joints and the air that they meet, swings as the track did
+    // the preset, with bodies, Coulomb friction and drag by relative velocity, follows the track
     EXPECT_LT(worst_of_preset(folder, "lab", read_tracks(lab).pieces[0], "500"), 0.02);  // measured below 5e-3
 }
 
@@ -109,7 +109,7 @@ TEST(FitProgram, OmittedDataIsReportedAsANote) {
     EXPECT_EQ(result.err, "p0: 1 of 2668 angles are outliers, and were left out\n");
 }
 
-/// Of pieces that were not fitted: two seconds tell the start, the rest is predicted.
+/// Pieces that were not fitted: two seconds determine the start, the rest is predicted.
 TEST(FitProgram, ItsPresetRunsBesideATrack) {
     const auto folder = fresh_folder();
     ASSERT_EQ(fit(folder, {data / "piece-00.csv", data / "piece-02.csv"}, {"--name", "lab"}).code, 0);
@@ -123,7 +123,7 @@ TEST(FitProgram, ItsPresetRunsBesideATrack) {
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(fs::exists(folder / "out/lab/lab.residuals.csv"));
     EXPECT_TRUE(
-        nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json")).contains("models"));  // still the fit's
+        nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json")).contains("models"));  // still the fit's file
     auto columns = columns_of(folder / "out/lab/lab.csv");
     for (const char* theta : {"theta1_rad", "theta2_rad"})  // measured 2.2e-3 rad
         EXPECT_LT(worst_difference(columns[fmt::format("a_{}", theta)], columns[fmt::format("b_{}", theta)]), 5e-3);
@@ -141,7 +141,7 @@ TEST(FitProgram, ItsPresetRunsBesideATrack) {
     EXPECT_EQ(gone.err, "doppel: --beside gone.csv (a.track.file): [a.track] file gone.csv: there is no such file\n");
 }
 
-/// And files of someone else's are not replaced; its own are.
+/// Files of other origin are not replaced; its own files are.
 TEST(FitProgram, WritesTheSameBytesForAnyNumberOfThreads) {
     const auto folder = fresh_folder(), preset = folder / "out/lab/lab.toml",
                table = folder / "out/lab/lab.residuals.csv";
@@ -175,7 +175,7 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
     EXPECT_FALSE(fs::exists(folder / "out/piece-00/piece-00.toml"));
 }
 
-/// Names that a terminal or the preset would obey are refused, or escaped where they are only told.
+/// Names with control characters are rejected, or sanitised where they are only quoted.
 TEST(FitProgram, ControlCharactersInNamesAreSanitised) {
     const auto folder = fresh_folder();
     for (const char* name : {"\x1b[2J", "a\nb",
@@ -188,18 +188,18 @@ TEST(FitProgram, ControlCharactersInNamesAreSanitised) {
     }
     const auto track = folder / "a\n[video]\nformat=\"png\"\n#.csv";
     fs::copy_file(lab[0], track);
-    EXPECT_EQ(fit(folder, {track}).code, 2);  // its name would be that of the files
+    EXPECT_EQ(fit(folder, {track}).code, 2);  // the default name of the files would be the track's name
     ASSERT_EQ(fit(folder, {track}, {"--name", "lab"}).code, 0);
     const auto preset = bytes_of(folder / "out/lab/lab.toml");
     EXPECT_TRUE(preset.starts_with("# Fitted by doppel fit to a [video] format=\"png\" #.csv: ")) << preset;
     const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
-    EXPECT_EQ(json["track"]["files"][0], "a [video] format=\"png\" #.csv");  // not from the root
+    EXPECT_EQ(json["track"]["files"][0], "a [video] format=\"png\" #.csv");  // without the path from the root
     const auto& horizon = json["horizon"];
     EXPECT_EQ(preset.find("\n[video]\nmodel_limit_s = ") != std::string::npos,
               horizon.contains("median_s") && horizon["median_s"].is_number());
 }
 
-/// The preset is one that "check" and "simulate" take, and swings as the track did.
+/// The preset is valid for "check" and "simulate", and its motion follows the track.
 TEST(FitProgram, ItsPresetSwingsAsTheTrackDid) {
     const auto track = test::simulated(test::ratios_of(test::point_masses(1.3, 1, 0.2, 0.25)), Drag::own,
                                        {.pieces = 3, .noise = 1e-4});

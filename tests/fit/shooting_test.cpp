@@ -19,7 +19,7 @@ TEST(FitShooting, DerivativesAreThoseOfDifferences) {
         const auto drag = point ? Drag::own : Drag::carried;
         const auto track = simulated(truth, drag, {.pieces = 1, .piece_s = 1});
         auto fit = fit_at(model_of(point, 3, drag, 2), truth, track);
-        fit.step_s = 0.004, fit.scale = {1e6, 1e6};  // no residual is beyond the bend
+        fit.step_s = 0.004, fit.scale = {1e6, 1e6};  // all residuals are in the quadratic range
         fit.shots = {{.last = track.samples(), .start = fit.shots[0].start + LinkState(0.01, 0, 1, -1)}};
         auto& p = fit.parameters;
         const auto sums_here = [&] {
@@ -66,7 +66,7 @@ TEST(FitShooting, KeepsFrictionFromBeingNegative) {
     EXPECT_FALSE(fit.is_at_bound(viscous_2));
 }
 
-/// One angle of a hundred is anywhere.
+/// One angle in a hundred is random.
 TEST(FitShooting, IsRobustAgainstOutliers) {
     auto track = simulated(lab_arms(false), Drag::own, {.noise = 1e-3});
     for (auto& piece : track.pieces)
@@ -76,7 +76,7 @@ TEST(FitShooting, IsRobustAgainstOutliers) {
     EXPECT_NEAR(fit.parameters[gravity_2], 50, 0.05);  // measured 0.01
 }
 
-/// A start from which the motion runs away is guessed anew; the fit goes on.
+/// The start of a motion that diverges is guessed again, and the fit continues.
 TEST(FitShooting, ContinuesAfterOneBadStart) {
     const auto track = simulated(lab_arms(false), Drag::own, {.pieces = 3, .noise = 1e-3});
     auto start = fit_at(model_of(false, 0), lab_arms(false), track);
@@ -93,7 +93,7 @@ TEST(FitShooting, EndsSoonAfterItIsStopped) {
     EXPECT_THROW(tracks_of_texts({"a.csv"}, {csv_of(track.pieces[0])}, stop), Error);
 }
 
-/// Sums that are not finite, as of a motion that nearly ran away, once kept a loop for ever.
+/// Sums that are not finite, as of a motion that almost diverged, once caused an infinite loop.
 TEST(FitHierarchy, LeavingOutEndsWhereSumsAreNotFinite) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     auto fit = fit_at(model_of(false, 2), lab_arms(), track);
@@ -103,7 +103,7 @@ TEST(FitHierarchy, LeavingOutEndsWhereSumsAreNotFinite) {
     EXPECT_FALSE(std::isfinite(without.parameters[inertia]));
 }
 
-/// What is left out by one step is near what a fit without it finds.
+/// Leaving out a parameter in one step gives almost the same result as a fit without it.
 TEST(FitHierarchy, LeavesOutAsAFitWithoutWould) {
     const auto track = simulated(lab_arms(), Drag::own, {.noise = 1e-3});
     const auto all = fitted(model_of(false, 1), lab_arms(), track);
@@ -134,7 +134,7 @@ TEST(FitHierarchy, ChoosesTheModelThatMadeTheTrack) {
     EXPECT_NEAR(chain.mass[0], 1.3, 1e-2);
 }
 
-/// Where the model is the right one, the start's error alone ends predictions; and the pieces' interval is found.
+/// With the correct model, only the error of the start limits predictions; and the interval of the pieces is found.
 TEST(FitHorizon, FindsTheIntervalOfPiecesAndTheHorizon) {
     auto truth = lab_arms(false);
     truth[viscous_1] = 0.05;
@@ -144,11 +144,11 @@ TEST(FitHorizon, FindsTheIntervalOfPiecesAndTheHorizon) {
     EXPECT_NEAR(result.period->seconds, 5, 4 * result.period->standard_error + 1e-4);  // measured 5.0000(1)
     EXPECT_LT(result.period->standard_error, 1e-3);
     ASSERT_TRUE(result.horizon);
-    EXPECT_EQ(result.horizon->left_by[0], 0);  // never the model
+    EXPECT_EQ(result.horizon->left_by[0], 0);  // never limited by the model
     EXPECT_GT(result.horizon->longest_s, 5);
 }
 
-/// Of a track that is cut into eight, the first prediction is seen for most of it and the last hardly at all.
+/// In a track of eight pieces, the first prediction covers most of the track and the last one very little.
 TEST(FitHorizon, ReportsMissingPredictionsAndTheDataUsed) {
     FitResult result;
     result.horizon = Horizon{.longest_s = 10.9};
@@ -163,7 +163,7 @@ TEST(FitHorizon, ReportsMissingPredictionsAndTheDataUsed) {
 TEST(FitHorizon, TakesTheMedianOfCensoredTimes) {
     EXPECT_FALSE(median_of({{1, false}, {2, false}}));
     EXPECT_EQ(median_of({{1, true}, {2, true}, {3, true}}), 2);
-    // Kaplan & Meier by hand: 1 − 1/5 = 0.8; × (1 − 1/3) = 0.53; × (1 − 1/2) = 0.27
+    // Kaplan–Meier estimate by hand: 1 − 1/5 = 0.8; × (1 − 1/3) = 0.53; × (1 − 1/2) = 0.27
     EXPECT_EQ(median_of({{1, true}, {2, false}, {3, true}, {4, true}, {5, false}}), 4);
 }
 

@@ -1,4 +1,4 @@
-// The start that follows a track, against the start that made it.
+// The start fitted to a track, compared with the true start.
 #include "fit/start.hpp"
 
 #include "track/support.hpp"
@@ -10,7 +10,7 @@ namespace start_test {
 
 using namespace test;
 
-/// The start of a twin beside the rods' swing, which is expected within so much.
+/// The fitted start of a simulation beside the track of the rods, with errors below `angle` and `rate`.
 FittedStart start_of(const MotionSpec& twin, double angle, double rate, double noise = 0, double offset = 0) {
     const auto text = csv_of_motion(swinging_rods(), 1002, noise, offset);
     const auto track = std::make_shared<const Track>(tracks_of_texts({"swing.csv"}, {text}));
@@ -31,7 +31,7 @@ TEST(FitStart, FindsStartAndOffsets) {
     start_of(swinging_rods(), 2e-4, 3e-3, 1e-3);  // measured 5e-5, 6e-4
 }
 
-/// Whatever steps the twin: the start is that of its own motion.
+/// For any method of the simulation: the start is correct for its own motion.
 TEST(FitStart, OfAnyMethod) {
     auto twin = swinging_rods();
     twin.method = "rk4";
@@ -39,7 +39,7 @@ TEST(FitStart, OfAnyMethod) {
     start_of(twin, 1e-6, 1e-5);
 }
 
-/// Point masses do not swing so: as much as they can follow is fitted, and it is said how much.
+/// Point masses cannot follow this motion: the fit uses the part that they can follow, and reports its length.
 TEST(FitStart, OfAModelThatCannotFollow) {
     auto twin = swinging_rods();
     twin.physical = physical(*twin.chain);

@@ -10,7 +10,7 @@ namespace study_test {
 
 using namespace test;
 
-/// A pendulum of two bodies of any make.
+/// A pendulum of two random rigid bodies.
 PhysicalPendulum<double> any_pendulum(std::mt19937_64& random) {
     std::uniform_real_distribution<double> even;
     const auto between = [&](double low, double high) { return low + (high - low) * even(random); };
@@ -24,7 +24,7 @@ PhysicalPendulum<double> any_pendulum(std::mt19937_64& random) {
     return made;
 }
 
-/// 8 to 30 s of it at 100 to 500 Hz with 0.5 mrad of noise: weakly damped, mostly over the top.
+/// 8 to 30 s of it at 100 to 500 Hz with 0.5 mrad of noise: weakly damped, mostly with full turns.
 Track energetic_track(unsigned seed) {
     std::mt19937_64 random(seed);
     auto p = ratios_of(any_pendulum(random));
@@ -43,7 +43,7 @@ Track energetic_track(unsigned seed) {
                       .seed = seed});
 }
 
-/// All up to a number where DOPPEL_LONG_FIT=1, else some.
+/// All seeds up to `all` with DOPPEL_LONG_FIT=1, otherwise `some`.
 std::vector<unsigned> seeds_of(unsigned all, std::vector<unsigned> some) {
     if (!std::getenv("DOPPEL_LONG_FIT")) return some;
     some.resize(all);
@@ -51,8 +51,8 @@ std::vector<unsigned> seeds_of(unsigned all, std::vector<unsigned> some) {
     return some;
 }
 
-// Of 200 of these tracks 15 were once refused or fitted to a wrong motion: over stretches too long for their chaos,
-// from starts that the model before had spoilt. The suite has some of these; DOPPEL_LONG_FIT=1 runs all, in some two
+// 15 of 200 such tracks once failed or gave a wrong motion: the stretches were too long for their chaos, and the starts
+// came from a wrong earlier model. The suite has some of these; DOPPEL_LONG_FIT=1 runs all, in about two
 // minutes.
 TEST(FitStudy, EnergeticTracksAreFittedToTheirNoise) {
     for (const auto seed : seeds_of(200, {16, 80, 86, 122, 191})) try {
@@ -64,7 +64,7 @@ TEST(FitStudy, EnergeticTracksAreFittedToTheirNoise) {
         }
 }
 
-/// 8 to 20 s with Coulomb friction, as "simulate" has it, 0.5 mrad of noise; `truth` receives what made it.
+/// 8 to 20 s with Coulomb friction as in "simulate", 0.5 mrad of noise; `truth` receives the true parameters.
 Track rubbing_track(unsigned seed, Parameters& truth) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> even;
@@ -92,8 +92,8 @@ Track rubbing_track(unsigned seed, Parameters& truth) {
     return track;
 }
 
-// By a law that is smooth within 5 deg/s 86 % of intervals held this friction, the worst 8 of its errors off; the suite
-// has some of these tracks. DOPPEL_LONG_FIT=1 runs 60, in a minute.
+// With a law that is smooth within 5 deg/s, 86 % of the intervals contained this friction; the worst was 8 standard
+// errors off. The suite has some of these tracks. DOPPEL_LONG_FIT=1 runs 60, in a minute.
 TEST(FitStudy, IntervalsHoldCoulombFriction) {
     int within = 0, count = 0;
     double worst = 0;

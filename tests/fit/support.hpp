@@ -13,7 +13,7 @@
 
 namespace doppel::test {
 
-/// A laboratory's arms, some 17 cm and 29 cm long; with friction of all kinds.
+/// The links of a laboratory pendulum, about 17 cm and 29 cm long; optionally with all kinds of friction.
 inline Parameters lab_arms(bool with_friction = true) {
     Parameters p = Parameters::Zero();
     p[inertia] = 1.8, p[coupling] = 0.88, p[gravity_1] = 106, p[gravity_2] = 50;
@@ -24,15 +24,15 @@ inline Parameters lab_arms(bool with_friction = true) {
     return p;
 }
 
-/// How a swing is measured.
+/// The measurement of a motion.
 struct Measuring {
     std::size_t pieces = 6;
     double piece_s = 2, hz = 100, noise = 0, amplitude = 1.5;
     unsigned seed = 1;
-    double every_s = 0;  // > 0: one swing, of which a piece is measured every so often; each with a clock of its own
+    double every_s = 0;  // > 0: one long motion with a piece measured at this interval; each piece has its own clock
 };
 
-/// A simulated track: steps of a millisecond, whose own error is some 1e-11 rad without dry friction.
+/// A simulated track in steps of 1 ms, with an error of about 1e-11 rad without Coulomb friction.
 inline Track simulated(const Parameters& truth, Drag drag, const Measuring& measuring) {
     constexpr double step = 0.001;
     const auto& [pieces, piece_s, hz, noise, amplitude, seed, every_s] = measuring;
@@ -65,7 +65,7 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
     return track;
 }
 
-/// A, B, C, D1, D2 of a pendulum, and its friction, over B: the way back from fitted_pendulum().
+/// A, B, C, D1, D2 of a pendulum, and its friction, divided by B: the inverse of fitted_pendulum().
 inline Parameters ratios_of(const PhysicalPendulum<double>& pendulum) {
     const auto &m = pendulum.chain.mass, &a = pendulum.center, &i = pendulum.inertia;
     const double l1 = pendulum.chain.length[0], g = pendulum.chain.gravity, b = i[1] + m[1] * a[1] * a[1];
@@ -97,7 +97,7 @@ inline PhysicalPendulum<double> point_masses(double m1, double m2, double l1, do
     return physical(Pendulum<double>{.mass = {m1, m2}, .length = {l1, l2}, .angle = {}, .rate = {}, .gravity = 9.8});
 }
 
-/// Angles as "simulate" has them, Coulomb friction with its events: `samples` of them at `hz` a second.
+/// Angles as in "simulate", with the events of Coulomb friction: `samples` of them at `hz` per second.
 inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<double> pendulum, const LinkState& start,
                                                            long hz, std::size_t samples) {
     pendulum.chain.angle = {start[0], start[1]}, pendulum.chain.rate = {start[2], start[3]};
@@ -118,7 +118,7 @@ inline std::vector<std::array<double, 2>> simulated_angles(PhysicalPendulum<doub
     return angles;
 }
 
-/// Every piece, and the order of pieces, backwards in time.
+/// The same with time reversed: every piece, and the order of the pieces.
 inline Track reversed(Track track) {
     std::reverse(track.pieces.begin(), track.pieces.end());
     for (auto& piece : track.pieces) {
@@ -133,7 +133,7 @@ inline Track reversed(Track track) {
     return track;
 }
 
-/// As a file has it.
+/// The text of the piece's file.
 inline std::string csv_of(const TrackPiece& piece) {
     std::string text = "time_s,theta1_rad,theta2_rad\n";
     for (std::size_t i = 0; i < piece.size(); ++i)
@@ -143,7 +143,7 @@ inline std::string csv_of(const TrackPiece& piece) {
 
 inline const std::atomic<bool> no_stop = false;
 
-/// A fit that stands at the truth, its starts guessed from the samples; and the fit that is found from there.
+/// A fit with the true parameters and starts guessed from the samples; fitted() returns the result from there.
 inline Fit fit_at(const ModelSpec& model, const Parameters& parameters, const Track& track) {
     return {.model = model, .parameters = parameters, .shots = divide(track)};
 }
@@ -155,7 +155,7 @@ inline FitResult answered(const Track& track, Bodies bodies = Bodies::automatic)
     return analyse(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
 }
 
-/// The exit code and the message that a fit ends with, of a track that work() returns; 0 where it is taken.
+/// The exit code and the message of the fit of a track from work(); 0 if it succeeds.
 template <class Work>
 std::pair<int, std::string> ending(const Work& work, Bodies bodies = Bodies::automatic) {
     try {

@@ -20,7 +20,7 @@ void expect_refused(const std::vector<std::string>& texts, int code, const std::
     EXPECT_NE(message.find(words), std::string::npos) << message;
 }
 
-/// A swing, and what is made of each of its angles.
+/// The text of a track whose angles are changed by `change`.
 std::string changed(const std::function<std::pair<double, double>(double, double, double)>& change) {
     auto track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 1e-4, .seed = 3});
     auto& piece = track.pieces[0];
@@ -87,11 +87,11 @@ TEST(FitTrack, RefusesWhatNoDoublePendulumDoes) {
     std::normal_distribution<double> step(0, 0.02);
     double a = 0, b = 0;
     for (const auto& text :
-         {// two oscillators that know nothing of each other
+         {// two independent oscillators
           changed([](double t, double, double) { return std::pair(std::sin(7.3 * t), 0.8 * std::cos(4.1 * t)); }),
-          // a motion that is driven
+          // a driven motion
           changed([](double t, double one, double two) { return std::pair(one + 0.5 * std::sin(11 * t), two); }),
-          // no motion
+          // random walks
           changed([&](double, double, double) { return std::pair(a += step(random), b += step(random)); })}) {
         const auto [code, words] = ending([&] { return read({text}); });
         EXPECT_TRUE(code == 2 || code == 3) << words;
@@ -113,7 +113,7 @@ TEST(FitTrack, TakesOtherConventionsAndSaysSo) {
                 EXPECT_NEAR(std::remainder(track.pieces[0].angle[arm][i] - straight.pieces[0].angle[arm][i], 4 * half),
                             0, 1e-8);
     }
-    // both mirrored is as good, and no news
+    // both angles mirrored is also valid, and needs no note
     EXPECT_TRUE(read({changed([](double, double a, double b) { return std::pair(-a, -b); })}).notes.empty());
 }
 
