@@ -15,7 +15,7 @@ HeatMap strip(std::vector<float> values) {
     return {.columns = values.size(), .rows = 1, .values = values, .label = "an error", .low = 0, .high = 1};
 }
 
-/// 90 px wide, over an axis of 1 to 1000 or the reverse, and what lies 5 px around it.
+/// A map 90 px wide over an axis from 1 to 1000 or reversed, with a margin of 5 px.
 Picture drawn(const HeatMap& map, bool logarithmic, bool reversed) {
     Axis x{.low = 1, .high = 1000, .from = 5, .to = 95, .logarithmic = logarithmic};
     if (reversed) std::swap(x.low, x.high);
@@ -38,7 +38,7 @@ TEST(HeatMap, HasCellsThatAreEvenOnTheirAxes) {
                     expect_color(picture, reversed ? 89 - x : x, map_color(0.5 * cell));
             for (const int outside : {-1, 90}) expect_color(picture, outside, rgb(0xffffff));
         }
-    // one that covers the middle decade alone, and one that is cut off
+    // one that covers only the middle decade, and one that is cut off
     map.x_low = 10, map.x_high = 100;
     auto picture = drawn(map, true, false);
     for (const int x : {30, 39, 40, 49, 50, 59}) expect_color(picture, x, map_color(0.5 * ((x - 30) / 10)));

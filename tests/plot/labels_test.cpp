@@ -21,7 +21,7 @@ Label label(const char* text, Point at, float em, Weight weight = Weight::regula
 
 TEST_F(LabelTest, IsAsWideAsTheTextMeasures) {
     for (const Weight weight : {Weight::regular, Weight::bold}) {
-        // between two bars alike, the ink's width is the text's less the bearings, which cancel
+        // between two bars, the ink is as wide as the text less the bearings, which cancel
         const Rect one = extent(drawn(label("|", {20, 50}, 30, weight)));
         const Rect all = extent(drawn(label("|Energy, 12.5 J AV|", {20, 50}, 30, weight)));
         const float width = text_width("|Energy, 12.5 J AV", 30, weight);

@@ -20,7 +20,7 @@ DisplayList on_white(Item item) {
     return {filled(size, rgb(0xffffff)), std::move(item)};
 }
 
-/// The same list, drawn by Cairo.
+/// The same list drawn by Cairo.
 Picture drawn_by_cairo(const DisplayList& list) {
     return picture_of({.size = size, .items = page_list(list)});
 }
@@ -54,8 +54,8 @@ std::shared_ptr<Picture> chequered() {
     return picture;
 }
 
-// Two ways of drawing the same, which share only the display list: they differ by the coverage of pixels at edges.
-// Measured, of 255, most and mean: box 0; round box 14, 0.01; capsule 19, 0.04; disc 22, 0.02; ring 26, 0.08;
+// OpenGL and Cairo share only the display list: their pictures differ by the coverage of pixels at edges.
+// Measured, of 255, maximum and mean: box 0; round box 14, 0.01; capsule 19, 0.04; disc 22, 0.02; ring 26, 0.08;
 // stroke 28, 0.06.
 TEST(Page, ShapesAreAsOpenGlDrawsThem) {
     const auto ink = rgb(0x2050a0);
@@ -73,7 +73,7 @@ TEST(Page, ShapesAreAsOpenGlDrawsThem) {
     }
 }
 
-/// How much ink there is, px, and its middle, px from the left and the top.
+/// The area of the ink, px², and its centre, px from the left and the top.
 struct Ink {
     double amount = 0, x = 0, y = 0;
 };
@@ -88,7 +88,7 @@ Ink ink_of(const Picture& picture) {
     return {ink.amount, ink.x / ink.amount, ink.y / ink.amount};
 }
 
-// FreeType and stb_truetype. Measured, of regular and bold: ink 1.00 times as much, 0.1 px aside, 0.01 px above.
+// FreeType and stb_truetype. Measured, regular and bold: ratio of ink 1.00, difference 0.1 px across, 0.01 px upwards.
 TEST(Page, TextIsWhereOpenGlWritesIt) {
     for (const auto weight : {Weight::regular, Weight::bold})
         for (const auto align : {Align::left, Align::center, Align::right}) {
@@ -118,7 +118,7 @@ TEST(Page, LinesAreDashedCutAndFilled) {
         return dark;
     };
     const auto dashed = ink(drawn({{{{30, 60.5f}, {230, 60.5f}}}, 3, rgb(0), 12, 8, within}), 60);
-    // round ends make a dash 3 px longer, and a gap as much shorter
+    // round ends make each dash 3 px longer and each gap 3 px shorter
     for (int x = 0; x < size.width; ++x) {
         const int from_dash = (x - 30 + 20) % 20;
         const bool inside = x >= 50 && x < 150, is_gap = from_dash >= 14 && from_dash < 18;

@@ -10,12 +10,12 @@
 namespace doppel {
 namespace plot_axes_test {
 
-// Axes that panels share, words beside a panel's title, how lines of text end, and how thick lines are.
+// Shared axes of panels, notes beside a panel's title, line breaks of text, and line widths.
 
 constexpr const Theme& light = themes[1];
 constexpr Size size{1200, 900};
 
-/// Two rows of two maps: all of one height, the lower row over another x axis where `split`.
+/// Two rows of two maps of equal height; if `split`, the lower row has another x axis.
 Figure four_maps(bool shares_axes, bool split) {
     Figure figure{.title = "Maps", .columns = 2, .shares_axes = shares_axes};
     for (int i = 0; i < 4; ++i) {
@@ -38,7 +38,7 @@ Figure four_maps(bool shares_axes, bool split) {
     return figure;
 }
 
-/// Of the four maps, px².
+/// The areas of the four maps, px².
 std::vector<float> areas(const PageList& list) {
     std::vector<float> all;
     for (const PageItem& item : list)
@@ -56,7 +56,7 @@ TEST(Plot, SharedAxesHaveTheirWordsOnce) {
     EXPECT_EQ(words_in(shared)["step, s"], 2);   // below each column
     EXPECT_EQ(words_in(shared)["angle, °"], 1);  // above the first panel
     EXPECT_EQ(words_in(shared)["90"], 2);        // beside each row
-    // all panels have one size, and a larger one
+    // all panels have one size, larger than before
     const auto before = areas(apart), after = areas(shared);
     ASSERT_EQ(after.size(), 4u);
     for (const float area : after) EXPECT_EQ(area, after.front());
@@ -72,7 +72,7 @@ TEST(Plot, AxesThatDifferAreNotShared) {
     auto figure = four_maps(true, false);
     figure.panels[1].y.high = 90;
     words = words_in(composed(figure, size, light));
-    EXPECT_EQ(words["angle, °"], 2);  // of the first, and of the one beside it
+    EXPECT_EQ(words["angle, °"], 2);  // that of the first map, and the one beside it
 }
 
 TEST(Plot, CurvesOnSharedAxesHaveOneRange) {
@@ -91,7 +91,7 @@ TEST(Plot, CurvesOnSharedAxesHaveOneRange) {
 TEST(Plot, ANoteStandsBesideTheTitleWhereThereIsRoom) {
     EXPECT_EQ(words_in(composed(four_maps(true, false), size, light))["17 s"], 4);
     auto figure = four_maps(true, false);
-    // a title shrinks a little for it
+    // the title shrinks a little for the note
     for (auto& plot : figure.panels) plot.title = "a title of a panel that leaves a note no room beside it";
     EXPECT_EQ(words_in(composed(figure, size, light))["17 s"], 4);
     for (auto& plot : figure.panels)
@@ -137,7 +137,7 @@ TEST(Text, LinesEndEvenlyAndNotWithinANumber) {
             for (const auto* end : {"12", "0.25", "=", "θ₁"}) EXPECT_FALSE(line.ends_with(end)) << line;
         }
     }
-    // what would end with a word by itself
+    // a text whose last line would be a single word
     const float width = text_width(text, 18) * 0.98f;
     EXPECT_EQ(wrapped(text, 18, Weight::regular, width).back(), "on");
     const auto even = evenly_wrapped(text, 18, Weight::regular, width);

@@ -9,7 +9,7 @@
 namespace doppel {
 namespace plot_background_test {
 
-// Lines for others to lie on, and words where curves are many.
+// Curves in the background, and labels of many curves.
 
 constexpr const Theme& light = themes[1];
 constexpr Size size{800, 500};
@@ -32,7 +32,7 @@ TEST(Plot, ABackgroundIsPaleAndHasNoLabel) {
     const auto pale = [](Color color, float share) { return mixed(light.background, color, share); };
     const auto band = composed(level_line(Background::band), size, light);
     EXPECT_EQ(words_in(band).count("background"), 0u);
-    // 6 lines wide over some 90 % of the width: 6 × 3.2 × 5/9 px of 500
+    // the band is 6 line widths high over 90 % of the width: 6 × 3.2 × 5/9 px of 500
     EXPECT_NEAR(share_of(picture(level_line(Background::band), size, light), pale(light.open, 0.22f)),
                 0.9 * 6 * 3.2 * 5 / 9 / 500, 0.005);
     const auto line = composed(level_line(Background::line), size, light);
@@ -42,7 +42,7 @@ TEST(Plot, ABackgroundIsPaleAndHasNoLabel) {
     EXPECT_LT(thin, 0.003);
 }
 
-/// `count` steep lines side by side, too close for words between them.
+/// `count` steep lines side by side, too close for labels between them.
 Figure fan(int count) {
     Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
     for (int i = 0; i < count; ++i) {
@@ -62,11 +62,11 @@ TEST(Plot, LabelsOfManyCurvesAreOnTheCurves) {
         if (const auto* label = std::get_if<Label>(&item); label && label->text.starts_with("method "))
             labels.push_back(label);
     ASSERT_EQ(labels.size(), static_cast<std::size_t>(count));
-    // in the curves' colours: in a legend they would be in that of text
+    // in the curves' colours: in a legend they would have the text's colour
     for (const auto* label : labels) EXPECT_NE(label->color, light.text) << label->text;
 }
 
-/// Labels of curves, by their words.
+/// The labels of curves that start with `begin`.
 std::vector<Label> labels_of(const PageList& list, std::string_view begin) {
     std::vector<Label> labels;
     for (const PageItem& item : list)
@@ -90,7 +90,7 @@ TEST(Plot, LabelsHaveOneSizeInAllPanels) {
 }
 
 TEST(Plot, ALegendCoversNoData) {
-    // clouds all over the panel leave no place beside them
+    // clouds over the whole panel leave no space beside them
     auto figure = sections(1);
     auto& curves = figure.panels[0].curves;
     for (int k = 1; k < 3; ++k) curves.push_back(curves[0]), curves.back().hue = k;

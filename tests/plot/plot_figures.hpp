@@ -135,7 +135,7 @@ inline Picture picture(const Figure& figure, Size size, const Theme& theme) {
     return picture_of(compose(figure, size, theme));
 }
 
-/// How often each text stands in a list.
+/// How often each text occurs in a list.
 inline std::map<std::string, int> words_in(const PageList& list) {
     std::map<std::string, int> counts;
     for (const PageItem& item : list)

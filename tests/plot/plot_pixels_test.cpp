@@ -15,7 +15,7 @@ constexpr const Theme &dark = themes[0], &light = themes[1];
 
 constexpr Size size{400, 300};
 
-/// A bare panel with a map: x from 0 to 10, y from 0 to 1.
+/// A panel with only a map: x from 0 to 10, y from 0 to 1.
 Figure bare_map(std::size_t columns, std::size_t rows, bool blank = false) {
     HeatMap map{
         .columns = columns, .rows = rows, .x_low = 0, .x_high = 10, .y_low = 0, .y_high = 1, .low = 0.0, .high = 1.0};
@@ -24,12 +24,12 @@ Figure bare_map(std::size_t columns, std::size_t rows, bool blank = false) {
     return {.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .map = map}}};
 }
 
-/// A panel without a map of that range.
+/// A panel without a map, with the same axes.
 Figure with_curves(std::vector<Curve> curves) {
     return {.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .curves = std::move(curves)}}};
 }
 
-/// Where the panel of a map lies.
+/// The area of a map's panel.
 Area area_of(const PageList& list) {
     for (const PageItem& item : list)
         if (const auto* cells = std::get_if<CellImage>(&item)) return cells->within;
@@ -52,7 +52,7 @@ TEST(Plot, MapCellsHaveTheirColours) {
             expect_color(drawn, std::lerp(area.left, area.right, (static_cast<float>(column) + 0.5f) / 7),
                          std::lerp(area.bottom, area.top, (static_cast<float>(row) + 0.5f) / 5),
                          map_color((row * 7 + column) % 11 / 10.0));
-    // and what has no value the colour for that
+    // a cell without a value has its own colour
     const PageList none = composed(bare_map(3, 3, true), size, dark);
     const Area where = area_of(none);
     expect_color(picture(bare_map(3, 3, true), size, dark), where.left + 50, where.top + 50, dark.none);
@@ -67,7 +67,7 @@ TEST(Plot, ACurvePassesWhereItsValuesAre) {
         plot.curves = {
             {.x = {0, 10}, .y = logarithmic ? std::vector{1e-4, 1.0} : std::vector{0.0, 1.0}, .quiet = true}};
         const Picture drawn = picture(figure, size, light);
-        // on either axis a straight line from corner to corner; over a map quiet is white
+        // on either axis a straight line from corner to corner; a quiet line over a map is white
         for (const float part : {0.1f, 0.35f, 0.5f, 0.81f})
             expect_color(drawn, std::lerp(area.left, area.right, part), std::lerp(area.bottom, area.top, part),
                          rgb(0xffffff), 40);
@@ -79,7 +79,7 @@ struct Reach {
     float left = 1e9f, top = 1e9f, right = -1e9f, bottom = -1e9f;
 };
 
-/// How far all strokes in a colour reach, px.
+/// The extent of all strokes in a colour, px.
 Reach reach(const PageList& list, Color color) {
     Reach all;
     for (const PageItem& item : list) {
@@ -111,7 +111,7 @@ TEST(Plot, CurvesAreCutAtThePanel) {
     EXPECT_LE(held.bottom, area.bottom + 0.01f);
     EXPECT_GT(held.right - held.left, 0.99f * (area.right - area.left));
 
-    // in by the bottom after a third of the way, out by the top after two
+    // the curve enters at the bottom after a third of the way and leaves at the top after two thirds
     figure.panels[0].curves = {{.x = {0, 10}, .y = {-1, 2}, .hue = 3}};
     const Reach cut = reach(composed(figure, size, light), dark.palette[3]);
     EXPECT_NEAR(cut.left, std::lerp(area.left, area.right, 1 / 3.0f), 0.01f);
@@ -129,7 +129,7 @@ TEST(Plot, ReducingManyPointsDoesNotChangeThePicture) {
     }
     sparse = dense;
     dense.panels[0].curves = {wave};
-    // as many pieces as may pass for a curve each: nothing is left out of any
+    // pieces so short that each one is drawn in full
     for (int from = 0; from < points; from += 500) {
         Curve piece{.hue = 1};
         for (int i = from; i <= from + 500; ++i) {
@@ -168,11 +168,11 @@ TEST(Plot, ABandIsTintedBetweenItsEdges) {
     const Area area = area_of(composed(bare_map(1, 1), size, light));
     const auto drawn = picture(figure, size, light);
     const auto at = [&](float share) { return std::lerp(area.bottom, area.top, share); };
-    const float x = std::lerp(area.left, area.right, 0.53f);  // on no line of the grid
+    const float x = std::lerp(area.left, area.right, 0.53f);  // not on a grid line
     const Color tinted = mixed(light.background, light.palette[1], 0.2f);
     for (const float inside : {0.27f, 0.46f, 0.73f}) expect_color(drawn, x, at(inside), tinted, 2);
     for (const float outside : {0.23f, 0.77f}) expect_color(drawn, x, at(outside), light.background, 2);
-    expect_color(drawn, size.width - 6, at(0.46f), light.background, 2);  // cut at the panel
+    expect_color(drawn, size.width - 6, at(0.46f), light.background, 2);  // clipped at the panel
 }
 
 }  // namespace plot_pixels_test

@@ -19,7 +19,7 @@ struct Words {
     std::string text;
 };
 
-/// Where all words of a list stand: from a capital's top to a comma's tail.
+/// The areas of all texts of a list: from the top of a capital to the tail of a comma.
 std::vector<Words> words_of(const PageList& list) {
     std::vector<Words> all;
     for (const PageItem& item : list) {
@@ -34,7 +34,7 @@ std::vector<Words> words_of(const PageList& list) {
     return all;
 }
 
-/// No words touch others or leave the picture.
+/// Texts neither overlap nor leave the picture.
 void expect_legible(const Page& page, float slack = 0.01f) {
     const std::vector<Words> all = words_of(page.items);
     const float width = static_cast<float>(page.size.width) / page.scale;
@@ -112,7 +112,7 @@ TEST(Plot, ScaleTwoDoublesEveryLength) {
             }
             if (const auto* image = std::get_if<Image>(&once.items[i])) {
                 const auto& other = std::get<Image>(twice.items[i]);
-                EXPECT_NEAR(image->right, other.right, 0.51);  // drawn for the finer pixels
+                EXPECT_NEAR(image->right, other.right, 0.51);  // drawn for smaller pixels
                 EXPECT_NEAR(2 * image->pixels->size.height, other.pixels->size.height, 2);
             }
         }
@@ -157,13 +157,13 @@ TEST(Plot, ReportsTextsLeftOut) {
 }
 
 TEST(Plot, TextOnPaperIsAsHighAsAskedFor) {
-    // 8.6 cm where labels of 20 px are 8 pt: 609 px; its height as of 16:9
+    // 8.6 cm with labels of 20 px as 8 pt: 609 px; the height for 16:9
     const auto page = compose(sweep(), {609, 343}, light, 1, 1.0f);
     EXPECT_EQ(page.scale, 1);
     float minimum = 1e9f;
     for (const auto& item : page.items)
         if (const auto* label = std::get_if<Label>(&item)) minimum = std::min(minimum, label->size);
-    EXPECT_GE(minimum, 0.72f * 20 - 0.01f);  // the name of a grey curve, where room is short; all else is larger
+    EXPECT_GE(minimum, 0.72f * 20 - 0.01f);  // the label of a grey curve in little space; all others are larger
 }
 
 TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {

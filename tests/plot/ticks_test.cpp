@@ -10,7 +10,7 @@
 namespace doppel {
 namespace ticks_test {
 
-/// What a person reads: "−1.5 × 10⁻⁷", "10⁻⁴", "0.30".
+/// The number that a label shows: "−1.5 × 10⁻⁷", "10⁻⁴", "0.30".
 double read(std::string text) {
     const auto replace = [&](std::string_view from, std::string_view to) {
         for (std::size_t at; (at = text.find(from)) != std::string::npos;) text.replace(at, from.size(), to);
@@ -48,7 +48,7 @@ void expect_sound(const Axis& axis, const TickLabels& words, const std::vector<T
     }
 }
 
-/// Ranges of all sizes and signs; logarithmic ones of up to 300 decades.
+/// Random ranges of all sizes and signs; logarithmic ones of up to 300 decades.
 Axis any_axis(std::mt19937& random, int trial, bool logarithmic) {
     const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
     Axis axis{.from = 0, .to = static_cast<float>(between(60, 1500)), .logarithmic = logarithmic};
@@ -79,12 +79,12 @@ TEST(ChartTicks, AreValidForAnyRange) {
             const bool has_room = axis.to > 6 * 30 && std::abs(std::log10(axis.high / axis.low)) > 2.1;
             ASSERT_TRUE(words.across || !has_room || named >= 2);
         } else {
-            // equal steps, to the rounding of the values themselves
+            // equal steps, up to the rounding of the values
             for (std::size_t i = 2; i < ticks.size(); ++i)
                 ASSERT_NEAR(
                     ticks[i].value - ticks[i - 1].value, ticks[1].value - ticks[0].value,
                     1e-9 * std::abs(axis.high - axis.low) + 1e-15 * std::max(std::abs(axis.low), std::abs(axis.high)));
-            // five times what a mark needs is room for two, whatever the range
+            // five times the length of one label has space for two, whatever the range
             ASSERT_TRUE(words.across || axis.to < 5 * 30 || ticks.size() >= 2);
         }
     }
