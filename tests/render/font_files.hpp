@@ -10,14 +10,14 @@
 
 namespace doppel::test {
 
-// Fonts that are the built-in one with a change.
+// Modified copies of the built-in font.
 
 inline std::string embedded_font() {
     std::ifstream file(std::string(DOPPEL_SOURCE_DIR) + "/fonts/DejaVuSans.ttf", std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Where the entry of a table stands in the font's directory: name, sum, offset, length, four bytes each.
+/// The position of a table's entry in the font's directory: name, checksum, offset, length, four bytes each.
 inline std::size_t entry_of(const std::string& font, std::string_view table) {
     return font.find(table, 12);
 }
@@ -28,7 +28,7 @@ inline std::size_t number_at(const std::string& font, std::size_t at, int bytes 
     return value;
 }
 
-/// Twice as large at the same size.
+/// Letters are twice as large at the same font size.
 inline std::string font_of_half_the_units() {
     auto font = embedded_font();
     const std::size_t units_per_em = number_at(font, entry_of(font, "head") + 8) + 18;
@@ -36,7 +36,7 @@ inline std::string font_of_half_the_units() {
     return font;
 }
 
-/// The letter's glyph is there, and empty.
+/// The letter has an empty glyph.
 inline std::string font_without(std::string_view letter) {
     auto font = embedded_font();
     const auto glyph = static_cast<std::size_t>(Typeface().lay_out(letter, 1, Weight::regular).glyphs[0].number);

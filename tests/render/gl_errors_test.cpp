@@ -11,7 +11,7 @@ namespace gl_errors_test {
 
 constexpr Size size{480, 270};
 
-/// Crossing strokes: they blend in more than one way.
+/// Crossing strokes, which need several ways of blending.
 DisplayList strokes(int variant) {
     DisplayList list{filled(size, black)};
     for (int k = 0; k < 3; ++k) {
@@ -25,7 +25,7 @@ DisplayList strokes(int variant) {
     return list;
 }
 
-/// OpenGL's functions as they are, but for one: what it is asked for first it cannot do.
+/// OpenGL's functions, where `change` makes one fail at its first use.
 template <class Change>
 class Broken {
 public:
@@ -42,7 +42,7 @@ private:
     gl::Functions broken_;
 };
 
-/// As OpenGL reports it: no error before, none after.
+/// OpenGL's error queue: one error, then none.
 GLenum out_of_memory() {
     static int calls = 0;
     return calls++ % 2 == 0 ? GL_OUT_OF_MEMORY : GL_NO_ERROR;
@@ -75,7 +75,7 @@ TEST(GlErrors, WhileDrawingLeaveNoPicture) {
     const auto whole = renderer.draw(list).rgba;
     {
         const Broken now([](gl::Functions& functions) {
-            functions.BlendEquation = [](GLenum) { gl::Enable(GL_TRIANGLES); };  // which cannot be enabled
+            functions.BlendEquation = [](GLenum) { gl::Enable(GL_TRIANGLES); };  // not a valid argument
         });
         EXPECT_EQ(
             test::thrown_by([&] { renderer.draw(strokes(1)); }),

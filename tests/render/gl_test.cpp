@@ -19,7 +19,7 @@ using test::osmesa_or_egl;
 
 constexpr Size size{480, 270};
 
-/// Every kind of item, with opaque and translucent colours, and edges at fractions of a pixel.
+/// Every kind of item, with opaque and translucent colours, and edges between pixels.
 DisplayList rich_list(int variant) {
     DisplayList list{filled(size, rgb(0x11151d))};
     const auto shift = static_cast<float>(variant) * 3.7f;
@@ -75,7 +75,7 @@ TEST(Gl, TakesTheLibraryThatIsThereAndNeverAnotherThanWasAskedFor) {
         "EGL cannot draw here: there is no libnone.so.1 (in Debian: libegl1, libegl-mesa0, libgl1-mesa-dri)";
     expect(Gl::automatic, {}, library_of_osmesa_or_egl());
     expect(Gl::automatic, {.osmesa = {"libnone.so.8"}}, "EGL");
-    expect(Gl::automatic, {.osmesa = {"libEGL.so.1"}}, "EGL");  // a library that is another one is as good as none
+    expect(Gl::automatic, {.osmesa = {"libEGL.so.1"}}, "EGL");  // a library without OSMesa's functions
     if (osmesa_or_egl() == Gl::osmesa) expect(Gl::osmesa, {.osmesa = {"libnone.so.9", "libOSMesa.so.8"}}, "OSMesa");
     expect(Gl::egl, {.egl = {"libnone.so.9", "libEGL.so.1"}}, "EGL");
     expect(Gl::osmesa, {.osmesa = {"libnone.so.8", "libnone.so"}},
@@ -99,7 +99,7 @@ TEST(Gl, BothShareOneThread) {
     const std::array alone{drawn(osmesa_or_egl(), lists[0]), drawn(Gl::egl, lists[1])};
     Renderer osmesa(size, {}, osmesa_or_egl()), egl(size, {}, Gl::egl);
     for (int round = 0; round < 3; ++round) {
-        // half the time each draws what the other drew before
+        // each draws while the other one was the last to draw
         EXPECT_EQ(osmesa.draw(lists[0]).rgba, alone[0].rgba) << round;
         EXPECT_EQ(egl.draw(lists[1]).rgba, alone[1].rgba) << round;
         osmesa.draw(lists[1]);

@@ -10,7 +10,7 @@
 namespace doppel {
 namespace matte_test {
 
-/// A colour with opacity laid over a grey in sRGB, as viewers do.
+/// A colour with opacity over a grey background in sRGB, as viewers do it.
 int over(int color, int opacity, int ground) {
     return static_cast<int>(std::lround((color * opacity + ground * (255 - opacity)) / 255.0));
 }
@@ -30,7 +30,7 @@ TEST(Matte, FindsTheColourAndOpacityThatWereLaidOver) {
             const auto* pixel = found.at(x, y);
             EXPECT_NEAR(pixel[3], x, 1) << y;  // measured 1: three roundings of three channels
             for (int k = 0; k < 3; ++k) {
-                // what a viewer sees again, on both grounds
+                // the viewer's result on both backgrounds
                 EXPECT_NEAR(over(pixel[k], pixel[3], 0), black.at(x, y)[k], 1);
                 EXPECT_NEAR(over(pixel[k], pixel[3], 255), white.at(x, y)[k], 2);
             }

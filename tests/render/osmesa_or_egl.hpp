@@ -7,7 +7,7 @@
 
 namespace doppel::test {
 
-/// What the tests of OSMesa draw with: EGL where this system has no OSMesa, which Mesa dropped with version 25.1.
+/// The backend of the tests of OSMesa: EGL if this system has no OSMesa, which Mesa removed in version 25.1.
 inline Gl osmesa_or_egl() {
     static const Gl found = [] {
         try {
@@ -20,7 +20,7 @@ inline Gl osmesa_or_egl() {
     return found;
 }
 
-/// Whose context that is; and what --gl calls it.
+/// The library of that context, as --gl names it.
 inline std::string library_of_osmesa_or_egl() {
     return osmesa_or_egl() == Gl::osmesa ? "OSMesa" : "EGL";
 }

@@ -9,19 +9,19 @@ namespace doppel {
 
 constexpr Color black = rgb(0x000000), white = rgb(0xffffff);
 
-/// Whether no channel is more than `slack` levels off.
+/// Whether each channel is within `slack` levels.
 inline bool is_color(const std::uint8_t* pixel, Color color, int slack = 3) {
     const auto near = [&](int found, float wanted) { return std::abs(found - std::lround(255 * wanted)) <= slack; };
     return near(pixel[0], color.r) && near(pixel[1], color.g) && near(pixel[2], color.b);
 }
 
-/// A list on black.
+/// A list drawn on black.
 inline Picture drawn(Size size, const DisplayList& list) {
     Renderer renderer(size, {filled(size, black)});
     return renderer.draw(list);
 }
 
-/// White ink on black: how much there is, px², and where its middle lies, px.
+/// White ink on black: its area, px², and its centre, px.
 struct Ink {
     double area = 0, x = 0, y = 0;
 };
@@ -39,7 +39,7 @@ inline Ink ink(const Picture& picture) {
     return {sum.area, sum.x / sum.area, sum.y / sum.area};
 }
 
-/// The smallest rectangle that holds all ink.
+/// The smallest rectangle that contains all ink.
 inline Rect extent(const Picture& picture) {
     Rect held;
     for (int y = 0; y < picture.size.height; ++y) {

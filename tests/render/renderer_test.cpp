@@ -14,7 +14,7 @@ namespace renderer_test {
 
 constexpr Size size{320, 240};
 
-/// Lists of all kinds of items, some of which stay from one to the next as in a film.
+/// Lists of all kinds of items, some of which remain in the next list as in a film.
 class RandomLists {
 public:
     DisplayList next() {
@@ -48,7 +48,7 @@ private:
         }
     }
 
-    /// As far as out of the picture.
+    /// Moves an item, possibly out of the picture.
     void move(Capsule& capsule) {
         const float x = between(-150, 150), y = between(-150, 150);
         for (Point* end : {&capsule.from, &capsule.to}) *end = {end->x + x, end->y + y};
@@ -70,7 +70,7 @@ private:
                 return stroke;
             }
             case 4:
-                // long and slanting: damaged in bands, and cut where they end
+                // long and oblique: redrawn in bands, clipped at their edges
                 return Capsule{{between(-900, 0), a.y}, {between(320, 1200), b.y}, between(0.3f, 8), color(), glow};
             default: {
                 const Weight weight = chance(0.5f) ? Weight::bold : Weight::regular;
@@ -98,7 +98,7 @@ TEST(Renderer, DrawsTheSamePixelsAsIfItDrewAllAnew) {
         ASSERT_EQ(picture.rgba, fresh.draw(list).rgba) << "in round " << round;
         for (std::size_t i = 3; i < picture.rgba.size(); i += 4) ASSERT_EQ(picture.rgba[i], 255) << "it is opaque";
 
-        // what is not named as changed is what it was
+        // pixels outside the changed area are unchanged
         if (round > 0) {
             const auto& changed = old.changed();
             for (int y = 0; y < size.height; ++y) {
@@ -115,7 +115,7 @@ TEST(Renderer, DrawsTheSamePixelsAsIfItDrewAllAnew) {
         }
         last = picture;
     }
-    EXPECT_GT(left_alone, 100000u);  // of 4.5 million; else nothing was put to the test
+    EXPECT_GT(left_alone, 100000u);  // of 4.5 million; otherwise the test has no effect
 }
 
 TEST(Renderer, TouchesOnlyWhatChanges) {
@@ -140,7 +140,7 @@ TEST(Renderer, RefusesSizesThatOpenGlCannotDraw) {
 }
 
 TEST(Renderer, DrawsLargePicturesInPartsAsInOne) {
-    const Size large{4200, 4000};  // 16.8 million px: two parts, which meet at row 3809
+    const Size large{4200, 4000};  // 16.8 million px: two pieces, which meet at row 3809
     DisplayList list{Capsule{{100, 3700}, {4100, 3950}, 30, rgb(0xffa640)}, Box{2000, 3800.5f, 2100, 3820.5f, 6, white},
                      Ring{{600, 3809}, 40, 7, white},
                      Label{"at the seam", {3000, 3815}, 40, Align::center, Weight::bold, white}};
@@ -152,7 +152,7 @@ TEST(Renderer, DrawsLargePicturesInPartsAsInOne) {
     list.push_back(stroke);
     Renderer in_parts(large, {filled(large, black)}), in_one(large, {filled(large, black)});
     in_one.draw({});
-    EXPECT_EQ(in_one.draw(list).rgba, in_parts.draw(list).rgba);  // what changed since is less than 16 million px
+    EXPECT_EQ(in_one.draw(list).rgba, in_parts.draw(list).rgba);  // the change is smaller than 16 million px
 }
 
 TEST(Renderer, StopsBetweenThePartsOfAPictureAndDrawsOnLater) {

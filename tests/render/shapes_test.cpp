@@ -50,7 +50,7 @@ TEST(Box, CoversPartsOfPixelsAndRoundsItsCorners) {
     EXPECT_NEAR(halves.at(10, 15)[0], 127.5, 1);
     EXPECT_NEAR(halves.at(20, 15)[0], 127.5, 1);
     EXPECT_NEAR(halves.at(15, 10)[0], 191.25, 1);
-    // the area is that of the rectangle less what the corners lack
+    // the area is that of the rectangle less the missing corners
     const Ink round = ink(drawn(size, {Box{10, 10, 60, 50, 12, white}}));
     EXPECT_NEAR(round.area, 50 * 40 - (4 - std::numbers::pi) * 144, 1.5);  // measured 0.98
 }
@@ -61,7 +61,7 @@ TEST(Box, ThinnerThanAPixelIsFainter) {
 }
 
 TEST(Capsule, IsSymmetric) {
-    // in a point: the middle of the picture
+    // point symmetry about the centre of the picture
     const Picture picture = drawn(size, {Capsule{{20, 25}, {76, 55}, 6.5f, white}});
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {

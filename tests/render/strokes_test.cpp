@@ -19,7 +19,7 @@ Stroke stroke(std::vector<Point> points, float width, Color color = white) {
 }
 
 TEST(Stroke, IsAsOpaqueAtItsJointsAndCrossingsAsElsewhere) {
-    // a loop that crosses itself, with joints of all angles, cusps, and a vertex twice
+    // a loop that crosses itself, with joints of all angles, cusps, and a repeated vertex
     std::vector<Point> points{{20, 20}, {140, 100}, {140, 100}, {140, 20}, {20, 100}, {20, 20}, {80, 20}, {20, 22}};
     for (int i = 0; i <= 60; ++i) {
         const float angle = static_cast<float>(i) * 0.1f;
@@ -54,7 +54,7 @@ TEST(Stroke, FadesAlongItself) {
 }
 
 TEST(Stroke, CoversWhatLiesWithinHalfItsWidth) {
-    // many more vertices than bends: those skipped may shift an edge by 1/10 px
+    // many more vertices than bends: skipping some may shift an edge by 1/10 px
     std::vector<Point> points;
     for (int i = 0; i <= 5000; ++i) {  // 0.1 px apart at most
         const float x = 10 + 0.028f * static_cast<float>(i);
@@ -70,7 +70,7 @@ TEST(Stroke, CoversWhatLiesWithinHalfItsWidth) {
     }
 }
 
-/// A path that need not be kept whole: the ends of its pieces.
+/// The path made of the ends of its pieces.
 Stroke in_pieces(const Stroke& whole) {
     Stroke pieces = whole;
     pieces.vertices.clear();
@@ -92,7 +92,7 @@ TEST(Stroke, FollowsACircleInFewPieces) {
             points.push_back({80 + 50 * std::cos(angle), 60 + 50 * std::sin(angle)});  // 2.5 px apart
         }
         const Stroke pieces = in_pieces(stroke(points, 4));
-        EXPECT_LE(pieces.vertices.size(), 17u);  // measured 15; straight ones come to 64
+        EXPECT_LE(pieces.vertices.size(), 17u);  // measured 15; 64 with straight pieces
         const Picture bent = drawn(size, {pieces}), round = drawn(size, {Ring{{80, 60}, 50, 4, white}});
         int maximum = 0;
         for (int y = 0; y < size.height; ++y)
@@ -118,7 +118,7 @@ TEST(Stroke, BendsToTheRightAsFarAsItSays) {
 }
 
 TEST(Stroke, KeepsItsCornersAndJoints) {
-    // three points lie on a parabola, but a path from one to the next does not
+    // any three points lie on a parabola, but the segments between them do not
     const auto corner = stroke({{20, 20}, {80, 30}, {140, 20}}, 4).vertices;
     EXPECT_EQ(next_piece(corner, 0, Bends::yes).last, 1u);
     EXPECT_EQ(next_piece(corner, 0, Bends::yes).bend, 0);
@@ -133,7 +133,7 @@ TEST(Stroke, ChangesItsStyleAtOnceAtTwoJoints) {
     for (const float x : {80.f, 110.f, 140.f}) step.vertices.push_back({{x, 60}, 0.8f});
     for (auto& vertex : step.vertices) vertex.joint = true;
     const Picture picture = drawn(size, {step});
-    EXPECT_EQ(picture.at(77, 60)[0], 51);  // without a disc of the brighter half's
+    EXPECT_EQ(picture.at(77, 60)[0], 51);  // without a disc of the brighter half
     EXPECT_EQ(picture.at(82, 60)[0], 204);
 }
 

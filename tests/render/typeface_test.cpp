@@ -13,7 +13,7 @@ namespace doppel {
 namespace typeface_test {
 
 namespace fs = std::filesystem;
-/// A file of these bytes.
+/// A file with these bytes.
 fs::path file_of(const std::string& bytes) {
     const auto folder = fs::path(DOPPEL_TEST_OUTPUT) / testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::create_directories(folder);
@@ -25,7 +25,7 @@ Typeface with(const std::string& bytes) {
     return Typeface::with_system_fonts(Font::from_file(file_of(bytes)));
 }
 
-/// The error of a font's file, without the file's name before it.
+/// The error of a font's file, without the file's name at its start.
 test::Thrown error_of(const fs::path& path) {
     auto [code, message] = test::thrown_by([&] { Font::from_file(path); });
     if (message.starts_with(path.string())) message.erase(0, path.string().size());
@@ -37,13 +37,13 @@ TEST(Typefaces, TheUsersFontComesFirst) {
     for (const auto weight : {Weight::regular, Weight::bold}) {
         const float usual = Typeface().width("Runge–Kutta 4", 20, weight);
         EXPECT_GT(wide.width("Runge–Kutta 4", 20, weight), 1.8f * usual);  // measured 2, of bold 1.83
-        EXPECT_EQ(text_width("Runge–Kutta 4", 20, weight), usual);         // and no one else's
+        EXPECT_EQ(text_width("Runge–Kutta 4", 20, weight), usual);         // other typefaces are unchanged
     }
     EXPECT_EQ(wide.lay_out("a", 20, Weight::regular).width, 2 * Typeface().lay_out("a", 20, Weight::regular).width);
 }
 
 TEST(Typefaces, ALetterWithoutAnOutlineIsOfTheNextFont) {
-    // as fonts of coloured emoji have them; a space has none either
+    // as in fonts of coloured emoji; a space has no outline either
     const auto without_q = with(test::font_without("Q"));
     const auto line = without_q.lay_out("PQ ", 20, Weight::regular);
     EXPECT_NE(line.glyphs[0].font, &Font::built_in());
@@ -59,7 +59,7 @@ TEST(Typefaces, LettersOfNoFontAreMissing) {
         EXPECT_EQ(typeface.missing_character("a" + unassigned + "b"), unassigned);
         EXPECT_EQ(typeface.lay_out(unassigned, 20, Weight::regular).glyphs[0].number, 0);
         EXPECT_EQ(typeface.missing_character("Ärger, θ₁ = 90°"), "");
-        // letters that join, or run to the left, would be set wrongly
+        // joining letters and right-to-left text are not supported
         for (const std::string letter : {"א", "م", "क", "က", "ﷺ"})
             EXPECT_EQ(typeface.missing_character("a" + letter), letter);
     }
@@ -88,7 +88,7 @@ TEST(Typefaces, FilesThatAreNoFontAreRefused) {
 TEST(Typefaces, SystemFontsHaveWhatTheOthersLack) {
     const std::string letter = "双";
     const auto typeface = Typeface::with_system_fonts();
-    EXPECT_EQ(Typeface().missing_character(letter), letter);  // which would differ from machine to machine
+    EXPECT_EQ(Typeface().missing_character(letter), letter);  // only a system font has it
     EXPECT_EQ(Typeface().missing_character("Ärger"), "");
     const Font* const font = system_font_for(U'双');
     if (!font) GTEST_SKIP() << "fontconfig knows no font with 双 here";
@@ -100,7 +100,7 @@ TEST(Typefaces, SystemFontsHaveWhatTheOthersLack) {
 }
 
 TEST(Typefaces, PostScriptOutlinesGrowBolderToo) {
-    // whose contours run the other way round
+    // its contours have the opposite direction
     const fs::path path = "/usr/share/fonts/opentype/urw-base35/NimbusSans-Regular.otf";
     if (!fs::exists(path)) GTEST_SKIP() << "there is no " << path;
     const auto font = Font::from_file(path);
