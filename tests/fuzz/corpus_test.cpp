@@ -1,4 +1,4 @@
-// What libFuzzer found, and seeded mutations of every preset and of some files, through the readers of every build.
+// The inputs that libFuzzer found, and seeded mutations of every preset and some files, through all readers.
 #include "base/clock.hpp"
 #include "figure/preset.hpp"
 #include "fuzz/mutation.hpp"
@@ -18,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double patience = 1;  // s of CPU time for one input
+constexpr double patience = 1;  // s of CPU time allowed for one input
 
 using Reader = std::string (*)(std::string_view);
 
-/// The refusal's message; a test failure where the readers crash, break their word or take too long.
+/// The message of the error; the test fails if the reader crashes, violates its contract or takes too long.
 std::string read_watched(const std::string& input, const std::string& name, Reader read = test::read_input) {
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     std::string message;
@@ -44,7 +44,7 @@ TEST(Readers, ReadOrRefuseTheCorpus) {
     EXPECT_GE(inputs, 15);
 }
 
-/// A reader of files, and the folder of its seeds.
+/// A reader of files, and the folder with its seeds.
 struct Files {
     const char* folder;
     Reader read;
@@ -83,12 +83,12 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ReadersOfFiles,
                                          Files{"pictures", test::read_picture, 1000}),
                          [](const auto& files) { return std::string(files.param.folder); });
 
-/// Changes 1 to 4 bytes of a table of the font; of its directory where `table` is its number of tables.
+/// Changes 1 to 4 bytes of a table of the font, or of its directory if `table` equals its number of tables.
 std::string with_damaged_table(std::string font, std::size_t table, std::mt19937& random) {
     const auto tables = test::number_at(font, 4, 2), entry = 12 + 16 * table;
     const auto start = table < tables ? test::number_at(font, entry + 8) : 0;
     const auto length = table < tables ? test::number_at(font, entry + 12) : entry;
-    constexpr std::size_t head = 512;  // where a table says what is in it
+    constexpr std::size_t head = 512;  // the description at the start of a table
     for (auto changes = 1 + random() % 4; changes > 0; --changes)
         font[start + random() % std::min(length, head)] = static_cast<char>(random() % 256);
     return font;
@@ -120,7 +120,7 @@ TEST_P(Mutations, AreReadOrRefusedWithAPlace) {
     int refused = 0;
     for (int i = 0; i < mutations && !HasFailure(); ++i)
         refused += !read_watched(test::mutated(GetParam().text, tokens, random), fmt::format("mutation {}", i)).empty();
-    // neither all nor none: else the mutations would test little
+    // neither all nor none, otherwise the mutations would test little
     EXPECT_GT(refused, mutations / 4);
     EXPECT_LT(refused, mutations * 49 / 50);
 }

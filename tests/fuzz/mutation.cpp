@@ -7,7 +7,7 @@
 namespace doppel::test {
 namespace {
 
-/// Below `end`; <random>'s distributions differ from library to library.
+/// A random number below `end`; the distributions of <random> differ between libraries.
 std::size_t below(std::size_t end, std::mt19937& random) {
     return end == 0 ? 0 : random() % end;
 }
@@ -25,7 +25,7 @@ struct Span {
     std::size_t first, length;
 };
 
-/// Where words and numbers stand.
+/// The positions of words and numbers.
 std::vector<Span> token_places(const std::string& text) {
     std::vector<Span> places;
     for (std::size_t at = 0; at < text.size();) {
@@ -37,7 +37,7 @@ std::vector<Span> token_places(const std::string& text) {
     return places;
 }
 
-/// With the end of each.
+/// The positions of lines with their ends.
 std::vector<Span> line_places(const std::string& text) {
     std::vector<Span> places;
     for (std::size_t first = 0; first < text.size();) {

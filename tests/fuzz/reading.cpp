@@ -22,7 +22,7 @@ std::vector<Override> overrides_in(const std::string& text) {
     return overrides;
 }
 
-/// A place: "input.toml…", "--set KEY…", or the preset where things fail together ("input: side a: …").
+/// A place: "input.toml…", "--set KEY…", or the preset for errors of several keys ("input: side a: …").
 bool names_a_place(std::string_view message) {
     return message.starts_with("input.toml:") || message.starts_with(option) || message.starts_with("input: ") ||
            message.find(" and --set ") != std::string_view::npos;
@@ -43,7 +43,7 @@ void read_again(const std::string& resolved, const Read& read) {
     }
 }
 
-/// Faults of a system as a whole are found here; choosing by accuracy and long chains would take their time.
+/// Finds errors of a system as a whole; skips accuracies and long chains, which would take too long.
 void try_scene(const Preset& preset) {
     constexpr std::size_t few = 12;
     for (const auto* side : {&preset.a, &preset.b})
@@ -62,7 +62,7 @@ void read_all(const PresetText& source, const std::vector<Override>& overrides) 
     }
 }
 
-/// Reads, and expects a refusal to be one of bad input that names a place.
+/// Reads, and expects that an error is one of bad input and names a place.
 template <class Read>
 std::string refusal_of(const Read& read) {
     try {
@@ -94,7 +94,7 @@ std::string read_sets(std::string_view input) {
             for (const auto& preset : builtin_presets())
                 if (preset.name == line.substr(1)) source.text = preset.text;
         } else {
-            arguments.push_back(line.substr(0, line.find('\0')));  // a command line holds no zero bytes
+            arguments.push_back(line.substr(0, line.find('\0')));  // a command line cannot contain zero bytes
         }
     }
     return refusal_of([&] {

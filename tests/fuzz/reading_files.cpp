@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file of these bytes while it lives.
+/// A temporary file with these bytes.
 class File {
 public:
     explicit File(std::string_view bytes)
@@ -41,7 +41,7 @@ private:
     fs::path path_;
 };
 
-/// Reads, and expects a refusal to be one of a file, which it names.
+/// Reads, and expects that an error names the file.
 template <class Read>
 std::string refusal_of(std::string_view bytes, const Read& read) {
     const File file(bytes);
@@ -86,7 +86,7 @@ const std::map<std::string, FigurePreset>& figures() {
     return all;
 }
 
-/// As many numbers 1 as fit each trial.
+/// Each trial with its number of values, all 1.
 KnownTrials plain_trials(const Experiment& work) {
     KnownTrials trials(work.trials());
     for (std::size_t i = 0; i < trials.size(); ++i)
@@ -94,7 +94,7 @@ KnownTrials plain_trials(const Experiment& work) {
     return trials;
 }
 
-/// Draws and writes the trials of the file in the company of others.
+/// Draws and writes the trials of the file together with plain ones.
 void show(const FigurePreset& figure, PartFile& part) {
     auto trials = plain_trials(*figure.experiment);
     part.take(*figure.experiment, trials);
@@ -140,7 +140,7 @@ std::string read_part(std::string_view input) {
 
 namespace {
 
-/// A PNG whose chunks have their checksums, so that what is in them is read.
+/// A PNG with valid checksums of its chunks, so that their contents are read.
 std::string with_checksums_of_chunks(std::string bytes) {
     for (std::size_t at = 8; at + 12 <= bytes.size();) {
         const auto length = number_at(bytes, at, 4), end = at + 8 + length;
@@ -177,7 +177,7 @@ std::string read_font(std::string_view input) {
     constexpr int largest = 40;  // px
     for (char32_t letter = 0; letter < letters; letter += letter < 0x100 ? 1 : step) {
         const int glyph = font->number_of(letter);
-        if (glyph == 0 && letter > 0) continue;  // the same box
+        if (glyph == 0 && letter > 0) continue;  // the same box as for a missing letter
         for (const auto weight : {Weight::regular, Weight::bold})
             for (const int pixels : {largest, 8}) {
                 const auto size = static_cast<float>(pixels);
