@@ -16,7 +16,7 @@ constexpr Machine bare{64, std::uintmax_t{256} << 30};
 
 struct System {
     const char* name;
-    std::vector<std::pair<const char*, const char*>> files;  // below /, and what they hold
+    std::vector<std::pair<const char*, const char*>> files;  // paths below /, and their contents
     int cores;
     std::uintmax_t memory;
 };
@@ -63,7 +63,7 @@ TEST(Machine, KeepsWithinItsControlGroups) {
 }
 
 TEST(Machine, HasWhatTheAffinityMaskLeaves) {
-    // in a process of its own: it is read once
+    // in a separate process, as the value is read only once
     EXPECT_EXIT(
         {
             cpu_set_t one;
@@ -80,7 +80,7 @@ TEST(Machine, HasWhatTheAffinityMaskLeaves) {
 TEST(Machine, LimitsObjectsByItsMemory) {
     constexpr std::size_t megabyte = 1 << 20;
     EXPECT_EQ(affordable(5 * 33 * megabyte, 64, bare), 12u);                    // 4K in five copies: 2 GiB
-    EXPECT_EQ(affordable(5 * 33 * megabyte, 4, bare), 4u);                      // no more than wanted
+    EXPECT_EQ(affordable(5 * 33 * megabyte, 4, bare), 4u);                      // at most the number requested
     EXPECT_EQ(affordable(5 * 33 * megabyte, 64, {64, 2048 * megabyte}), 3u);    // a quarter of 2 GiB
     EXPECT_EQ(affordable(5 * 1024 * megabyte, 64, {64, 1024 * megabyte}), 1u);  // at least one
     EXPECT_EQ(affordable(0, 8, bare), 8u);

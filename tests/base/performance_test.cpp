@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-// What is kept of the benchmarks, and the tables made of it.
+// The stored results of the benchmarks, and the tables made from them.
 
 namespace doppel {
 namespace performance_test {

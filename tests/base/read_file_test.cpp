@@ -19,7 +19,7 @@ std::string refusal(const fs::path& path) {
     return test::thrown_by([&] { read_whole_file(path, {"a track is a CSV file", std::size_t{1} << 20}); }).second;
 }
 
-// a pipe without a writer, or a device without end, kept the first Ctrl-C from ending the run
+// a pipe without a writer, or an endless device, once kept the first Ctrl-C from stopping the run
 TEST(ReadFile, TakesRegularFilesOfALimitedSizeAlone) {
     const auto folder = fs::path(testing::TempDir()) / ("doppel-read-" + std::to_string(getpid()));
     fs::create_directories(folder);
@@ -31,7 +31,7 @@ TEST(ReadFile, TakesRegularFilesOfALimitedSizeAlone) {
     EXPECT_EQ(refusal(zero), zero.string() + " is not a file; a track is a CSV file");
     EXPECT_EQ(refusal(folder), folder.string() + " is a folder; a track is a CSV file");
     EXPECT_EQ(refusal(longest), longest.string() + " has more than 1 MB; a track is a CSV file");
-    // the system would open the name before it
+    // the system would open the name up to the NUL
     EXPECT_EQ(refusal(fs::path(longest.string() + std::string("\0b", 2))),
               longest.string() + " b: contains a NUL character; a file name cannot");
     EXPECT_EQ(refusal(folder / "none"), (folder / "none").string() + ": there is no such file");

@@ -17,7 +17,7 @@ std::vector<char32_t> characters(std::string_view text) {
 
 TEST(Text, IsReadCharacterByCharacter) {
     EXPECT_EQ(characters("aé€😀"), (std::vector<char32_t>{'a', 0xe9, 0x20ac, 0x1f600}));
-    // cut short, too long, half a surrogate pair, beyond Unicode: a byte each
+    // incomplete, overlong, half a surrogate pair, beyond Unicode: each byte is one character
     EXPECT_EQ(characters("\xc3"), (std::vector<char32_t>{0xfffd}));
     EXPECT_EQ(characters("\xc0\xaf"), (std::vector<char32_t>{0xfffd, 0xfffd}));
     EXPECT_EQ(characters("\xed\xa0\x80z"), (std::vector<char32_t>{0xfffd, 0xfffd, 0xfffd, 'z'}));
@@ -35,11 +35,11 @@ TEST(Text, OnOneLineIsSanitised) {
     EXPECT_EQ(on_one_line("a\nb\r\tc\x1b[31md\x7f"), "a b  c [31md ");
     EXPECT_EQ(on_one_line("\xc2\x9b"
                           "31m"),
-              " 31m");  // C1's own escape
+              " 31m");  // the escape of C1
     EXPECT_EQ(on_one_line("a\xe2\x80\xae"
                           "b\xe2\x80\xa8"
                           "c"),
-              "a b c");  // right to left from here; a new line
+              "a b c");  // a switch to right-to-left; a line separator
     EXPECT_EQ(on_one_line("\x9b"
                           "1m"),
               "\xef\xbf\xbd"
@@ -59,7 +59,7 @@ TEST(Text, SizesForPeople) {
 }
 
 TEST(Text, ShortenedEndsWithAWholeCharacter) {
-    EXPECT_EQ(shortened("90° ½", 7), "90° ½");  // all of it
+    EXPECT_EQ(shortened("90° ½", 7), "90° ½");  // the whole text
     EXPECT_EQ(shortened("90° ½", 6), "90° …");
     EXPECT_EQ(shortened("90° ½", 3), "90…");
     EXPECT_EQ(shortened("90° ½", 4), "90°…");

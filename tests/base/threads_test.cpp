@@ -25,9 +25,9 @@ TEST(Threads, AreAsManyAsRequested) {
     EXPECT_NO_THROW(need_threads(20));
 }
 
-#ifndef DOPPEL_SANITIZE  // which takes terabytes of address space
+#ifndef DOPPEL_SANITIZE  // the sanitizer needs terabytes of address space
 TEST(Threads, NameTheLimitThatKeepsThemFromStarting) {
-    // a process of its own with room for less than a stack
+    // a separate process with less address space than a stack
     const auto end_within = [](decltype(RLIMIT_AS) limited) {
         std::ifstream sizes("/proc/self/statm");
         rlim_t pages = 0;

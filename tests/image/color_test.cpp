@@ -26,7 +26,7 @@ double contrast(const Color& a, const Color& b) {
     return std::max(x, y) / std::min(x, y);
 }
 
-/// CIE 1976 L*a*b*, white D65: not the space the map was made in.
+/// CIE 1976 L*a*b*, white D65: another colour space than that of the map's construction.
 Triple lab(const Triple& c) {
     const double x = 0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2], y = luminance(c);
     const double z = 0.0193 * c[0] + 0.1192 * c[1] + 0.9505 * c[2];
@@ -39,7 +39,7 @@ double distance(const Triple& a, const Triple& b) {
     return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 }
 
-/// As without the sense of green, and of red (Machado, Oliveira & Fernandes 2009).
+/// The colour as seen without green or red receptors (Machado, Oliveira & Fernandes 2009).
 Triple seen(const Triple& c, const double (&m)[3][3]) {
     Triple out{};
     for (int i = 0; i < 3; ++i) out[i] = std::clamp(m[i][0] * c[0] + m[i][1] * c[1] + m[i][2] * c[2], 0.0, 1.0);
@@ -75,7 +75,7 @@ TEST(MapColor, LightnessIncreasesEvenly) {
         minimum = std::min(minimum, step);
         maximum = std::max(maximum, step);
     }
-    EXPECT_LT(maximum / minimum, 2.6);  // measured 2.28: the blues are where CIE L*a*b* and OKLab differ
+    EXPECT_LT(maximum / minimum, 2.6);  // measured 2.28: CIE L*a*b* and OKLab differ for blue
 }
 
 TEST(MapColor, EndsWhereItsScaleEnds) {

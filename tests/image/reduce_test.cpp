@@ -27,7 +27,7 @@ Pixel pixel(const Picture& picture, int x, int y) {
 
 constexpr Pixel black{0, 0, 0, 255}, white{255, 255, 255, 255};
 
-/// The byte of a share of white in black: the inverse of IEC 61966-2-1's curve.
+/// The sRGB value of a share of white in black: the inverse of IEC 61966-2-1's curve.
 int grey(double share) {
     return static_cast<int>(
         std::lround(255 * (share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055)));
@@ -37,11 +37,11 @@ TEST(Reduce, MeansAreThoseOfLinearLight) {
     Picture checks({4, 4});
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) put(checks, x, y, (x + y) % 2 ? white : black);
-    EXPECT_EQ(grey(0.5), 188);  // as any text on gamma has it; 128 would be the mean of the bytes
+    EXPECT_EQ(grey(0.5), 188);  // the standard value; 128 would be the mean of the bytes
     const Picture half = downscaled(checks, {2, 2});
     for (int k = 0; k < 4; ++k) EXPECT_EQ(pixel(half, k % 2, k / 2), (Pixel{188, 188, 188, 255}));
 
-    // one white pixel of 10×6, anywhere, is 1/60 of the whole
+    // one white pixel in 10×6, at any place, is 1/60 of the area
     for (int k = 0; k < 60; ++k) {
         Picture dot = filled({10, 6}, black);
         put(dot, k % 10, k / 10, white);
@@ -50,13 +50,13 @@ TEST(Reduce, MeansAreThoseOfLinearLight) {
 }
 
 TEST(Reduce, PartsOfPixelsCountByWhatIsCovered) {
-    // 5 columns to 2: the middle one is shared
+    // 5 columns to 2: both share the middle one
     Picture stripe = filled({5, 3}, black);
     for (int y = 0; y < 3; ++y) put(stripe, 2, y, white);
     const Picture two = downscaled(stripe, {2, 3});
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 2; ++x) EXPECT_EQ(pixel(two, x, y)[0], grey(0.5 / 2.5));
-    // 3 rows to 2, an edge within a pixel
+    // 3 rows to 2: an edge inside a pixel
     Picture edge = filled({1, 3}, white);
     put(edge, 0, 0, black);
     EXPECT_EQ(pixel(downscaled(edge, {1, 2}), 0, 0)[2], grey(0.5 / 1.5));
@@ -97,7 +97,7 @@ TEST(ContactSheet, HasEachPictureInItsPlace) {
     ASSERT_EQ(sheet.size, (Size{2 + 3 * 6, 2 + 2 * 4}));
     for (int y = 0; y < sheet.size.height; ++y)
         for (int x = 0; x < sheet.size.width; ++x) {
-            // the place by division, not by copying: column and row of the cell, and where in it
+            // the index from division, not from copying: column and row of the cell, and the position in it
             const int column = x / 6, row = y / 4, k = 3 * row + column;
             const bool inside = x % 6 >= 2 && y % 4 >= 2 && column < 3 && row < 2 && k < 5;
             EXPECT_EQ(pixel(sheet, x, y), (inside ? Pixel{10 * k, 0, 200, 255} : Pixel{16, 32, 48, 255}));

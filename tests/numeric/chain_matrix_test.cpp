@@ -8,7 +8,7 @@
 namespace doppel {
 namespace chain_matrix_test {
 
-/// J M⁻¹ J′ᵀ of rods r and r′, which are near each other as those of two steps, with masses from 1/4 to 4.
+/// J M⁻¹ J′ᵀ of rods r and r′, close to each other as in two successive steps, with masses from 1/4 to 4.
 struct Rods {
     Eigen::VectorXd w;
     Eigen::Matrix2Xd one, zero;
@@ -39,7 +39,7 @@ struct Rods {
         }
         return all;
     }
-    /// The solution by a ChainMatrix of N rows.
+    /// The solution by a ChainMatrix of size N.
     template <int N>
     Eigen::VectorXd solved(const Eigen::VectorXd& right) const {
         using Column = typename ChainMatrix<double, N>::Column;
@@ -68,7 +68,7 @@ TEST(ChainMatrix, SolvesWhatADenseMatrixDoes) {
             const Eigen::VectorXd x = rods.solved<Eigen::Dynamic>(right),
                                   expected = rods.dense().partialPivLu().solve(right);
             EXPECT_LT((x - expected).norm(), 1e-13 * (1 + expected.norm())) << rows << " rows";
-            // to the last bit, whether the number of rows is known early or late
+            // bit-identical for a number of rows known at compile time or at run time
             if (rows == 2) {
                 EXPECT_EQ(rods.solved<2>(right), x);
             }

@@ -16,7 +16,7 @@
 namespace doppel {
 namespace dual_test {
 
-/// The model's start, each entry a variable of its own.
+/// The model's start with each entry as an independent variable.
 template <class Model, class Scalar>
 typename Model::State as_variables(const State<Scalar, Model::State::SizeAtCompileTime>& y) {
     typename Model::State variables(y.size());
@@ -33,8 +33,8 @@ typename Model::State flow(const Pendulum<typename Model::Scalar>& p, const type
     return stepper.state();
 }
 
-/// The greatest difference between the Jacobian of a flow from duals and from central differences in quad, which err by
-/// some h² = 1e-22 of the third derivative.
+/// The largest difference between the Jacobian of a flow from duals and from central differences in quad, whose error
+/// is about h² = 1e-22 of the third derivative.
 template <class Which, template <class> class Model, int N, class Scalar>
 double jacobian_error(std::size_t links) {
     using SweptKeys = Model<Dual<Scalar, N>>;
@@ -75,7 +75,7 @@ TEST(Dual, GivesTheJacobianOfTheFlow) {
 }
 
 TEST(Dual, ParametersVaryToo) {
-    // the period of small swings grows like √l: scaling all lengths by k and the time by √k changes no angle, so
+    // the period of small oscillations grows as √l: scaling all lengths by k and the time by √k changes no angle, so
     //     l ∂θ/∂l = −½ t ω for a release from rest
     using D = Dual<double, 1>;
     auto p = unequal<D>(2);
@@ -86,7 +86,7 @@ TEST(Dual, ParametersVaryToo) {
         EXPECT_NEAR(end[i].tangent[0], -0.5 * end[2 + i].value, 2e-11);  // measured 4e-12, the error of the method
 }
 
-/// A random expression of three variables, in any scalar; the same for the same seed.
+/// A random expression of three variables, in any scalar; the same for equal seeds.
 template <class Scalar>
 Scalar expression(unsigned seed, const std::array<Scalar, 3>& x) {
     using std::abs, std::cos, std::sin, std::sqrt;
@@ -106,7 +106,7 @@ Scalar expression(unsigned seed, const std::array<Scalar, 3>& x) {
 }
 
 TEST(Dual, FollowsTheChainRule) {
-    // relative; the rounding of sums that cancel on the way
+    // relative; the round-off of sums with cancellation
     for (unsigned seed = 0; seed < 2000; ++seed) {
         using D = Dual<double, 3>;
         std::mt19937 random(seed + 77);

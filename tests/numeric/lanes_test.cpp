@@ -23,7 +23,7 @@ TEST(Lanes, RoundLikeDouble) {
             const double x = a[lane], y = b[lane];
             ASSERT_EQ(bits((a + b)[lane]), bits(x + y));
             ASSERT_EQ(bits((a - b)[lane]), bits(x - y));
-            ASSERT_EQ(bits((a * b + a)[lane]), bits(x * y + x));  // not fused
+            ASSERT_EQ(bits((a * b + a)[lane]), bits(x * y + x));  // no fused multiply-add
             ASSERT_EQ(bits((a / b)[lane]), bits(x / y));
             ASSERT_EQ(bits(sqrt(abs(a))[lane]), bits(std::sqrt(std::abs(x))));
             ASSERT_EQ(bits((-a)[lane]), bits(-x));
@@ -48,7 +48,7 @@ TEST(Lanes, SelectDecidesLaneByLane) {
     EXPECT_EQ(chosen[0], 10);
     EXPECT_EQ(chosen[1], 10);
     EXPECT_EQ(chosen[2], 20);
-    EXPECT_EQ(chosen[3], 20);  // NaN is not small
+    EXPECT_EQ(chosen[3], 20);  // NaN is not smaller
 }
 
 TEST(Lanes, TheLargerIsNaNIfEitherIs) {

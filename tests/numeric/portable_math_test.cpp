@@ -14,7 +14,7 @@ namespace portable_math_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The largest error of a function of one argument over so many of two ranges, in units of the last place.
+/// The largest error of a function of one argument over samples of two ranges, in units of the last place.
 template <class Function, class Exact, class First, class Second>
 double worst_ulps(const Function& function, const Exact& exact, const First& first, const Second& second) {
     std::mt19937_64 random(5);

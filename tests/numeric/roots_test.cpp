@@ -8,7 +8,7 @@
 namespace doppel {
 namespace roots_test {
 
-/// Powers of Π (t − root), times a factor.
+/// The coefficients of factor · Π (t − root) by powers of t.
 std::vector<double> with_roots(const std::vector<double>& roots, double factor) {
     std::vector<double> a{factor};
     for (const double root : roots) {
@@ -37,7 +37,7 @@ TEST(Bernstein, HasEndValuesAndBoundsOfThePolynomial) {
 TEST(Bernstein, FindsEveryRiseInOrder) {
     const std::vector<double> roots{-0.5, 0.11, 0.112, 0.112001, 0.4, 0.9, 1.3};
     for (const double length : {1.0, 1.2, 0.2}) {
-        // seven factors: below the first root the product is < 0, so it rises at the first, third … root
+        // seven factors: below the first root the product is < 0, so it increases at the first, third … root
         const auto rises = Bernstein::of_powers(with_roots(roots, 2), length).rises();
         std::vector<double> expected;
         for (std::size_t i = 0; i < roots.size(); i += 2)
@@ -54,17 +54,17 @@ TEST(Bernstein, SeparatesPairsOfRootsDownToRounding) {
     for (const double apart : {1e-2, 1e-5, 1e-7}) {
         const auto rises = Bernstein::of_powers(with_roots({0.3 - apart / 2, 0.3 + apart / 2}, 1), 1).rises();
         ASSERT_EQ(rises.size(), 1u) << apart;
-        EXPECT_GT(rises[0].low, 0.3 - apart / 2);  // of the two, only the one where it rises lies between
+        EXPECT_GT(rises[0].low, 0.3 - apart / 2);  // only the second of the two roots is in the interval
         EXPECT_LT(rises[0].low, 0.3 + apart / 2);
         EXPECT_GT(rises[0].high, 0.3 + apart / 2);
     }
-    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{0.09 + 1e-9, -0.6, 1}, 1).rises().empty());  // comes close
+    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{0.09 + 1e-9, -0.6, 1}, 1).rises().empty());  // no root
 }
 
 TEST(Bernstein, CountsARootAtTheEndAndNoneAtTheStart) {
     EXPECT_EQ(Bernstein::of_powers(std::vector<double>{-1, 1}, 1).rises().size(), 1u);
     EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{0, 1}, 1).rises().empty());
-    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{1, -1}, 1).rises().empty());  // falls
+    EXPECT_TRUE(Bernstein::of_powers(std::vector<double>{1, -1}, 1).rises().empty());  // decreases
 }
 
 TEST(Bernstein, RisesThroughALevel) {

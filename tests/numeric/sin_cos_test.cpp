@@ -14,7 +14,7 @@ namespace sin_cos_test {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Evenly within ±largest, and as close to the quarters of the circle as doubles come.
+/// Uniform within ±largest, and as close to the multiples of π/2 as doubles allow.
 std::vector<double> angles(double largest, int count) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> some(-largest, largest);
@@ -95,7 +95,7 @@ TEST(SinCos, OfADoubleIsThatOfALaneAtEveryWidth) {
 }
 
 TEST(TurningAngle, AgreesWithTheSineWithinItsRange) {
-    // just within the largest turn the series must still give the sine and cosine of the sum
+    // just below the largest turn, the series must still give the sine and cosine of the sum
     for (double theta = -3; theta < 3; theta += 0.01) {
         const SinCos<double> start(theta);
         TurningAngle<double> angle{start.sin, start.cos};

@@ -20,7 +20,7 @@ TEST(Taped, OfBytesThatAreAllZeroIsTheConstantZero) {
     tape.term(x.node(), 0) = 3;
     tape.compute(0);
     EXPECT_EQ(zero.value, 3);
-    EXPECT_EQ(tape.term(zero.node(), 0), 3);  // 8, where `zero` was taken for the first argument
+    EXPECT_EQ(tape.term(zero.node(), 0), 3);  // 8 if `zero` counted as the first argument
 }
 
 }  // namespace tape_test

@@ -1,5 +1,5 @@
-// Preloaded before a program (LD_PRELOAD), lets it start only as many threads as DOPPEL_TEST_THREADS says; then there
-// are no more, as where pids.max or ulimit -u is reached (which holds back nobody who is root).
+// Preloaded into a program (LD_PRELOAD), allows only DOPPEL_TEST_THREADS threads. Further threads fail to start, as at
+// the limits of pids.max or ulimit -u (which does not apply to root).
 
 #include <dlfcn.h>
 #include <pthread.h>

@@ -1,4 +1,4 @@
-// A measured swing shown as a motion, against the motion that was measured.
+// A measured motion replayed from its track, compared with the true motion.
 #include "track/replay.hpp"
 
 #include "base/error.hpp"
@@ -17,7 +17,7 @@ std::shared_ptr<const Track> track_of(const std::string& text) {
     return std::make_shared<const Track>(tracks_of_texts({"swing.csv"}, {text}));
 }
 
-/// The largest errors of angles, rates, places and energy, seen 240 times a second.
+/// The largest errors of angles, rates, positions and energy at 240 times per second.
 struct Errors {
     double angle = 0, rate = 0, place = 0, energy = 0;
 };
@@ -46,8 +46,8 @@ TEST(Replay, ShowsTheMotionThatWasMeasured) {
     EXPECT_LT(worst.place, 2e-6);   // measured 4e-7
     EXPECT_LT(worst.energy, 2e-3);  // measured 5e-4 of 4 J
     worst = errors_of(csv_of_motion(swinging_rods(), 1002, 1e-4));
-    EXPECT_LT(worst.angle, 7e-4);  // noise is averaged away: measured 4.9e-4, the worst of 962
-    EXPECT_LT(worst.rate, 0.15);   // measured 0.097; from sample to sample it would be 0.2
+    EXPECT_LT(worst.angle, 7e-4);  // smoothing reduces the noise: measured 4.9e-4, the largest of 962
+    EXPECT_LT(worst.rate, 0.15);   // measured 0.097; differences of samples would give 0.2
 }
 
 TEST(Replay, SubtractsEncoderOffsets) {

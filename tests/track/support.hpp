@@ -12,7 +12,7 @@ namespace doppel::test {
 
 inline const std::atomic<bool> never_stop = false;
 
-/// Two heavy rods with friction, as exact as double allows.
+/// Two rods with mass and friction, as accurate as double allows.
 inline MotionSpec swinging_rods(const Rational& sample_interval = {1, 500}) {
     auto body = physical(Pendulum<Quad>{{1, 2}, {Quad(1) / 4, Quad(3) / 8}, {1, -2}, {3, 5}, Quad(98) / 10});
     body.center = {Quad(1) / 8, Quad(3) / 16};
@@ -27,7 +27,7 @@ inline MotionSpec swinging_rods(const Rational& sample_interval = {1, 500}) {
     return spec;
 }
 
-/// What encoders that show `offset` at rest would say of a motion, as a file.
+/// The file of encoders that show `offset` at rest.
 inline std::string csv_of_motion(const MotionSpec& spec, int samples, double noise = 0, double offset = 0) {
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
