@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-// Whole commands, as they are typed: CPU time of the program, and in "wall s" how long one waits.
+// Complete commands as a user types them: CPU time of the program, and the elapsed time in "wall s".
 
 namespace doppel {
 namespace {

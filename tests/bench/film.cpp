@@ -15,12 +15,12 @@
 #include <filesystem>
 #include <memory>
 
-// What a frame of butterfly costs at 1920×1080, stage by stage, and the whole against the encoder alone.
+// The cost of a frame of butterfly at 1920×1080 by stage, and the whole program compared with the encoder alone.
 
 namespace doppel {
 namespace {
 
-constexpr long first = 1500, count = 600;  // frames in the middle of the run: full trails, traces half across
+constexpr long first = 1500, count = 600;  // frames in the middle of the run: complete trails, curves half across
 const std::atomic<bool> never = false;
 
 Scene butterfly() {
@@ -47,7 +47,7 @@ void compose(benchmark::State& state) {
 }
 BENCHMARK(compose)->Unit(benchmark::kMillisecond);
 
-/// Draws (and, if `converts`, converts what changed) frame after frame: CPU time of all threads, and how long one waits.
+/// Draws frame after frame, with conversion of changed parts if `converts`: CPU time of all threads, and elapsed time.
 void draw(benchmark::State& state, Size size, bool converts) {
     auto preset = read_preset(find_preset("butterfly"));
     preset.video.size = size;
@@ -127,8 +127,8 @@ RecordedFrames recorded(const Scene& scene) {
     return reel;
 }
 
-/// The whole of Doppel, all of the film, against x264 alone at `floor_preset` on the same frames from memory, turn by
-/// turn; and what both look like.
+/// The whole program on the whole film, alternating with x264 alone at `floor_preset` on the same frames from memory;
+/// and the quality of both.
 void end_to_end(benchmark::State& state, const char* preset_name, const char* floor_preset) {
     auto preset = read_preset(find_preset("butterfly"));
     preset.video.preset = preset_name;

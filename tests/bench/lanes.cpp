@@ -3,15 +3,15 @@
 
 #include <benchmark/benchmark.h>
 
-// A thousand steps of 64 trials side by side at 30 kHz, at each width of this processor; `ns` is that of one step of
-// one trial.
+// A thousand steps of 64 trials in batches at 30 kHz, for each register width of this processor; `ns` is for one step
+// of one trial.
 
 namespace doppel {
 namespace {
 
 constexpr std::size_t trials = 64;
 
-/// Released between 60° and 120°, so that none does what its neighbour does.
+/// Released between 60° and 120°, so that neighbours move differently.
 std::vector<Pendulum<double>> released(std::size_t links) {
     std::vector<Pendulum<double>> all(trials);
     for (std::size_t i = 0; i < trials; ++i) {
@@ -30,7 +30,7 @@ void thousand_steps(benchmark::State& state, Model model, std::size_t links, con
                                               benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// From one sample of figures to the next: 1/120 s.
+/// The steps between two samples of a figure: 1/120 s.
 void thousand_pendulums(benchmark::State& state) {
     std::vector<Pendulum<double>> all;
     while (all.size() < 1000)

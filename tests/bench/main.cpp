@@ -11,18 +11,18 @@
 #include <string>
 #include <vector>
 
-// Google Benchmark's program, and three commands on what is kept of its results:
-//     bench --keep FILE [PART]    measures all, or those with PART in their name, and keeps it
-//     bench --compare FILE        measures what takes less than two seconds; exit code 1 where something fell by 15 %
-//     bench --tables FILE PAGE    makes the tables of a page of it
-//     bench --add FILE NAME CPU_S WALL_S    keeps what was measured elsewhere
+// Google Benchmark's program, and four commands for its stored results:
+//     bench --keep FILE [PART]    measures all benchmarks, or those with PART in their name, and stores the results
+//     bench --compare FILE        measures benchmarks below two seconds; exit code 1 if one is 15 % slower
+//     bench --tables FILE PAGE    rewrites the tables of a page
+//     bench --add FILE NAME CPU_S WALL_S    stores a measurement made elsewhere
 
 namespace doppel {
 namespace {
 
 constexpr double most_fall = 0.15;
 
-/// Those whose names have `part` in them; the others stay as they were.
+/// Measures the benchmarks with `part` in their names; the results of the others remain.
 void keep(const std::string& path, const std::string& part) {
     const auto names = benchmark_names();
     std::vector<std::string> requested;
@@ -43,7 +43,7 @@ int compare(const std::string& path) {
         if (before != kept.benchmarks.end() && before->second.rounds > 1) names.push_back(name);
     }
     const auto seen = falls(kept, measure(names, 3), most_fall);
-    // what seems to have fallen is measured again, longer: only what is found twice is told
+    // apparent losses are measured again, longer: only those found twice are reported
     std::vector<std::string> again;
     for (const auto& name : names)
         for (const auto& fall : seen)

@@ -35,7 +35,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// What a line `name : value` or `NAME="value"` of a file says.
+/// The value in a line `name : value` or `NAME="value"` of a file.
 std::string said_in(const char* path, const std::string& name) {
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {
@@ -125,7 +125,7 @@ Performance measure(const std::vector<std::string>& names, int rounds) {
             taken.push_back({result.ns, result.ns / reference});
             references.push_back({after, 1});
             before = after;
-            // counters of the quickest round
+            // counters of the fastest round
             auto& kept = counters[key_of(names[i])];
             if (kept.empty() || result.ns <= std::min_element(taken.begin(), taken.end(), [](auto& one, auto& other) {
                                                  return one.ns < other.ns;

@@ -7,15 +7,15 @@
 
 namespace doppel {
 
-/// Of all benchmarks but the reference loop, as Google Benchmark names them.
+/// The names of all benchmarks except the reference loop, in Google Benchmark's form.
 std::vector<std::string> benchmark_names();
 
-/// What a benchmark is kept as: its name without how it is timed.
+/// The key of a stored benchmark: its name without the way of timing.
 std::string key_of(const std::string& name);
 
-/// Runs each benchmark once a round, the reference loop before and after; what takes more than two seconds in the first
-/// round only. Says on standard error how far it is.
-/// Throws Error: exit 3 where a benchmark gives no result.
+/// Runs each benchmark once per round, the reference loop before and after. Benchmarks above two seconds run in the
+/// first round only. Prints its progress to standard error.
+/// Throws Error: exit 3 if a benchmark has no result.
 Performance measure(const std::vector<std::string>& names, int rounds);
 
 }  // namespace doppel

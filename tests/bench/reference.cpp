@@ -1,12 +1,12 @@
 #include <benchmark/benchmark.h>
 
-// The loop that the others are compared with, so that one machine's times mean something on another: never change it.
+// The reference loop, which makes the times of different machines comparable: never change it.
 
 namespace doppel {
 namespace {
 
-/// Four logistic maps side by side, a million steps: additions and multiplications of doubles, each waiting for the one
-/// before, and no memory.
+/// Four logistic maps in parallel, a million steps: additions and multiplications of doubles, each dependent on the one
+/// before, without memory access.
 void reference(benchmark::State& state) {
     double x[] = {0.1, 0.2, 0.3, 0.4};
     for (auto _ : state) {

@@ -9,7 +9,7 @@
 
 #include <string>
 
-// A thousand steps of one pendulum at 30 kHz, every link released at 90°: the µs shown are ns a step.
+// A thousand steps of one pendulum at 30 kHz, every link released at 90°: the µs shown equal ns per step.
 
 namespace doppel {
 namespace {
@@ -19,7 +19,7 @@ constexpr bool is_of_bodies = false;
 template <>
 constexpr bool is_of_bodies<PhysicalChain<double>> = true;
 
-/// Of bodies: even rods in place of point masses, with viscous friction.
+/// Rigid bodies: uniform rods in place of point masses, with viscous friction.
 template <class Model>
 auto released(std::size_t links) {
     Pendulum<double> p;
@@ -60,7 +60,7 @@ void all_methods(const char* model, std::size_t links) {
     thousand_steps<Rk4::Stepper<Model>, Model>("rk4", model, links);
 }
 
-/// Three links as a careful user of a library writes them, for comparison.
+/// Three links in the form a careful user of a library writes, for comparison.
 struct ByHand {
     using Scalar = double;
     using State = doppel::State<double, 6>;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-// The Taylor method: the time to an angle error at the end that really is within the target, on four released double
-// and triple pendulums; and what a step of a long chain costs.
+// The Taylor method: the time for an angle error at the end within the target, for four double
+// and triple pendulums; and the cost of a step of a long chain.
 
 namespace doppel {
 namespace {
@@ -28,8 +28,8 @@ typename Model::State end_of(const Pendulum<Scalar>& p, const Scalar& seconds, c
     return stepper.state();
 }
 
-/// The loosest tolerance, of eight a decade, that keeps the error within the target and whose next two do so too: one
-/// that is not just lucky.
+/// The loosest tolerance, of eight per decade, whose error is within the target, as are those of the next two: a single
+/// one could be luck.
 template <int N>
 double tolerance_for(const Pendulum<double>& p, double seconds, double target) {
     const auto exact = end_of<AngleChain<Quad, N>>(p.cast<Quad>(), Quad(seconds), Quad(1e-26));

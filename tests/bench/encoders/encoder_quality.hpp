@@ -10,24 +10,24 @@
 
 namespace doppel {
 
-/// What came of a setting at one quality, a frame. What moves has none where nothing does (NaN).
+/// The results of a setting at one quality, per frame. The values of moving parts are NaN if nothing moves.
 struct EncodedRow {
     double crf, cpu_ms, bytes, psnr_db, moving_psnr_db, ssim, moving_ssim;
 };
 
-/// What a setting takes to look as good as another one, in units of what that takes; NaN where it never does.
+/// The cost of a setting relative to another one at equal quality; NaN if it never reaches that quality.
 struct EqualQuality {
     double bytes, cpu;
 };
 
-/// The four measures of quality, each so that it goes about evenly with the logarithm of the bytes.
+/// The four measures of quality, scaled to be almost linear in the logarithm of the bytes.
 inline std::array<double, 4> measures_of(const EncodedRow& row) {
-    // where there is no difference: a number yet
+    // finite without any difference
     const auto decibels = [](double ssim) { return -10 * std::log10(std::max(1 - ssim, 1e-10)); };
     return {row.psnr_db, row.moving_psnr_db, decibels(row.ssim), decibels(row.moving_ssim)};
 }
 
-/// y at x of the straight line through the two of the points (x falling) that are nearest to x; NaN if they are one.
+/// y at x of the straight line through the two points (x decreasing) nearest to x; NaN if they coincide.
 inline double along(double x, std::span<const double> xs, std::span<const double> ys) {
     std::size_t k = 0;
     while (k + 2 < xs.size() && x < xs[k + 1]) ++k;
@@ -35,8 +35,8 @@ inline double along(double x, std::span<const double> xs, std::span<const double
     return ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k]);
 }
 
-/// Rows at three qualities or more, the best first, against the middle one of the reference. By interpolation between
-/// the qualities that were tried; the worst of the measures counts, without those of what moves where nothing does.
+/// Rows at three or more qualities, the best first, compared with the middle one of the reference. Interpolates between
+/// the measured qualities; the worst of the measures counts, without those of moving parts if nothing moves.
 inline EqualQuality equal_quality(std::span<const EncodedRow> rows, std::span<const EncodedRow> reference) {
     const auto& wanted = reference[reference.size() / 2];
     std::vector<double> log_bytes, cpu;

@@ -10,13 +10,13 @@
 
 namespace doppel {
 
-/// What an encoder is told, beside the quality: a preset, and what is changed of it.
+/// The parameters of an encoder besides the quality: a preset, and its changes.
 struct EncoderSetting {
     std::string_view codec, name, preset;
     std::string_view changes = {};  // "key=value key=value", of libav; {} stands for crf
 };
 
-// The first of a codec is what the others are compared with.
+// The first setting of a codec is the reference for the others.
 inline constexpr std::array encoder_settings{
     EncoderSetting{"h264", "veryfast", "veryfast"},
     EncoderSetting{"h264", "doppel", "doppel"},
@@ -49,12 +49,12 @@ inline constexpr std::array encoder_settings{
     EncoderSetting{"av1", "low delay", "veryfast", "svtav1-params=lp=8:pred-struct=1"},
 };
 
-/// Whether it is the default but for one thing.
+/// Whether it differs from the default in one option only.
 inline bool is_variation(const EncoderSetting& setting) {
     return setting.preset == "doppel" && !setting.changes.empty();
 }
 
-/// As libav takes them.
+/// In libav's form.
 inline Metadata changes_of(const EncoderSetting& setting, int crf) {
     Metadata all;
     const auto text = fmt::format(fmt::runtime(setting.changes), crf);

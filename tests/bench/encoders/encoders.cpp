@@ -1,5 +1,5 @@
-// What settings of an encoder (h264, vp9 or av1) cost and yield on six films of pendulums, at equal quality: the table
-// docs/encoders.csv, on standard output. Some twenty minutes; it measures CPU time, so nothing else should run meanwhile.
+// The cost and quality of an encoder's settings (h264, vp9 or av1) on six films of pendulums: the table
+// docs/encoders.csv, on standard output. Takes about 20 minutes; it measures CPU time, so run nothing else meanwhile.
 //     encoders [CODEC]
 
 #include "bench/encoders/encoder_quality.hpp"
@@ -14,11 +14,11 @@
 namespace doppel {
 namespace {
 
-constexpr std::array qualities{15, 18, 21};  // crf; the one compared with in the middle
+constexpr std::array qualities{15, 18, 21};  // crf; the middle one is the reference
 constexpr double from_s = 5;
 constexpr long count = 48;            // frames of each film
-constexpr int repeats = 2;            // of each encoding, in turn with the others; the least CPU time counts
-constexpr double key_interval_s = 5;  // how often a frame is whole: as in "doppel", and nearly so in x264's presets
+constexpr int repeats = 2;            // of each encoding, alternating with the others; the minimum CPU time counts
+constexpr double key_interval_s = 5;  // between key frames: as in "doppel", and almost as in x264's presets
 
 struct FilmToEncode {
     const char* name;
@@ -58,7 +58,7 @@ RecordedFrames record(const Scene& scene) {
     return recorded;
 }
 
-/// Bytes a frame of a long film: of what was encoded only the first frame is whole.
+/// Bytes per frame of a long film: in the encoded part, only the first frame is a key frame.
 double bytes_per_frame(const EncodingCost& cost, double fps) {
     const double whole = 1 / (key_interval_s * fps);
     const auto first = static_cast<double>(cost.first_bytes), others = static_cast<double>(cost.bytes) - first;
@@ -67,11 +67,11 @@ double bytes_per_frame(const EncodingCost& cost, double fps) {
 
 /// A setting on a film, at each quality.
 std::vector<EncodedRow> rows_of(const RecordedFrames& recorded, VideoOptions options, const EncoderSetting& setting) {
-    const auto finite = [](double psnr_db) { return std::min(psnr_db, 100.0); };  // more than any difference has
+    const auto finite = [](double psnr_db) { return std::min(psnr_db, 100.0); };  // above any value with a difference
     std::vector<EncodedRow> rows;
     options.preset = setting.preset;
     for (const int crf : qualities) {
-        options.crf = setting.codec == "h264" ? crf : 2 * crf;  // of VP9 and AV1 up to 63
+        options.crf = setting.codec == "h264" ? crf : 2 * crf;  // VP9 and AV1 go up to 63
         const auto encoded = try_encoding(recorded, options, changes_of(setting, options.crf));
         rows.push_back({static_cast<double>(options.crf), 1e3 * encoded.cpu_s / count,
                         bytes_per_frame(encoded, static_cast<double>(options.fps_numerator) / options.fps_denominator),

@@ -21,7 +21,7 @@ namespace {
 
 using Packets = std::vector<Libav<AVPacket>>;
 
-/// A sum over part of a picture, and over how much of it.
+/// A sum over a part of a picture, and the size of that part.
 struct Mean {
     double sum = 0, count = 0;
     void add(double value, double weight) {
@@ -31,12 +31,12 @@ struct Mean {
     double value() const { return count == 0 ? std::numeric_limits<double>::quiet_NaN() : sum / count; }
 };
 
-/// Squared errors and similarities of whole pictures and of what moves.
+/// Squared errors and similarities of whole pictures and of their moving parts.
 struct Comparison {
     Mean whole_error, moving_error, whole_ssim, moving_ssim;
 };
 
-/// The macroblocks of a picture, row by row.
+/// The macroblocks of a picture, row by row, and which of them move.
 struct Blocks {
     static constexpr int side = 16;  // px
     explicit Blocks(Size size) : across((size.width + side - 1) / side), down((size.height + side - 1) / side) {
@@ -80,7 +80,7 @@ double squared_error(const AVFrame& a, const AVFrame& b, const Rect& area) {
     return static_cast<double>(sum);
 }
 
-/// Of 8×8 px from there on.
+/// Structural similarity of the 8×8 px whose corner is at (left, top).
 double similarity(const AVFrame& a, const AVFrame& b, int left, int top) {
     int sum_p = 0, sum_q = 0, squares = 0, products = 0;
     for (int y = 0; y < 8; ++y) {
@@ -165,7 +165,7 @@ Libav<AVCodecContext> open_decoder(const AVCodecContext& encoder) {
 /// Decodes the packets and compares frame by frame.
 Comparison decode(const Packets& packets, const AVCodecContext& encoder, const RecordedFrames& recorded,
                   const std::atomic<bool>& stop) {
-    constexpr std::size_t ssim_every = 7;  // frames: in turn of every place between two that B-frames lie between
+    constexpr std::size_t ssim_every = 7;  // frames: alternates between all positions among the B-frames
     const auto decoder = open_decoder(encoder);
     const auto blocks = moving_blocks(recorded);
     const auto shown = make_frame(recorded.size, encoder.pix_fmt);
@@ -195,20 +195,20 @@ void replace(Metadata& options, const Metadata& replaced) {
         if (found == options.end())
             options.emplace_back(key, value);
         else if (key == "x264-params")
-            found->second += ":" + value;  // of two x264 takes the later
+            found->second += ":" + value;  // x264 uses the later of two values
         else
             found->second = value;
     }
 }
 
-/// What comes of encoding, to be decoded.
+/// The result of encoding, before decoding.
 struct Encoded {
     EncodingCost cost;
     Libav<AVCodecContext> encoder;
     Packets packets;
 };
 
-/// With the second stream in which VP9 has opacity.
+/// Includes the second stream, in which VP9 stores opacity.
 std::size_t bytes_of(const AVPacket& packet) {
     std::size_t opacity = 0;
     av_packet_get_side_data(&packet, AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL, &opacity);

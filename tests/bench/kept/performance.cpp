@@ -12,7 +12,7 @@
 namespace doppel {
 namespace {
 
-/// At a part from 0 to 1 of sorted numbers, between neighbours in proportion.
+/// The quantile `part`, from 0 to 1, of sorted numbers, with linear interpolation.
 double quantile(const std::vector<double>& sorted, double part) {
     const double at = part * static_cast<double>(sorted.size() - 1);
     const auto below = static_cast<std::size_t>(at);
@@ -28,7 +28,7 @@ std::vector<double> sorted(const std::vector<Round>& rounds, Value value) {
     return all;
 }
 
-/// With four digits: more is noise, and every run would change every line.
+/// Rounds to four digits: more digits are noise, and would change every line in every run.
 double rounded(double x) {
     return x == 0 || !std::isfinite(x) ? 0 : std::stod(fmt::format("{:.4g}", x));
 }

@@ -7,45 +7,45 @@
 
 namespace doppel {
 
-/// What one benchmark took, in the middle (median) of its rounds.
+/// The result of one benchmark: the median of its rounds.
 struct Measured {
-    double ns = 0;      // an iteration; of a benchmark that says so the wall's time, else CPU time
-    double spread = 0;  // half of the rounds are within so much of it, relative
-    double ratio = 0;   // to the reference loop just before and after, which makes machines comparable
+    double ns = 0;      // per iteration; CPU time, or elapsed time if the benchmark requests it
+    double spread = 0;  // relative deviation that half of the rounds do not exceed
+    double ratio = 0;   // to the reference loop just before and after: makes machines comparable
     int rounds = 0;
     std::map<std::string, double> counters;
 };
 
-/// What docs/performance.json keeps.
+/// The contents of docs/performance.json.
 struct Performance {
     std::string machine, system, compiler, date;
     double reference_ns = 0, reference_spread = 0;  // of the reference loop, over all rounds
     std::map<std::string, Measured> benchmarks;
 };
 
-/// Of rounds that each took `ns` and `ratio`: the medians and the spread. At least one.
+/// The time and ratio of one round; summary() returns medians and spread of at least one round.
 struct Round {
     double ns, ratio;
 };
 Measured summary(const std::vector<Round>& rounds);
 
-/// Throw Error: exit 4 where the file cannot be read or written, exit 2 where it is none of these.
+/// Throw Error: exit 4 if the file cannot be read or written, exit 2 if its content is invalid.
 Performance read_performance(const std::filesystem::path& path);
 void write_performance(const std::filesystem::path& path, const Performance& all);
 std::string read_page(const std::filesystem::path& path);
 void write_page(const std::filesystem::path& path, const std::string& text);
 
-/// The page with what stands between the lines `<!-- measured: NAME -->` and `<!-- end of NAME -->` made anew, for each
-/// table. Throws Error (exit 2) for a table without its marks, or of which a benchmark is missing.
+/// The page with new text between the lines `<!-- measured: NAME -->` and `<!-- end of NAME -->` of each
+/// table. Throws Error (exit 2) for a table without these lines, or if one of its benchmarks is missing.
 std::string with_tables(const std::string& page, const Performance& all);
 
-/// A benchmark that takes longer than it did, by its ratio to the reference loop.
+/// A benchmark that is slower than before, by its ratio to the reference loop.
 struct Fall {
     std::string name;
     double before, now;
 };
-/// Those by more than `most` of the speed: 0.15 where a benchmark has less than 0.85 of the kept one's. What only one
-/// of both has is left out.
+/// Benchmarks that lost more than `maximum` of their speed: 0.15 means less than 0.85 of the stored speed. Benchmarks
+/// that only one of the two has are ignored.
 std::vector<Fall> falls(const Performance& kept, const Performance& now, double maximum);
 
 }  // namespace doppel

@@ -6,18 +6,18 @@
 #include <utility>
 #include <vector>
 
-// The tables of docs/performance.md. What a table says stands here; its numbers come from the kept file alone.
+// The tables of docs/performance.md. Their text is here; their numbers come from the stored file alone.
 
 namespace doppel {
 namespace {
 
-/// With two digits, or all before the point.
+/// Rounds to two digits, or to a whole number if that has more digits.
 std::string two_digits(double x) {
     if (x >= 9.95) return fmt::format("{:.0f}", x);
     return x >= 0.995 ? fmt::format("{:.1f}", x) : fmt::format("{:.2g}", x);
 }
 
-/// The kept file as its tables ask it.
+/// Access to the stored file for the tables.
 class Kept {
 public:
     explicit Kept(const Performance& all) : all_(all) {}
@@ -30,7 +30,7 @@ public:
         if (at == counters.end()) throw bad_input("docs/performance.json: {} has no \"{}\"", name, which);
         return at->second;
     }
-    /// The doubles to a register of the processor it was measured on.
+    /// The widths of the processor's registers in doubles.
     std::set<int> widths() const {
         std::set<int> all;
         const std::string start = "lanes/euler/angles_2/width_";
@@ -168,7 +168,7 @@ std::string accuracy(const Kept& kept) {
     return table(rows);
 }
 
-/// Of what was measured with --build.
+/// The table of the measurements with --build.
 std::string building(const Kept& kept) {
     std::vector<Cells> rows{{"", "CPU time, s", "time, s"}};
     for (const auto& [words, name] : {std::pair("a clean build of the program", "building/program"),

@@ -11,13 +11,13 @@
 
 namespace doppel {
 
-/// What the solvers of all libraries have in common: a chain in angles, from its release over `seconds` in one
-/// advance(); each further one begins at the release again.
+/// The common part of the solvers of all libraries: a chain in angles, from its release over `seconds` in one
+/// advance(); each further call starts at the release again.
 template <int N>
 class ChainSolver : public Motion {
 public:
-    static constexpr long max_steps = 2'000'000;  // then a method has given up
-    static constexpr double first_step = 0.01;    // s, for libraries that want to be told
+    static constexpr long max_steps = 2'000'000;  // above this number, a method has failed
+    static constexpr double first_step = 0.01;    // s, for libraries that require it
 
     using State = std::conditional_t<N == Eigen::Dynamic, std::vector<double>,
                                      std::array<double, static_cast<std::size_t>(N == Eigen::Dynamic ? 0 : 2 * N)>>;
@@ -50,10 +50,10 @@ public:
     Effort effort() const final { return {.steps = steps_, .evaluations = rate_.evaluations}; }
 
 protected:
-    /// y ← the state at the end; counts steps.
+    /// Sets y to the state at the end; counts steps.
     virtual void integrate() = 0;
 
-    /// The right-hand side as libraries in C take it.
+    /// The right-hand side in the form of C libraries.
     static int slope(double /*t*/, const double* y, double* dydt, void* rate) {
         (*static_cast<ChainRate<N>*>(rate))(y, dydt);
         return 0;

@@ -7,7 +7,7 @@
 namespace doppel {
 namespace {
 
-/// Any stepper of gsl_odeiv2 under its driver.
+/// Any stepper of gsl_odeiv2 with its driver.
 template <int N>
 class GslSolver final : public ChainSolver<N> {
 public:
@@ -38,7 +38,7 @@ private:
 }  // namespace
 
 std::vector<ExternalMethod> gsl_peers() {
-    gsl_set_error_handler_off();  // it would end the program
+    gsl_set_error_handler_off();  // it would stop the program
     return {peer_of<GslSolver>("GSL rk8pd", true, 1e-14, 1e-1, gsl_odeiv2_step_rk8pd),
             peer_of<GslSolver>("GSL rkf45", true, 1e-13, 1e-1, gsl_odeiv2_step_rkf45),
             peer_of<GslSolver>("GSL msadams", true, 1e-14, 1e-1, gsl_odeiv2_step_msadams)};

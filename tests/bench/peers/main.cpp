@@ -15,7 +15,7 @@
 namespace doppel {
 namespace {
 
-/// The processor as it calls itself, and the month: without them, times mean nothing.
+/// The processor's name and the month: times have no meaning without them.
 std::string where_and_when() {
     std::ifstream about("/proc/cpuinfo");
     const std::string key = "model name";
@@ -31,7 +31,7 @@ std::string where_and_when() {
     return fmt::format("{}, {:%B %Y}", processor, fmt::localtime(std::time(nullptr)));
 }
 
-/// A chart of work against precision like that of `doppel figure`, but of the methods of other libraries.
+/// A work-precision chart like that of `doppel figure`, but of the methods of other libraries.
 void make_figure(const RunCommandOptions& options) {
     const auto peers = all_peers();
     std::vector<FigurePreset> figures{read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};

@@ -15,7 +15,7 @@ auto system_of(ChainRate<N>& rate) {
     return [&rate](const auto& y, auto& dydt, double /*t*/) { rate(y.data(), dydt.data()); };
 }
 
-/// A stepper that chooses its steps.
+/// An adaptive stepper.
 template <int N, class Stepper>
 class ControlledSolver : public ChainSolver<N> {
 public:
@@ -23,7 +23,7 @@ public:
         : ChainSolver<N>(chain, seconds), stepper_(stepper) {
         auto y = this->y_;
         double t = 0, step = this->first_step;
-        stepper_.try_step(system_of(this->rate_), y, t, step);  // its first step allocates
+        stepper_.try_step(system_of(this->rate_), y, t, step);  // its first step allocates memory
     }
 
 private:
@@ -64,7 +64,7 @@ struct OfPair {
     };
 };
 
-/// Extrapolation of the modified midpoint rule; chooses its order as well.
+/// Extrapolation of the modified midpoint rule; also adapts its order.
 template <int N>
 struct BulirschStoer final : ControlledSolver<N, odeint::bulirsch_stoer<StateOf<N>>> {
     BulirschStoer(const Pendulum<double>& chain, double seconds, double tolerance)
@@ -72,8 +72,8 @@ struct BulirschStoer final : ControlledSolver<N, odeint::bulirsch_stoer<StateOf<
               chain, seconds, odeint::bulirsch_stoer<StateOf<N>>(tolerance, tolerance)) {}
 };
 
-/// Eight slopes of the past; the first seven steps are taken by Fehlberg's method, of nearly the same order, where the
-/// library's own choice would be of order 4.
+/// Adams method with the last eight slopes. Fehlberg's method, of almost the same order, makes the first seven steps;
+/// the library's default would have order 4.
 template <int N>
 class AdamsBashforthMoulton final : public ChainSolver<N> {
 public:

@@ -6,13 +6,13 @@
 
 namespace doppel {
 
-// One file each.
+// Each in its own file.
 std::vector<ExternalMethod> odeint_peers();    // Boost.odeint
 std::vector<ExternalMethod> gsl_peers();       // GNU Scientific Library, gsl_odeiv2
 std::vector<ExternalMethod> sundials_peers();  // SUNDIALS: CVODE and ARKODE
 
-/// The methods of other libraries that speed and accuracy are compared with, each set up as its documentation
-/// recommends: one tolerance, absolute and relative alike, or one step.
+/// The methods of other libraries in the comparison of speed and accuracy, each set up as its documentation
+/// recommends: one tolerance, both absolute and relative, or one step.
 inline std::vector<ExternalMethod> all_peers() {
     auto all = odeint_peers();
     for (const auto& more : {gsl_peers(), sundials_peers()}) all.insert(all.end(), more.begin(), more.end());

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-// The methods of other libraries solve the same problem as ours, and do so as the comparison promises: every run the
-// same, nothing allocated, every evaluation counted.
+// The methods of other libraries solve the same problem as ours, and meet the conditions of the comparison: identical
+// runs, no allocations, and every evaluation counted.
 
 namespace doppel {
 namespace {
@@ -26,7 +26,7 @@ const std::vector<Problem>& problems() {
     return all;
 }
 
-/// Every number of the state at the end, by the Taylor method.
+/// All numbers of the state at the end, by the Taylor method.
 std::vector<double> truth(const Problem& problem) {
     using Chain = AngleChain<double, Eigen::Dynamic>;
     Chain chain(problem.chain);
@@ -37,7 +37,7 @@ std::vector<double> truth(const Problem& problem) {
 
 const std::atomic<bool> never = false;
 
-/// Angles, then their rates.
+/// Angles, then rates.
 std::vector<double> state_of(const Motion& motion) {
     std::vector<double> state;
     const auto seen = motion.observe();
@@ -62,7 +62,7 @@ ExternalMethod peer_named(std::string_view name) {
     throw bad_input("there is no peer {}", name);
 }
 
-/// The least error on the way down the study, as soon as it is within `wanted`.
+/// The error for decreasing settings, until it is below `wanted`; otherwise the smallest one.
 double converged(const ExternalMethod& peer, const Problem& problem, double wanted) {
     const auto exact = truth(problem);
     double minimum = pi;
@@ -102,7 +102,7 @@ TEST(Peers, RepeatARunToTheBitWithoutAllocating) {
             EXPECT_GT(evaluations, steps) << peer.name;
             const long before = allocations();
             solver->advance(never);
-            const bool allocates = peer.name == "odeint bulirsch_stoer";  // try_step() makes two vectors each time
+            const bool allocates = peer.name == "odeint bulirsch_stoer";  // try_step() allocates two vectors each time
             EXPECT_TRUE(allocates || allocations() == before) << peer.name;
             EXPECT_EQ(state_of(*solver), first) << peer.name;
             EXPECT_EQ(solver->effort().evaluations, evaluations) << peer.name;
@@ -111,7 +111,7 @@ TEST(Peers, RepeatARunToTheBitWithoutAllocating) {
 }
 
 TEST(Peers, CountWhatTheyAskFor) {
-    // stages of the pair times steps, and of some that were refused: at most 5, measured
+    // the stages of the pair times the steps, plus some rejected steps: at most 5, measured
     const auto& problem = problems()[1];
     for (const auto& [name, stages] : {std::pair("odeint rkf78", 13), {"odeint dopri5", 6}, {"GSL rkf45", 6}}) {
         const auto solver = peer_named(name).make(problem.chain, 1, 1e-6);
@@ -134,7 +134,7 @@ TEST(Peers, ReportWhereTheyFail) {
     }
 }
 
-/// The slopes of `p` by its own right-hand side against those in quad.
+/// The error of the right-hand side of `p` against quad.
 template <int N>
 double rate_error(const Pendulum<double>& p) {
     using Exact = AngleChain<Quad, Eigen::Dynamic>;

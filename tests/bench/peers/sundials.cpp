@@ -9,7 +9,7 @@
 namespace doppel {
 namespace {
 
-/// Frees what SUNDIALS made by a function of its own.
+/// Frees an object of SUNDIALS with its own function.
 template <auto free>
 struct Freed {
     template <class Pointer>
@@ -29,7 +29,7 @@ void check(int error, const char* what) {
     if (error < 0) throw method_failed("sundials: {} answers {}", what, error);
 }
 
-/// The context and the vector that every solver of SUNDIALS needs.
+/// The context and the vector of every SUNDIALS solver.
 template <int N>
 class SundialsSolver : public ChainSolver<N> {
 public:
@@ -50,7 +50,7 @@ protected:
     std::unique_ptr<std::remove_pointer_t<N_Vector>, Freed<N_VDestroy>> vector_;  // the numbers of y_
 };
 
-/// CVODE: Adams methods of orders 1 to 12, the corrector iterated as a fixed point.
+/// CVODE: Adams methods of orders 1 to 12 with fixed-point iteration of the corrector.
 template <int N>
 class Cvode final : public SundialsSolver<N> {
 public:
@@ -79,7 +79,7 @@ private:
     std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, Freed<SUNNonlinSolFree>> iteration_;
 };
 
-/// ARKODE: the explicit pair of order 8 that it uses where it is asked for that order, Fehlberg's 8(7) in 13 stages.
+/// ARKODE: its default explicit pair of order 8, Fehlberg's 8(7) in 13 stages.
 template <int N>
 class Arkode final : public SundialsSolver<N> {
 public:
@@ -99,7 +99,7 @@ private:
         double t = 0;
         void* const arkode = memory_.get();
         check(ERKStepReInit(arkode, this->slope, 0, this->vector_.get()), "ERKStepReInit");
-        // exactly there: what it interpolates with is of order 5, and errs seven times as much at 1e-13 on P1
+        // exactly at the end: its interpolation has order 5, and seven times the error at 1e-13 on P1
         check(ERKStepSetStopTime(arkode, this->seconds_), "ERKStepSetStopTime");
         check(ERKStepEvolve(arkode, this->seconds_, this->vector_.get(), &t, ARK_NORMAL), "ERKStepEvolve");
         check(ERKStepGetNumSteps(arkode, &this->steps_), "ERKStepGetNumSteps");
