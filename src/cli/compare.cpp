@@ -31,20 +31,20 @@ fs::path folder_in(const fs::path& out) {
     return out / "compare";
 }
 
-/// Of the picture of that name.
+/// The name of the difference picture of `actual`.
 std::string difference_name(const fs::path& actual) {
     return actual.stem().string() + ".diff.png";
 }
 
-constexpr const char* maker = "Doppel compare";  // of every difference picture
+constexpr const char* maker = "Doppel compare";  // in the metadata of every difference picture
 
-/// What an earlier comparison left, and it alone, is removed beside a picture that passes.
+/// Removes an earlier difference picture of a picture that passes, and no other file.
 void remove_difference(const fs::path& folder, const std::string& name) {
     if (std::error_code ignored; made_by(folder / name, maker)) fs::remove(folder / name, ignored);
 }
 
-/// Compares one pair, and where it differs says why and writes the difference picture. Throws Error (exit 2, 4) where
-/// one cannot be read.
+/// Compares one pair. If it differs, stores the reason and writes the difference picture. Throws Error (exit 2, 4) if
+/// a picture cannot be read.
 void compare_pair(ComparedPicture& pair, const fs::path& out) {
     const auto expected = read_png(pair.expected), actual = read_png(pair.actual);
     pair.size = expected.size, pair.actual_size = actual.size;
@@ -69,8 +69,8 @@ void compare_pair(ComparedPicture& pair, const fs::path& out) {
                                expected_path, pair.verdict.why, files.front().string());
 }
 
-/// The same, timed. One that cannot be read is the error `first_fault`, if it is
-/// the first.
+/// Like compare_pair(), with the time. Stores the error of an unreadable picture in `first_fault` if it
+/// is the first.
 ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optional<Error>& first_fault) {
     const double start = seconds_of(CLOCK_MONOTONIC);
     try {
@@ -91,7 +91,7 @@ std::set<std::string> png_names(const fs::path& folder) {
     return names;
 }
 
-/// Every picture that either folder has. One that cannot be compared does not keep the others from it.
+/// Compares every picture in either folder. An unreadable picture does not stop the comparison.
 void compare_folders(Comparison& comparison, const fs::path& out, std::optional<Error>& first_fault) {
     const fs::path expected = comparison.expected, actual = comparison.actual;
     const auto wanted = png_names(expected), found = png_names(actual);
@@ -112,15 +112,15 @@ void compare_folders(Comparison& comparison, const fs::path& out, std::optional<
     print_line("{}", comparison.summary());
 }
 
-/// A report that was asked for: its place is taken before the work, so that one that cannot be is said at once.
-/// `start` = what such a report begins with, by which an older one is known.
+/// A requested report. Reserves its path before the work, so that an error is reported at once.
+/// `start`: the first bytes of such a report, which identify an older one.
 std::optional<SingleFile> place_of_report(const std::string& file, std::string_view start) {
     if (file.empty()) return std::nullopt;
     if (!fs::path(file).has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
     return std::optional<SingleFile>(std::in_place, file, start);
 }
 
-/// True if all pass. Throws Error where some could not be read, after the reports are written.
+/// Returns whether all pictures pass. Throws Error if some could not be read, after writing the reports.
 bool compare(const CompareOptions& options) {
     std::error_code fault;
     for (const auto& path : {options.expected, options.actual})

@@ -19,7 +19,7 @@ namespace doppel {
 
 namespace {
 
-/// What a picture that does not pass has within its test case.
+/// The element of a picture that does not pass, inside its test case.
 std::string fault(const ComparedPicture& picture) {
     const auto& verdict = picture.verdict;
     const auto element = [&](std::string_view tag, std::string_view type, const std::string& more) {
@@ -67,7 +67,7 @@ void write_junit(const std::filesystem::path& place, const Comparison& compariso
 
 namespace {
 
-constexpr std::size_t max_bytes = 100'000'000;  // that a browser opens with ease
+constexpr std::size_t max_bytes = 100'000'000;  // a size that browsers open easily
 
 std::string heading(const Comparison& comparison) {
     const auto all = comparison.pictures.size();
@@ -78,7 +78,7 @@ std::string heading(const Comparison& comparison) {
     return comparison.summary() + (unreadable > 0 ? fmt::format(", {} could not be compared", unreadable) : "");
 }
 
-/// What is told of all pictures together.
+/// The summary of all pictures.
 std::string header(const Comparison& comparison) {
     std::string counts;
     const auto count = [&](Match match, std::string_view kind, std::string_view words) {
@@ -95,7 +95,7 @@ std::string header(const Comparison& comparison) {
         markup(heading(comparison)), counts, markup(comparison.expected), markup(comparison.actual));
 }
 
-/// Links to the pictures that differ, where there are several.
+/// Links to the pictures that differ, if there are several.
 std::string contents(const Comparison& comparison) {
     if (comparison.count(Match::differs) < 2) return {};
     std::string links;
@@ -105,7 +105,7 @@ std::string contents(const Comparison& comparison) {
     return "<nav aria-label=\"Pictures that differ\"><ul>\n" + links + "</ul></nav>\n";
 }
 
-/// The numbers, and the rules that are broken.
+/// The values, and the rules that they violate.
 std::string reasons(const ComparedPicture& picture) {
     const auto& [size, actual] = std::pair(picture.size, picture.actual_size);
     if (size != actual)
@@ -129,12 +129,12 @@ std::string figure(std::string_view kind, std::string_view caption, const Compar
         kind, caption, markup(picture.name), size.width, size.height, url);
 }
 
-/// Of the very bytes of a file.
+/// A data URL with the unchanged bytes of a file.
 std::string url_of(const std::filesystem::path& png) {
     return data_url("image/png", read_whole_file(png, {"a picture is a PNG", max_bytes}));
 }
 
-/// A picture that differs; `shown` with its pixels.
+/// A picture that differs; its pixels are included if `shown`.
 std::string section(const ComparedPicture& picture, std::size_t number, bool shown) {
     const auto [width, height] = picture.size;
     const bool same_size = picture.size == picture.actual_size;
@@ -158,7 +158,7 @@ std::string section(const ComparedPicture& picture, std::size_t number, bool sho
                       markup(picture.name));
 }
 
-/// Pictures without pixels to show: those that cannot be compared, with the reason, or those that pass.
+/// Pictures without pixels: those that cannot be compared, with the reason, or those that pass.
 std::string list(const Comparison& comparison, bool passing) {
     std::string items;
     for (const auto& picture : comparison.pictures) {

@@ -14,34 +14,34 @@ enum class Match { passes, differs, missing, unreadable };
 
 /// One picture of a golden comparison.
 struct ComparedPicture {
-    std::string name;  // of the file, without its folder
+    std::string name;  // file name without its folder
     std::filesystem::path expected, actual;
     Match match = Match::passes;
-    std::string message;    // what the program says of it; empty where it passes
-    GoldenVerdict verdict;  // where both could be read and have one size
+    std::string message;    // the program's message; empty if the picture passes
+    GoldenVerdict verdict;  // valid if both could be read and have the same size
     Size size, actual_size;
-    double seconds = 0;  // that the comparison took
+    double seconds = 0;  // duration of the comparison
 };
 
 struct Comparison {
-    std::string expected, actual;  // as they were given: two pictures or two folders
+    std::string expected, actual;  // as the user gave them: two pictures or two folders
     std::vector<ComparedPicture> pictures;
 
     long count(Match match) const;
-    /// "2 of 12 pictures differ": those that are missing too.
+    /// "2 of 12 pictures differ"; counts missing pictures, too.
     std::string summary() const;
 };
 
-/// What the report begins with.
+/// The start of the report.
 inline constexpr std::string_view junit_start = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- Doppel compare -->";
 
-/// JUnit's XML, as test servers read it: a test case a picture; a picture that differs or is missing is a failure, one
-/// that cannot be read an error. Throws Error (exit 4) where it cannot be written.
+/// JUnit XML for test servers: one test case per picture. A picture that differs or is missing is a failure, one
+/// that cannot be read is an error. Throws Error (exit 4) if the file cannot be written.
 void write_junit(const std::filesystem::path& place, const Comparison& comparison);
 
-/// One page of HTML that needs nothing else: the summary, and every picture that differs as expected, actual and
-/// difference × 16, with a slider between the first two. Of a page over 100 MB the rest is named, not shown. Reads the
-/// pictures that differ again, one at a time. Throws Error (exit 4).
+/// One self-contained HTML page: the summary, and each different picture as expected, actual and
+/// difference × 16, with a slider between the first two. Above 100 MB, further pictures are listed without pixels.
+/// Reads the pictures that differ again, one at a time. Throws Error (exit 4).
 void write_compare_page(const std::filesystem::path& place, const Comparison& comparison);
 
 }  // namespace doppel
