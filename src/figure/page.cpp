@@ -14,7 +14,7 @@
 namespace doppel {
 namespace {
 
-/// Of a map its cells, else what its curves show; numbers as text, of which that of no number is "nan".
+/// The cells of a map, otherwise the points of the curves, as text; NaN is "nan".
 Json panel_json(const Plot& plot, const PlotRanges& axes) {
     Json panel{{"title", plot.title}, {"x", axis_json(plot.x.label, axes.x)}, {"y", axis_json(plot.y.label, axes.y)}};
     if (axes.right) panel["right"] = axis_json(plot.right->label, *axes.right);
@@ -37,7 +37,7 @@ Json panel_json(const Plot& plot, const PlotRanges& axes) {
     return panel;
 }
 
-/// The address of the picture that is smaller: one of paths is large where it shows clouds of points.
+/// The data URL of the smaller picture: SVG is large if it shows clouds of points.
 std::string picture_url(const FigurePreset& figure, const Page& page) {
     const double width_pt = layout_of(figure.chart).width_pt;
     const auto svg = page_file(page, PictureFormat::svg, width_pt, {{"title", figure.title}});

@@ -8,12 +8,12 @@
 
 namespace doppel {
 
-/// A page (HTML) of the figure `drawn`: its picture, SVG or PNG of twice its size, whichever has fewer bytes, and the numbers of
-/// the cell or point that is pointed at. In a map or a sweep over release angles of chains of one to three ideal links, a click
-/// opens the release there in a player.
+/// A page (HTML) of the figure `drawn`: its picture, SVG or PNG of twice its size, whichever is smaller. It shows the
+/// numbers of the cell or point under the pointer. A click in a map or sweep over release angles, of chains of one to
+/// three ideal links, opens the release in a player.
 std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& theme);
 
-/// An axis as scripts read it: its label, the values `from` … `to`, and the pixels `start` … `end`.
+/// An axis for scripts: its label, the values `from` … `to`, and the pixels `start` … `end`.
 Json axis_json(const std::string& label, const Axis& axis);
 
 }  // namespace doppel

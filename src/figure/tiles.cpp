@@ -14,9 +14,9 @@
 namespace doppel {
 namespace {
 
-constexpr int tile = 256;  // pixels of a side
+constexpr int tile = 256;  // pixels per side
 
-/// A part of a picture; what lies beyond it is transparent.
+/// A rectangle of a picture; outside the picture it is transparent.
 Picture part_of(const Picture& picture, int left, int top, Size size) {
     Picture part(size);
     const int wide = std::min(size.width, picture.size.width - left);
@@ -25,7 +25,7 @@ Picture part_of(const Picture& picture, int left, int top, Size size) {
     return part;
 }
 
-/// From one that fits into a tile on, each with twice the pixels to a side of the one before.
+/// The first level fits into one tile; each further level has twice as many pixels per side.
 std::vector<Picture> levels_of(Picture cells) {
     std::vector<Picture> levels{std::move(cells)};
     while (std::max(levels[0].size.width, levels[0].size.height) > tile) {
@@ -41,7 +41,7 @@ std::string hexadecimal(Color color) {
     return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
 }
 
-/// The bar of colours from its lower end, and its numbers: [share of the bar, text].
+/// The colour bar from its lower end, and its labels: [share of the bar, text].
 Json scale_json(const HeatMap& map, const Theme& theme) {
     constexpr int stops = 64;
     MapScale scale(map);

@@ -7,12 +7,12 @@
 
 namespace doppel {
 
-/// Writes the map that `page` shows: NAME.tiles/ with a pyramid of tiles of 256 × 256 pixels, LEVEL-ROW-COLUMN.png from the
-/// top left, of level 0 one, of the last with a pixel a cell; and NAME.html to look at them, with a mouse, by touch or with
-/// keys, without a network. Returns what the manifest says of it. Throws Error: exit 4; 130 soon after `stop` is set.
+/// Writes the map that `page` shows: NAME.tiles/, a pyramid of tiles of 256 × 256 pixels, LEVEL-ROW-COLUMN.png from the
+/// top left; level 0 has one tile, the last level one pixel per cell. Also writes NAME.html, a viewer for mouse, touch
+/// and keys without network. Returns its manifest entry. Throws Error: exit 4; 130 soon after `stop` is set.
 Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
                  const std::atomic<bool>& stop);
-/// Throws Error (exit 2) where the figure is no map, or several, or its own format writes a page.
+/// Throws Error (exit 2) if the figure is not a single map, or if its own format writes a page.
 void require_map(const FigurePreset& figure);
 
 }  // namespace doppel
