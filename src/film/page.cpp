@@ -17,7 +17,7 @@
 namespace doppel {
 namespace {
 
-/// Words of so many bytes as base64 of what zlib makes of them: the lowest byte of each, then the next one of each …
+/// Words of `word_bytes` bytes, compressed by zlib, as base64: first the lowest byte of all words, then the next one …
 std::string packed(const std::vector<std::uint32_t>& words, std::size_t word_bytes) {
     std::string bytes(words.size() * word_bytes, '\0');
     for (std::size_t i = 0; i < words.size(); ++i)
@@ -26,7 +26,7 @@ std::string packed(const std::vector<std::uint32_t>& words, std::size_t word_byt
     return deflated(bytes);
 }
 
-/// Floats, each as the difference of its bits to those of the one before.
+/// Floats, each stored as the difference of its bits from the previous one.
 std::string packed_floats(const std::vector<std::vector<float>>& channels) {
     std::vector<std::uint32_t> words;
     for (const auto& numbers : channels) {
@@ -40,22 +40,22 @@ std::string packed_floats(const std::vector<std::vector<float>>& channels) {
     return packed(words, sizeof(float));
 }
 
-/// The side that a pendulum is, or is like.
+/// The side of a pendulum, or for members the side with the same layout.
 const Side& side_of(const Scene& scene, std::size_t pendulum) {
     return pendulum == 1 && scene.members.empty() ? scene.b : scene.a;
 }
 
-/// Whether the places of its bobs follow from the angles and lengths of its links.
+/// Whether the positions of its bobs follow from the angles and lengths of its links.
 bool is_by_angles(const Side& side) {
     return side.has_angles && side.motion.model == Model::angles && !side.replay;
 }
 
-/// In which its angles are embedded, rad.
+/// The step of the stored angles, rad.
 double turn_step(const Side& side, int bits) {
     return std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(side.mass.size()));
 }
 
-/// Without its data.
+/// The page without its data.
 HtmlPage player(const Scene& scene) {
     const auto file = [](std::string_view name) { return embedded_file(film_files(), name); };
     std::string body(file("film/page/player.html"));
@@ -127,8 +127,8 @@ void FilmPage::add_curves(const PairState& state) {
     }
 }
 
-/// In steps of 2^−bits of a turn (of a chain of N links √N times as much: their errors add up by chance), or of the range of all
-/// places: the second differences over time of each channel, less those of the pendulum before, near which it is at first.
+/// Positions in steps of 2^−bits of a turn (times √N for a chain of N links, as their errors add up randomly) or of the
+/// range of all positions. Stores second differences in time of each channel, less those of the previous pendulum.
 Json FilmPage::motion_json() const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     const auto is_angle = [&](std::size_t k, std::size_t channel) {
@@ -143,7 +143,7 @@ Json FilmPage::motion_json() const {
     const int bits = scene_.preset.video.position_bits;
     const std::uint32_t most = (std::uint32_t{1} << bits) - 1;
     std::vector<std::uint32_t> words;
-    std::vector<std::pair<std::size_t, std::size_t>> begins;  // of those that are like the one before; how many words
+    std::vector<std::pair<std::size_t, std::size_t>> begins;  // start and word count of pendulums like the previous one
     Json pendulums = Json::array();
     for (std::size_t k = 0; k < positions_.size(); ++k) {
         const auto& side = side_of(scene_, k);
@@ -165,7 +165,7 @@ Json FilmPage::motion_json() const {
             json["step"] = turn_step(side, bits);
         }
         pendulums.push_back(std::move(json));
-        // from the end on, so that what is taken away is what the words before were
+        // backwards below, so that the previous pendulum's words are still unchanged
         if (is_like_last) begins.emplace_back(begin, count);
     }
     for (auto at = begins.rbegin(); at != begins.rend(); ++at)
@@ -206,7 +206,7 @@ std::optional<HtmlPage> film_player(Scene scene) {
 }
 
 double estimated_page_bytes(const Scene& scene) {
-    constexpr double script = 33e3, place = 1.3, number = 4;  // bytes, measured: 0.8 to 2 a place
+    constexpr double script = 33e3, place = 1.3, number = 4;  // bytes, measured: 0.8 to 2 per position
     double places = 0, numbers = scene.preset.video.layout == Arrangement::phase ? 6 : 0;
     for (std::size_t k = 0; k < shown_motions(scene).size(); ++k)
         places += static_cast<double>(side_of(scene, k).mass.size()) * (is_by_angles(side_of(scene, k)) ? 1 : 2);

@@ -12,15 +12,15 @@
 
 namespace doppel {
 
-/// A film as one HTML file, NAME.html: the motion, what is drawn around it, and the script that plays it (film/page/).
-/// Where all pendulums are chains of one to three ideal links in angles, in double, by Euler's methods or rk4, the script
-/// computes the motion, to the last bit; else the file holds it in 16 bits a position, or more.
+/// A film as one HTML file, NAME.html: the motion, the items around it, and the script that plays it (film/page/).
+/// If all pendulums are chains of one to three ideal links in angles, in double, by Euler's methods or rk4, the script
+/// computes the same motion bit for bit. Otherwise the file contains it with 16 or more bits per position.
 class FilmPage {
 public:
-    /// `bounds` as make_layout() takes them. Adds its file to `parts`.
+    /// `bounds`: see make_layout(). Adds its file to `parts`.
     FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& parts);
 
-    /// Every sample, from 0 on; moments between them are left out.
+    /// Takes every sample from 0 on; ignores moments between samples.
     void add(const Snapshot& snapshot);
     /// Writes the file. Throws Error (exit 4).
     void finish();
@@ -39,16 +39,16 @@ private:
     Transaction& parts_;
     double start_distance_ = 0;
     long samples_ = 0;                 // added
-    std::vector<Channels> positions_;  // by pendulum
-    Channels curves_;                  // of strips, one after the other, and of a phase panel
+    std::vector<Channels> positions_;  // one entry per pendulum
+    Channels curves_;                  // of all strips, then of a phase panel
 };
 
-/// The player of a scene's chains of one to three ideal links, for a page of another kind, whose data holds its own as "film":
-/// hidden until the document gets an event "release", whose detail has the angles of the release by their keys. Nothing where
-/// the scene has other pendulums.
+/// The player of a scene's chains of one to three ideal links for another kind of page, whose data contains its data as
+/// "film". It is hidden until the document gets an event "release", whose detail has the release angles by their keys.
+/// nullopt if the scene has other pendulums.
 std::optional<HtmlPage> film_player(Scene scene);
 
-/// About how many bytes the page of a scene has.
+/// The approximate size in bytes of a scene's page.
 double estimated_page_bytes(const Scene& scene);
 
 }  // namespace doppel

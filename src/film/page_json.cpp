@@ -12,9 +12,9 @@
 namespace doppel {
 namespace {
 
-constexpr std::size_t most_links = 3;  // of chain.js
+constexpr std::size_t most_links = 3;  // in chain.js
 
-/// To 1/100 px.
+/// Rounds to 1/100 px.
 double rounded(double length) {
     return std::round(100 * length) / 100;
 }
@@ -37,7 +37,7 @@ Json json_of(const Axis& axis) {
     return {axis.low, axis.high, rounded(axis.from), rounded(axis.to), axis.logarithmic};
 }
 
-/// What is drawn, each with a letter for its kind.
+/// The JSON of an item, which begins with a letter for its kind.
 struct ItemJson {
     const Typeface& type;
 
@@ -56,7 +56,7 @@ struct ItemJson {
     Json operator()(const Ring& ring) const {
         return {"r", json_of(ring.center), rounded(ring.radius), rounded(ring.width), json_of(ring.color)};
     }
-    Json operator()(const Stroke&) const { return nullptr; }  // in no backdrop
+    Json operator()(const Stroke&) const { return nullptr; }  // no backdrop contains one
     Json operator()(const Label& words) const {
         return {"t",
                 words.text,
@@ -76,7 +76,7 @@ Json items_json(const Items& items, const Typeface& type) {
     return list;
 }
 
-/// A strip: its axes, what never changes in it, and where its value stands, where it has one.
+/// A strip: its axes, its constant items, and the position of its value if it has one.
 Json strip_json(const FilmState& state, std::size_t index, double start_distance) {
     const auto& [scene, layout] = std::pair<const Scene&, const Layout&>(state.scene, state.layout);
     const auto& strip = layout.strips[index];
@@ -150,7 +150,7 @@ Json end_json(const End<double>& end) {
     return {place[0], place[1]};
 }
 
-/// A pendulum as it is drawn: its masses, its lines, and the chain that it is.
+/// A pendulum's masses, lines and chain.
 Json body_json(const MotionSpec& motion, const Side& side, const std::vector<double>& masses, const Color& color) {
     Json lines = Json::array();
     for (const auto& line : side.lines)
@@ -158,7 +158,7 @@ Json body_json(const MotionSpec& motion, const Side& side, const std::vector<dou
     return {{"mass", masses}, {"color", json_of(color)}, {"lines", lines}, {"chain", chain_json(motion)}};
 }
 
-/// The speed over time: [time, s; seconds of motion a second of film; what the film says of it].
+/// The speed over time: [time, s; seconds of motion per second of film; the film's text].
 Json speed_json(const Scene& scene) {
     const auto& video = scene.preset.video;
     if (!video.speed.changes_over_time()) return {{0, video.speed.constant.value(), speed_text(scene, 0)}};

@@ -9,19 +9,19 @@
 
 namespace doppel {
 
-/// What the page of a film draws besides its motion, for src/film/page/player.js.
+/// The page's data except its motion, for src/film/page/player.js.
 Json page_json(const Scene& scene, const MotionBounds& bounds);
 
-/// The ideal chain that a motion is of, where it has one to three links: its numbers in double, and where
-/// src/film/page/chain.js computes it to the last bit, its method and steps. null for any other motion.
+/// The numbers in double of a motion's ideal chain of one to three links. Includes its method and steps if
+/// src/film/page/chain.js computes the motion bit for bit. null for any other motion.
 Json chain_json(const MotionSpec& motion);
 
-/// The motions that a film shows: those of its members, or of its sides.
+/// The motions in a film: those of its members, or of its sides.
 std::vector<const MotionSpec*> shown_motions(const Scene& scene);
 
-/// Whether the page computes all of them.
+/// Whether the page computes all of these motions.
 bool page_computes(const Scene& scene);
-/// Whether the script finds the curves of a strip from the states of ideal chains.
+/// Whether the script computes the curves of a strip from the states of ideal chains.
 bool page_computes(StripKind kind);
 
 }  // namespace doppel
