@@ -17,7 +17,7 @@ extern "C" {
 namespace doppel {
 namespace {
 
-/// An element of style or script; `sources` of the policy get the hash of what is in it.
+/// A style or script element; appends the hash of its contents to the policy's `sources`.
 std::string element(std::string_view tag, std::string_view contents, std::string& sources) {
     if (contents.empty()) return {};
     const auto lines = fmt::format("\n{}", contents);
@@ -31,7 +31,7 @@ std::string base64(std::string_view bytes) {
     std::string text(AV_BASE64_SIZE(bytes.size()), '\0');
     av_base64_encode(text.data(), static_cast<int>(text.size()), reinterpret_cast<const std::uint8_t*>(bytes.data()),
                      static_cast<int>(bytes.size()));
-    text.pop_back();  // the zero at its end
+    text.pop_back();  // the terminating zero
     return text;
 }
 

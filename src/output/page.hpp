@@ -8,29 +8,29 @@
 
 namespace doppel {
 
-/// A page of HTML in one file, beside the style that all pages share.
+/// An HTML page in one file, with the style that all pages share.
 struct HtmlPage {
-    std::string_view kind;                  // "film", "figure", "tiles", "compare": of the comment in its second line
+    std::string_view kind;                  // "film", "figure", "tiles", "compare": in the comment in its second line
     std::string title;                      // plain text
-    std::string body;                       // markup, without style attributes and inline handlers: they do not work
+    std::string body;                       // markup; the policy blocks style attributes and inline handlers
     std::vector<std::string_view> styles;   // CSS of this kind of page
-    std::vector<std::string_view> scripts;  // JavaScript, run in this order; what is empty is left out
-    nlohmann::ordered_json data = nullptr;  // what scripts read, of #data; null: none
-    bool is_packed = false;                 // scripts and data stand compressed in the page, which the browser unpacks
-    bool has_pictures_beside = false;       // files in folders beside it; else all pictures are data: addresses
+    std::vector<std::string_view> scripts;  // JavaScript, run in this order; empty ones are omitted
+    nlohmann::ordered_json data = nullptr;  // the scripts read it from #data; null: none
+    bool is_packed = false;                 // scripts and data are compressed; the browser unpacks them
+    bool has_pictures_beside = false;       // reads files in folders beside it; otherwise all pictures are data URLs
 };
 
-/// The page. Its Content-Security-Policy allows these styles and scripts (by their SHA-256), workers from blob: addresses,
-/// and no network. Texts of any letters are safe in title and data.
+/// The text of the page. Its Content-Security-Policy allows these styles and scripts (by SHA-256), workers from blob:
+/// URLs, and no network. Title and data may contain any characters.
 std::string page_text(const HtmlPage& page);
 
 std::string base64(std::string_view bytes);
-/// "data:TYPE;base64,…" of a file's bytes: the address of a picture that is in the page.
+/// "data:TYPE;base64,…" of a file's bytes: the URL of a picture inside the page.
 std::string data_url(std::string_view type, std::string_view bytes);
-/// The bytes as its data can hold them: in base64, compressed as DecompressionStream("deflate") takes them.
+/// The bytes compressed for DecompressionStream("deflate"), as base64.
 std::string deflated(std::string_view bytes);
 
-/// What a page of that kind begins with, by which Doppel recognises its files.
+/// The start of a page of that kind, by which Doppel recognises its files.
 std::string page_start(std::string_view kind);
 
 }  // namespace doppel
