@@ -2,8 +2,8 @@
 
 namespace doppel {
 
-/// How many times this process has asked for memory so far, by Eigen or by new; always 0 under sanitizers, which keep
-/// malloc to themselves.
+/// The number of memory allocations of this process to date, by Eigen or by new; always 0 under sanitizers, which
+/// replace malloc.
 long allocations();
 
 }  // namespace doppel

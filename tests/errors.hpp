@@ -9,7 +9,7 @@ namespace doppel::test {
 
 using Thrown = std::pair<ExitCode, std::string>;
 
-/// The exit code and the message of the error that `action` throws; {done, "no error"} where it throws none.
+/// The exit code and message of the error that `action` throws; {done, "no error"} if it throws none.
 template <class Action>
 Thrown thrown_by(Action&& action) {
     try {

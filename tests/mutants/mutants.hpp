@@ -1,5 +1,5 @@
-// Before every file of a tree that mutate.py changed: what its mutants are made of. A mutant is chosen at run time, by
-// DOPPEL_MUTANT=<number>; with DOPPEL_MUTANT=-1 none is, and the ones that are reached are marked in the file
+// Included before every file that mutate.py changed: the definitions of its mutants. DOPPEL_MUTANT=<number> selects a
+// mutant at run time. DOPPEL_MUTANT=-1 selects none, and marks the mutants that are reached in the file
 // DOPPEL_MUTANTS_REACHED, a byte each: 1 reached, 2 reached where no other operator would compile.
 #pragma once
 
@@ -39,7 +39,7 @@ inline void cannot_be(int id) {
 template <class A, class B>
 constexpr bool same = std::is_same_v<std::remove_cvref_t<A>, std::remove_cvref_t<B>>;
 
-/// a OP M<id>{} OP b is a OP b, or its mutant. The left operand and then the choice:
+/// a OP M<id>{} OP b is a OP b, or its mutant. Left stores the left operand until the mutant is chosen.
 template <int id>
 struct M {};
 template <class A, int op, int id>
@@ -55,7 +55,7 @@ constexpr auto either(const Is& is, const Other& other) {
     } else if constexpr (requires {
                              is().eval();
                              other().eval();
-                         }) {  // Eigen's expressions: another type each
+                         }) {  // Eigen's expressions have different types
         if constexpr (same<decltype(is().eval()), decltype(other().eval())>) {
             auto value = is().eval();
             if (chosen(id)) value = other().eval();
@@ -91,7 +91,7 @@ DOPPEL_BINARY(4, /, *)
 DOPPEL_BINARY(5, ==, !=)
 DOPPEL_BINARY(6, !=, ==)
 
-/// Of whole numbers half the mutants move the bound by one; the others, and all of floating-point numbers, turn it round.
+/// For integers, half of the mutants move the bound by one; the others, and all of floating-point numbers, reverse it.
 #define DOPPEL_COMPARE(number, op, near, opposite)                                       \
     template <class A, int id>                                                           \
     constexpr Left<A, number, id> operator op(const A& a, M<id>) {                       \
@@ -113,7 +113,7 @@ DOPPEL_COMPARE(8, <=, <, >)
 DOPPEL_COMPARE(9, >, >=, <=)
 DOPPEL_COMPARE(10, >=, >, <)
 
-/// Not<id>{} ^ b is b, or its opposite.
+/// Not<id>{} ^ b is b or its negation.
 template <int id>
 struct Not {};
 template <int id, class B>
@@ -122,7 +122,7 @@ constexpr auto operator^(Not<id>, const B& b) {
     return static_cast<bool>(b) != chosen(id);
 }
 
-/// 2x, or x + 1 of a whole number and of 0.
+/// 2x, or x + 1 for integers and for 0.
 template <int id, class T>
 constexpr T number(T x) {
     if (std::is_constant_evaluated()) return x;
