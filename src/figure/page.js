@@ -1,8 +1,8 @@
 "use strict";
-// The numbers of the cell of a map, or of the point of a curve, that is pointed at or chosen by keys.
+// Shows the numbers of the cell or the curve's point under the pointer or selected by keys.
 const figure = document.getElementById("figure"), mark = figure.querySelector("rect"), readout = figure.querySelector("output");
 let size, panels = [], release = [];  // pixels of the picture; keys of a preset
-let chosen = null, again = false;     // a place; whether the same one was pointed at before
+let chosen = null, again = false;     // a place; whether the pointer was at the same place before
 
 const numbers = text => text ? text.split(" ").map(Number) : [];
 const pixel = (axis, share) => axis.start + (axis.end - axis.start) * share;
@@ -10,7 +10,7 @@ const shareAt = (axis, px) => (px - axis.start) / (axis.end - axis.start);
 const within = share => share > -1e-6 && share < 1 + 1e-6;
 const limited = (number, count) => Math.max(0, Math.min(count - 1, number));
 
-// A place: what it says, as [label, value], and where it is, in pixels of the picture.
+// A place: its texts as [label, value], and its position in pixels of the picture.
 function cell(panel, column, row) {
   const { x, y, map } = panel;
   [column, row] = [limited(column, map.columns), limited(row, map.rows)];
@@ -58,7 +58,7 @@ function choose(place) {
     if (value === undefined) words.className = "whole";
     else readout.appendChild(document.createElement("b")).textContent = written(Number(value.toPrecision(6)));
   }
-  const beside = (px, side) => px < side / 2 ? "16px" : "calc(-100% - 16px)";  // where there is more room
+  const beside = (px, side) => px < side / 2 ? "16px" : "calc(-100% - 16px)";  // on the side with more space
   const transform = `translate(${beside(x, size[0])}, ${beside(y, size[1])})`;
   Object.assign(readout.style, { left: 100 * x / size[0] + "%", top: 100 * y / size[1] + "%", transform });
 }

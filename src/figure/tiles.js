@@ -12,7 +12,7 @@ document.getElementById("none").style.borderColor = map.scale.none;
 const canvas = document.querySelector("canvas"), g = canvas.getContext("2d"), at = document.getElementById("at");
 const margin = { left: 58, bottom: 44 };
 let width = 0, height = 0, density = 1;
-// the cell in the middle, from the top left, and pixels a cell
+// the cell in the middle, from the top left, and pixels per cell
 const view = { x: map.columns / 2, y: map.rows / 2, scale: 1 };
 
 const plotWidth = () => width - margin.left, plotHeight = () => height - margin.bottom;
@@ -21,7 +21,7 @@ const screenY = y => plotHeight() / 2 + (y - view.y) * view.scale;
 const cellX = px => view.x + (px - margin.left - plotWidth() / 2) / view.scale;
 const cellY = py => view.y + (py - plotHeight() / 2) / view.scale;
 
-// Tiles: asked for when first wanted; of many, the first go.
+// Tiles: loaded when first needed; if there are many, the oldest are removed.
 const tiles = new Map();
 function tile(name) {
   if (!tiles.has(name)) {
@@ -46,7 +46,7 @@ function drawLevel(z) {
     }
 }
 
-// Round numbers from low to high, at most `most`; of several decades powers of ten.
+// At most `most` round numbers from low to high; powers of ten for several decades.
 function ticks(axis, low, high, most) {
   low = Math.max(low, axis.from), high = Math.min(high, axis.to);
   const raw = (high - low) / Math.max(most, 1), power = 10 ** Math.floor(Math.log10(raw)), found = [];
@@ -95,7 +95,7 @@ function draw() {
     g.clearRect(0, 0, canvas.width, canvas.height);
     g.imageSmoothingEnabled = view.scale * density < 2;
     const z = Math.min(map.levels, Math.max(0, Math.ceil(map.levels + Math.log2(view.scale * density) - .2)));
-    for (const level of new Set([0, Math.max(0, z - 1), z])) drawLevel(level);  // what is coarse is there first
+    for (const level of new Set([0, Math.max(0, z - 1), z])) drawLevel(level);  // coarse tiles are loaded first
     g.scale(density, density);
     drawAxes(getComputedStyle(document.documentElement));
   });
