@@ -1,33 +1,33 @@
 #!/usr/bin/env python3
-"""What the tests notice: small faults planted by lot, and the share of them that a test catches.
+"""Mutation testing: plants small errors at random places, and measures the share that a test detects.
 
     git clone . /tmp/doppel-mutants
     tests/mutants/mutate.py plant /tmp/doppel-mutants physics integrate analysis output scene
     tests/mutants/mutate.py build /tmp/doppel-mutants
     tests/mutants/mutate.py cover /tmp/doppel-mutants     # which test reaches which mutant
-    tests/mutants/mutate.py run /tmp/doppel-mutants       # goes on where it was interrupted
+    tests/mutants/mutate.py run /tmp/doppel-mutants       # resumes an interrupted run
     tests/mutants/mutate.py report /tmp/doppel-mutants
 
-After tests were added there: build, cover, and run --again, which shows survivors what they have not been shown.
+After adding tests there: build, cover, and run --again, which runs the new tests on the survivors.
 
-All mutants stand in one program and are chosen at run time (mutants.hpp), so that one build serves all. A mutant is an
-operator exchanged (+ -, * /, a comparison), a condition turned round, a number changed, or a statement left out. It is
-caught when a test that reaches it fails, ends by a signal, or takes more than ten times as long and a minute when it runs
-alone; tests of its own module are tried first, then of those that stand on it. It runs as root (a mount of its own for what
-each test writes).
+One program contains all mutants and selects one at run time (mutants.hpp), so that one build is enough. A mutant is
+an exchanged operator (+ -, * /, a comparison), a negated condition, a changed number, or a removed statement. A test
+that reaches a mutant detects it by failing, by a signal, or by running, alone, for more than ten times its usual time
+and a minute. Tests of its own module run first, then those of dependent modules. Requires root: each test writes to
+its own mount.
 """
 import argparse, collections, concurrent.futures, json, os, pathlib, random, re, signal, subprocess, sys, time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOMS = ["base", "numeric", "physics", "integrate", "analysis", "image", "render", "plot", "output", "scene", "film", "figure",
          "cli"]
-HEADER = f'#include "{HERE}/mutants.hpp"\n#line 1\n'  # not by -include: a precompiled header must come first
+HEADER = f'#include "{HERE}/mutants.hpp"\n#line 1\n'  # not with -include: a precompiled header must come first
 
 
 # ---- planting -----------------------------------------------------------------------------------------------------
 
 def masked(text):
-    """The text with comments, strings and characters as blanks of the same length (line by line)."""
+    """The text with comments, strings and characters replaced by blanks of the same length, line by line."""
     def blank(match):
         return re.sub(r"[^\n]", "\x01", match.group(0))
     return re.sub(r'//[^\n]*|/\*.*?\*/|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-zA-Z])\'(?:\\.|[^\'\\\n])\'', blank, text,
@@ -40,7 +40,7 @@ STATEMENT = re.compile(r"^(\s+)([\w.\->\[\]()*:]+ (?:=|\+=|-=|\*=|/=) \S.*;|(?!r
 
 
 def in_angles(line, position):
-    """Whether the position stands in template arguments."""
+    """Whether the position is inside template arguments."""
     depth = 0
     for i in range(position):
         if line[i] == "<" and i > 0 and re.match(r"[\w]", line[i - 1]):
@@ -51,12 +51,12 @@ def in_angles(line, position):
 
 
 def candidates(path):
-    """(line, start, end, text with @ for the number, what) of all places in a file."""
+    """(line, start, end, text with @ for the number, kind) of all possible mutants in a file."""
     text = path.read_text()
     lines, plain = text.split("\n"), masked(text).split("\n")
     found = []
     before = ";"
-    in_table = None  # constants over several lines, known to the compiler alone
+    in_table = None  # constants over several lines, used only at compile time
     for number, (line, code) in enumerate(zip(lines, plain)):
         stripped = code.replace("\x01", "").rstrip()
         if not stripped.strip():
@@ -120,7 +120,7 @@ def plant(tree, modules, count, seed):
 
 
 def write(tree, mutant):
-    """Puts a mutant, or where it was dropped the original line, into its file."""
+    """Writes a mutant into its file, or the original line if the mutant was dropped."""
     path = tree / mutant["file"]
     lines = path.read_text().removeprefix(HEADER).split("\n")
     line = mutant["original"]
@@ -159,7 +159,7 @@ def build(tree, jobs):
         at = {(m["file"], m["line"]): m for m in mutants if m["state"] != "dropped"}
         named = re.findall(r"(src/[\w/]+\.[ch]pp):(\d+):\d+:", log.stdout)
         faulty = [at[file, int(line)] for file, line in set(named) if (file, int(line)) in at]
-        if not faulty:  # code for another processor takes none
+        if not faulty:  # code for another processor has no mutants
             faulty = [m for m in at.values() if m["file"] in {file for file, _ in named}]
         for mutant in faulty:
             mutant["state"] = "dropped"
@@ -178,7 +178,7 @@ def program(tree, module):
 
 
 def run_tests(tree, worker, module, names, mutant, seconds, reached=None):
-    """(exit code or None where time ran out, output) of these tests with this mutant, in a folder of the worker's."""
+    """(exit code or None after a timeout, output) of these tests with this mutant, in a folder of the worker."""
     own = tree / "workers" / str(worker)
     (own / "output").mkdir(parents=True, exist_ok=True)
     (own / "tmp").mkdir(parents=True, exist_ok=True)
@@ -208,7 +208,7 @@ def run_tests(tree, worker, module, names, mutant, seconds, reached=None):
 
 
 def fault(tree, worker, module, tests, mutant):
-    """The test that catches the mutant, or None. What runs out of time is tried once more alone."""
+    """The test that detects the mutant, or None. A test that times out runs once more alone."""
     seconds = sum(test["seconds"] for test in tests)
     code, out = run_tests(tree, worker, module, [test["name"] for test in tests], mutant, 5 * seconds + 20)
     if code == 0:
@@ -241,8 +241,8 @@ def tests_of(tree, module):
 
 
 def cover(tree, modules, jobs):
-    """Every test (of these modules) once alone: how long it takes and which mutants it reaches. A test that fails here is
-    left out, and one that was measured before is not measured again."""
+    """Runs every test (of these modules) once alone, for its duration and the mutants it reaches. Omits tests that
+    fail, and does not measure a test again."""
     path = tree / "tests.json"
     known = json.loads(path.read_text()) if path.exists() else []
     there = {(test["module"], test["name"]) for test in known}
@@ -273,7 +273,7 @@ def cover(tree, modules, jobs):
     mutants = load(tree)
     reached = {i for t in tests for i in t["reaches"]}
     for mutant in mutants:
-        if mutant["state"] in ("planted", "void"):  # no other operator fits its operands; or the compiler alone works it out
+        if mutant["state"] in ("planted", "void"):  # no other operator compiles, or it is computed at compile time
             nothing = mutant["id"] in void or mutant["constant"] and mutant["id"] not in reached
             mutant["state"] = "void" if nothing else "planted"
     save(tree, mutants)
@@ -288,7 +288,7 @@ def run(tree, modules, jobs, count, most_seconds, again):
     mutants, tests = load(tree), json.loads((tree / "tests.json").read_text())
     results = tree / "results.jsonl"
     lines = results.read_text().splitlines() if results.exists() else []
-    shown = {}  # what survivors are not shown again
+    shown = {}  # tests that do not run again on survivors
     if again:
         shown = {r["id"]: set(r["shown"]) for r in map(json.loads, lines) if not r["caught"]}
         lines = [line for line in lines if json.loads(line)["caught"]]
@@ -312,7 +312,7 @@ def run(tree, modules, jobs, count, most_seconds, again):
                 if spent > most_seconds:
                     result["complete"] = False
                     break
-                several, seconds = [], 0  # short ones first, a few at a time
+                several, seconds = [], 0  # the shortest first, several at a time
                 while reaching and (not several or seconds + reaching[0]["seconds"] < 5):
                     several.append(reaching.pop(0))
                     seconds += several[-1]["seconds"]
