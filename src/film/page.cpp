@@ -127,8 +127,8 @@ void FilmPage::add_curves(const PairState& state) {
     }
 }
 
-/// Positions in steps of 2^−bits of a turn (times √N for a chain of N links, as their errors add up randomly) or of the
-/// range of all positions. Stores second differences in time of each channel, less those of the previous pendulum.
+/// Angles in steps of 2^−bits of a turn, times √N for a chain of N links, whose errors add up randomly. Other positions
+/// in steps of 2^−bits of their range. Stores second differences in time, less those of the previous pendulum.
 Json FilmPage::motion_json() const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     const auto is_angle = [&](std::size_t k, std::size_t channel) {

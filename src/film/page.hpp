@@ -13,8 +13,8 @@
 namespace doppel {
 
 /// A film as one HTML file, NAME.html: the motion, the items around it, and the script that plays it (film/page/).
-/// If all pendulums are chains of one to three ideal links in angles, in double, by Euler's methods or rk4, the script
-/// computes the same motion bit for bit. Otherwise the file contains it with 16 or more bits per position.
+/// The script computes the same motion bit for bit for chains of one to three ideal links, in angles and double, by
+/// Euler's methods or rk4. For other pendulums the file contains the motion with 16 or more bits per position.
 class FilmPage {
 public:
     /// `bounds`: see make_layout(). Adds its file to `parts`.
@@ -43,9 +43,9 @@ private:
     Channels curves_;                  // of all strips, then of a phase panel
 };
 
-/// The player of a scene's chains of one to three ideal links for another kind of page, whose data contains its data as
-/// "film". It is hidden until the document gets an event "release", whose detail has the release angles by their keys.
-/// nullopt if the scene has other pendulums.
+/// The player of a scene's chains of one to three ideal links, for another kind of page. The page's data contains the
+/// player's as "film". It is hidden until the document gets an event "release", whose detail has the
+/// release angles by their keys. nullopt if the scene has other pendulums.
 std::optional<HtmlPage> film_player(Scene scene);
 
 /// The approximate size in bytes of a scene's page.

@@ -86,8 +86,7 @@ TEST(Exponent, DistinguishesRegularFromChaotic) {
     EXPECT_FALSE(is_regular(exponent(driven(1.15))));
     EXPECT_FALSE(is_regular(exponent(rods(from_rest({140, 0})))));
     EXPECT_TRUE(is_regular(exponent(rods(from_rest({20, 0})))));
-    // a damped motion, and a driven one of period one, converge at the rate b/(2J) where they
-    // oscillate
+    // motions near a damped one, or a driven one of period one, approach it at the rate b/(2J) if they oscillate
     const double gamma = 0.25 * std::sqrt(9.8 / 0.8);
     auto damped = driven(0);
     damped.torques.clear();

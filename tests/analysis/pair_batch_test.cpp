@@ -116,7 +116,7 @@ TEST(PendulumPair, OfEqualPendulumsHasNoAverage) {
 }
 
 TEST(PendulumPair, ThatFailsHasNoAverageAndDoesNotAffectOthers) {
-    // steps that are too long for the fast pairs but not for the slow ones, which have a period of about an hour
+    // steps too long for the fast pairs but not for the slow ones, whose period is about an hour
     auto calm = released(20, -10);
     calm.gravity = 1e-6;
     const PendulumPair wild{released(170, 10), released(171, 10)};

@@ -50,8 +50,8 @@ TEST(Docs, ExamplesPrintTheShownLines) {
     });
 }
 
-/// The commands of a page, run one after another in one folder. To save time, films that are not cut have two frames,
-/// pictures without a size are small, and figures that take minutes only list their files. Commands with other
+/// The commands of a page, run one after another in one folder. To save time, films without a range have two frames,
+/// and pictures without a size are small. Figures that take minutes only list their files. Commands with other
 /// programs (GNU parallel, Slurm) have their own tests (Recipe).
 class PageOfCommands : public testing::TestWithParam<fs::path> {
 protected:

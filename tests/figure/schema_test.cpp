@@ -49,7 +49,7 @@ bool is_of_one_key(const std::string& message) {
     return std::regex_search(message, one_key) && !std::regex_search(message, of_more);
 }
 
-/// A series of one motion has fewer keys of [system] than one of pairs, which the schema of their kind does not state.
+/// A series of one motion has fewer keys of [system] than one of pairs; the schema of their kind does not state this.
 bool is_of_motion(const std::string& text, const std::string& message) {
     if (message.find("[series] duration_s") != std::string::npos || message.find(" values:") != std::string::npos)
         return true;  // other keys decide its range; a value of a grid's axis belongs to another key

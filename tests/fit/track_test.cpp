@@ -145,7 +145,7 @@ TEST(FitTrack, CutsAtGapsAndNumbersAndJoinsTurns) {
     }
     const auto cut = read({gap});
     ASSERT_EQ(cut.pieces.size(), 3u);  // a gap of 0.42 s, and the number
-    EXPECT_TRUE(cut.start_s.empty());  // the last begins anew
+    EXPECT_TRUE(cut.start_s.empty());  // the clock of the last piece starts again
     const auto joined = read({wrapped});
     EXPECT_EQ(joined.start_s, std::vector<double>{0});
     for (std::size_t i = 1; i < joined.samples(); ++i)

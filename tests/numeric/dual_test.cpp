@@ -33,8 +33,8 @@ typename Model::State flow(const Pendulum<typename Model::Scalar>& p, const type
     return stepper.state();
 }
 
-/// The largest difference between the Jacobian of a flow from duals and from central differences in quad, whose error
-/// is about h² = 1e-22 of the third derivative.
+/// The largest difference between the Jacobian of a flow from duals and from central differences in quad. The latter
+/// have an error of about h² = 1e-22 times the third derivative.
 template <class Which, template <class> class Model, int N, class Scalar>
 double jacobian_error(std::size_t links) {
     using SweptKeys = Model<Dual<Scalar, N>>;

@@ -44,7 +44,7 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
         EXPECT_EQ(video.pixel_format, PixelFormat::yuv420);
         EXPECT_EQ(video.crf, VideoSpec{}.crf);
         EXPECT_EQ(video.preset, VideoSpec{}.preset);
-        // but explicit keys beside it are not ignored
+        // but keys of the command line that do not fit are errors
         for (const char* key :
              {"video.crf=20", "video.preset=\"slow\"", "video.pixel_format=\"yuv444p\"", "video.codec=\"vp9\""}) {
             const auto [code, message] = error_of([&] { read({set, key}); });

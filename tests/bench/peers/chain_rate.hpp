@@ -7,8 +7,8 @@
 
 namespace doppel {
 
-/// The right-hand side of a chain in angles on plain arrays (θ1 … θN, ω1 … ωN), as a careful user of a library writes
-/// it for two and three links: precomputed constants, one division. It counts its evaluations. Other lengths use
+/// The right-hand side of a chain in angles on plain arrays (θ1 … θN, ω1 … ωN), as a careful user writes it for two
+/// and three links: precomputed constants, one division. It counts its evaluations. Other lengths use
 /// AngleChain.
 template <int N>
 class ChainRate {
