@@ -135,7 +135,7 @@ TEST(FigurePage, IsOneFileBesideTableAndManifest) {
     run_figure(figure, {.out = out});
     const auto page = test::bytes_of(out / "x/x.html");
     EXPECT_TRUE(page.starts_with("<!DOCTYPE html>\n<!-- Doppel figure -->"));
-    EXPECT_LT(page.size(), 150'000u);
+    EXPECT_LT(page.size(), 185'000u);  // measured 158 kB with Cairo 1.18; the player takes 33 kB of it
     EXPECT_TRUE(std::filesystem::exists(out / "x/x.csv"));
     EXPECT_TRUE(std::filesystem::exists(out / "x/x.json"));
     EXPECT_FALSE(std::filesystem::exists(out / "x/x.png"));
