@@ -36,11 +36,6 @@ std::vector<Picture> levels_of(Picture cells) {
     return levels;
 }
 
-std::string hexadecimal(Color color) {
-    const auto bytes = bytes_of(color);
-    return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
-}
-
 /// The colour bar from its lower end, and its labels: [share of the bar, text].
 Json scale_json(const HeatMap& map, const Theme& theme) {
     constexpr int stops = 64;

@@ -233,6 +233,10 @@ Color member_color(const Style& style, const Scene& scene, std::size_t k) {
     return member_color(style, static_cast<double>(k) / last);
 }
 
+std::vector<double> masses_of(const Scene& scene, const MotionSpec& member) {
+    return member.physical ? scene.a.mass : member.chain->cast<double>().mass;
+}
+
 Point PendulumPanel::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};

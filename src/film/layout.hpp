@@ -42,6 +42,8 @@ inline constexpr std::size_t max_full_size_members = 8;
 Color member_color(const Style& style, double share);
 /// The colour of member `k`: listed members have distinct hues, others the colour scale.
 Color member_color(const Style& style, const Scene& scene, std::size_t k);
+/// The masses of an ensemble's member, kg.
+std::vector<double> masses_of(const Scene& scene, const MotionSpec& member);
 
 /// A panel of pendulums and its map from metres to pixels.
 struct PendulumPanel {

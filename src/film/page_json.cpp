@@ -19,12 +19,6 @@ double rounded(double length) {
     return std::round(100 * length) / 100;
 }
 
-Json json_of(const Color& color) {
-    const auto bytes = bytes_of(color);
-    const auto text = fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
-    return bytes[3] == 255 ? text : text + fmt::format("{:02x}", bytes[3]);
-}
-
 Json json_of(const Point& point) {
     return {rounded(point.x), rounded(point.y)};
 }
@@ -48,13 +42,13 @@ struct ItemJson {
                 rounded(box.right - box.left),
                 rounded(box.bottom - box.top),
                 rounded(box.corner),
-                json_of(box.color)};
+                hexadecimal(box.color)};
     }
     Json operator()(const Capsule& line) const {
-        return {"c", json_of(line.from), json_of(line.to), rounded(line.radius), json_of(line.color)};
+        return {"c", json_of(line.from), json_of(line.to), rounded(line.radius), hexadecimal(line.color)};
     }
     Json operator()(const Ring& ring) const {
-        return {"r", json_of(ring.center), rounded(ring.radius), rounded(ring.width), json_of(ring.color)};
+        return {"r", json_of(ring.center), rounded(ring.radius), rounded(ring.width), hexadecimal(ring.color)};
     }
     Json operator()(const Stroke&) const { return nullptr; }  // no backdrop contains one
     Json operator()(const Label& words) const {
@@ -64,7 +58,7 @@ struct ItemJson {
                 rounded(words.size),
                 static_cast<int>(words.align),
                 words.weight == Weight::bold,
-                json_of(words.color),
+                hexadecimal(words.color),
                 rounded(type.width(words.text, words.size, words.weight))};
     }
 };
@@ -155,7 +149,7 @@ Json body_json(const MotionSpec& motion, const Side& side, const std::vector<dou
     Json lines = Json::array();
     for (const auto& line : side.lines)
         lines.push_back({static_cast<int>(line.kind), end_json(line.from), end_json(line.to), line.width});
-    return {{"mass", masses}, {"color", json_of(color)}, {"lines", lines}, {"chain", chain_json(motion)}};
+    return {{"mass", masses}, {"color", hexadecimal(color)}, {"lines", lines}, {"chain", chain_json(motion)}};
 }
 
 /// The speed over time: [time, s; seconds of motion per second of film; the film's text].
@@ -173,8 +167,8 @@ Json speed_json(const Scene& scene) {
 
 Json theme_json(const Theme& theme) {
     Json json;
-    for (const auto& color : color_names) json[std::string(color.key)] = json_of(theme.*color.member);
-    json["sides"] = {json_of(theme.sides[0]), json_of(theme.sides[1])};
+    for (const auto& color : color_names) json[std::string(color.key)] = hexadecimal(theme.*color.member);
+    json["sides"] = {hexadecimal(theme.sides[0]), hexadecimal(theme.sides[1])};
     return json;
 }
 
@@ -224,10 +218,7 @@ Json page_json(const Scene& scene, const MotionBounds& bounds) {
     Json bodies = Json::array(), pictures = Json::array(), strips = Json::array();
     for (std::size_t k = 0; k < scene.members.size(); ++k) {
         const auto& motion = scene.members[k];
-        auto masses = scene.a.mass;
-        for (std::size_t i = 0; !motion.physical && i < masses.size(); ++i)
-            masses[i] = static_cast<double>(motion.chain->mass[i]);
-        bodies.push_back(body_json(motion, scene.a, masses, member_color(style, scene, k)));
+        bodies.push_back(body_json(motion, scene.a, masses_of(scene, motion), member_color(style, scene, k)));
     }
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
@@ -247,7 +238,7 @@ Json page_json(const Scene& scene, const MotionBounds& bounds) {
     for (const auto kind : video.strips) {
         Json curves = Json::array();
         for (const auto& curve : strip_curves(kind, scene, first.pair, start_distance, style.theme, 1))
-            curves.push_back(json_of(curve.color));
+            curves.push_back(hexadecimal(curve.color));
         strips.push_back({{"kind", name_of(kind)}, {"colors", curves}});
     }
     Json json{{"title", scene.preset.title},

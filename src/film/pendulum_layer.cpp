@@ -30,10 +30,8 @@ public:
           heaviest_(std::max({std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass), 1e-300})),
           paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {
         for (const auto& member : state.scene.members) {
-            auto& masses = member_masses_.emplace_back(state.scene.a.mass);
-            for (std::size_t i = 0; i < masses.size(); ++i)
-                if (!member.physical) masses[i] = static_cast<double>(member.chain->mass[i]);
-            heaviest_ = std::max(heaviest_, std::ranges::max(masses));
+            member_masses_.push_back(masses_of(state.scene, member));
+            heaviest_ = std::max(heaviest_, std::ranges::max(member_masses_.back()));
         }
     }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace doppel {
@@ -40,6 +41,8 @@ constexpr Color mixed(Color a, Color b, float share) {
 
 /// Parses "#rrggbb"; returns nothing for other texts.
 std::optional<Color> parse_color(std::string_view text);
+/// "#rrggbb"; "#rrggbbaa" if it is not opaque.
+std::string hexadecimal(const Color& color);
 
 /// The colour scale of heat maps at `share`, 0…1 (clamped; NaN gives the lower end): dark violet, blue, green, pale
 /// yellow. It is perceptually uniform in OKLab (Ottosson 2020), and its lightness increases, so that it can be read in

@@ -134,6 +134,11 @@ Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px
     return sheet;
 }
 
+std::string hexadecimal(const Color& color) {
+    const auto [r, g, b, a] = bytes_of(color);
+    return fmt::format("#{:02x}{:02x}{:02x}", r, g, b) + (a == 255 ? "" : fmt::format("{:02x}", a));
+}
+
 std::optional<Color> parse_color(std::string_view text) {
     if (text.size() != 7 || text.front() != '#') return std::nullopt;
     unsigned hex = 0;

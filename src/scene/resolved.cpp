@@ -31,8 +31,7 @@ std::string toml_ratio(const Rational& value) {
 }
 
 std::string toml_value(const Color& color) {
-    const auto channel = [](float x) { return static_cast<int>(std::lround(x * 255)); };
-    return fmt::format("\"#{:02x}{:02x}{:02x}\"", channel(color.r), channel(color.g), channel(color.b));
+    return fmt::format("\"{}\"", hexadecimal(color));
 }
 
 std::string toml_value(const Panels& panels) {
