@@ -4,6 +4,7 @@ set(pages ${PROJECT_BINARY_DIR}/pages)  # of what the program says of itself
 
 install(TARGETS doppel)
 install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATCHING PATTERN *.toml PATTERN *.json PATTERN *.csv)
+install(FILES python/doppel.py DESTINATION lib/python3/dist-packages)  # Debian's folder for modules of every Python 3
 install(PROGRAMS .ci/golden DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel/ci)
 install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
