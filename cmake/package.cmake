@@ -10,6 +10,7 @@ install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hi
 install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
 install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
+install(DIRECTORY docs/clusters DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
 
 add_custom_command(
     OUTPUT ${pages}/made
