@@ -1,6 +1,6 @@
-// nextflow run film.nf --preset fan --shards 8
-params.preset = 'fan'
-params.shards = 8
+// nextflow run film.nf --preset butterfly --shards 6
+params.preset = 'butterfly'
+params.shards = 6
 
 process shard {
     errorStrategy { task.exitStatus in [75, 143] ? 'retry' : 'terminate' }
@@ -8,7 +8,7 @@ process shard {
     cpus 2
     memory '2 GB'
     input: val i
-    output: path "out/*/*.film-shard-*"
+    output: path "out/*/*.shard"
     script: "doppel render ${params.preset} --shard ${i}/${params.shards} --progress none"
 }
 
