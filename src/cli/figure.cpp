@@ -48,15 +48,6 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
     return chosen;
 }
 
-std::optional<Shard> shard_of(const FigureCommandOptions& options) {
-    if (options.shard.empty()) return std::nullopt;
-    const auto parts = two_numbers(options.shard, '/');
-    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > max_parts)
-        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", max_parts, options.shard);
-    if (options.merge) throw bad_input("--shard makes a part and --merge joins them; give one");
-    return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
-}
-
 /// Progress of several figures. The computation of one may overlap with the drawing of another.
 class Reports {
 public:
@@ -86,7 +77,7 @@ private:
 
 std::vector<std::string> files_of(const FigurePreset& figure, const FigureCommandOptions& options) {
     const auto& name = figure.name;
-    const auto shard = shard_of(options);
+    const auto shard = shard_of_option(options.shard, options.merge);
     if (shard) return {shard_name(header_of(figure, shard->number, shard->of))};
     if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
     return {fmt::format("{}.{}", name, name_of(figure.chart.format)), name + ".csv", name + ".json"};
@@ -123,7 +114,7 @@ void make_figures(const FigureCommandOptions& options) {
         run_figures(figures,
                     {.out = to.folder(),
                      .jobs = options.jobs,
-                     .shard = shard_of(options),
+                     .shard = shard_of_option(options.shard, options.merge),
                      .merge = options.merge,
                      .tiles = options.tiles,
                      .replacing = std::move(replacing)},

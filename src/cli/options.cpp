@@ -104,6 +104,16 @@ std::optional<std::pair<long, long>> two_numbers(const std::string& text, char s
     return std::pair{first, second};
 }
 
+std::optional<Shard> shard_of_option(const std::string& text, bool merges) {
+    constexpr long max_shards = 100'000;
+    if (text.empty()) return std::nullopt;
+    const auto parts = two_numbers(text, '/');
+    if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > max_shards)
+        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", max_shards, text);
+    if (merges) throw bad_input("--shard makes a part and --merge joins them; give one");
+    return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
+}
+
 Override size_override(const std::string& key, const std::string& size) {
     const auto sides = two_numbers(size, 'x');
     if (!sides) throw bad_input("--size must be WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);

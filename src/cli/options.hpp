@@ -30,7 +30,7 @@ struct OutOptions {
 
 /// Further options of commands that run presets.
 struct RunCommandOptions : PresetOptions, OutOptions {
-    std::string columns = {};
+    std::string columns = {}, recording = {};
     int jobs = 0;
 };
 
@@ -62,6 +62,9 @@ void add_gl_option(CLI::App& command, std::string& gl);
 
 /// Parses "A<separator>B" as two whole numbers; returns nothing otherwise.
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);
+
+/// --shard I/N; nothing if the text is empty. Throws Error (exit 2).
+std::optional<Shard> shard_of_option(const std::string& text, bool merges);
 
 /// --size WIDTHxHEIGHT as an override of a preset's key. Throws Error (exit 2).
 Override size_override(const std::string& key, const std::string& size);

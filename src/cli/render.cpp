@@ -3,6 +3,7 @@
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "film/film.hpp"
+#include "film/recording_file.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -13,7 +14,8 @@ namespace doppel {
 namespace {
 
 struct RenderOptions : RunCommandOptions {
-    std::string frames, from, to, size, format, quality, gl = "auto";
+    std::string frames, from, to, size, format, quality, gl = "auto", shard;
+    bool merge = false;
 };
 
 struct StillOptions : PresetOptions, OutOptions {
@@ -94,6 +96,10 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
     }
 }
 
+void add_recording_option(CLI::App& command, std::string& file, const std::string& help) {
+    refuse_dash(add_value(command, "--recording", file, "FILE", help));
+}
+
 /// Runs the scenes one after the other and reports progress.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
     run_options.replacing = {inputs_of(options.presets, scenes), options.force};
@@ -104,13 +110,16 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     if (options.out == "-" && is_sequence)
         throw bad_input("-o -: a PNG sequence is many files; give --format apng, or use still for one picture");
     if (options.list_outputs) {
-        for (const auto& scene : scenes)
-            list_outputs(options, scene.preset.name, run_files(scene, run_options.pictures));
+        for (const auto& scene : scenes) list_outputs(options, scene.preset.name, run_files(scene, run_options));
         return;
     }
+    if (scenes.size() > 1 && !(run_options.recording.empty() && run_options.record_to.empty()))
+        throw bad_input("--recording: a file contains one motion; give one preset, not {}", scenes.size());
     const Destination to(options.out, scenes.size(),
                          run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
     run_options.out = to.folder();
+    run_options.to_stream =
+        options.out == "-" && run_options.pictures && !run_options.merge && video.format_row().is_streamed();
     const bool counts_frames = run_options.pictures && video.format != FilmFormat::html;
     work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed(),
                 [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
@@ -151,20 +160,20 @@ void add_render(CLI::App& app) {
         "Examples:\n"
         "  doppel render butterfly\n"
         "  doppel render calm --size 1280x720 --format png --frames 0:240\n"
-        "  doppel render butterfly --set scene.duration_s=10 --set video.theme=light -o films\n"
         "  doppel render butterfly --from 6.8 --to 9\n"
-        "  doppel render butterfly --format gif --size 640x360\n"
-        "  doppel render out/lab/lab.toml --beside track.csv\n"
-        "  doppel render butterfly --set video.layout=overlay --set 'video.contact_sheet=[4, 3]'\n"
+        "  doppel render fan --size 3840x2160 --shard 3/8        # on one of eight machines; then --merge\n"
         "  doppel render calm --format webm -o - | mpv -");
     add_run_options(command, *options, "Threads that compress PNGs; default: one a core; same bytes for any N");
     add_value(command, "--frames", options->frames, "A:B",
               "Only the frames A to B-1 of the motion, with the pixels of the whole film");
     add_value(command, "--from", options->from, "SECONDS", "Start time, s");
     add_value(command, "--to", options->to, "SECONDS", "End time, s, not included: --to 20 makes 20 s");
+    add_value(command, "--shard", options->shard, "I/N", "Draw part I of N only, for --merge");
+    command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the film");
+    add_recording_option(command, options->recording, "Take the motion from simulate --recording FILE");
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px, even");
     add_choice(command, "--format", options->format, "FORMAT",
-               "Of the film; png: a sequence; html: a page to use in a browser",
+               "png: a sequence; html: a page to use in a browser; y4m, rgb: raw",
                {format_names.begin(), format_names.end()});
     add_choice(command, "--quality", options->quality, "QUALITY",
                "draft: a quarter of the pixels; standard: as the preset; best: slow", {"draft", "standard", "best"});
@@ -177,6 +186,11 @@ void add_render(CLI::App& app) {
                        .gl = gl_named(options->gl),
                        .columns = columns_of_option(options->columns)};
         set_range(*options, run);
+        run.shard = shard_of_option(options->shard, options->merge);
+        run.merge = options->merge;
+        run.recording = options->recording;
+        if (options->out == "-" && (run.shard || run.merge))
+            throw bad_input("-o -: parts and their merge need a folder; give another --out");
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first one is rendered
         for (const auto& scene : scenes) check_video(video_options(scene));
@@ -234,9 +248,15 @@ void add_simulate(CLI::App& app) {
     add_run_options(command, *options, "Has no effect on a table");
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
+    add_recording_option(command, options->recording, "Also writes the motion to FILE, for render --recording");
     command.callback([options] {
-        run_all(read_scenes(*options), *options,
-                {.pictures = false, .jobs = options->jobs, .columns = columns_of_option(options->columns)});
+        RunOptions run{.pictures = false, .jobs = options->jobs, .columns = columns_of_option(options->columns)};
+        const auto scenes = read_scenes(*options);
+        std::optional<SingleFile> file;
+        if (!options->recording.empty() && !options->list_outputs)
+            run.record_to = file.emplace(options->recording, recording_start).place();
+        run_all(scenes, *options, run);
+        if (file) file->publish();
     });
 }
 

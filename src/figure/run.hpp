@@ -8,11 +8,6 @@
 
 namespace doppel {
 
-/// Part `number`, from 1, of `of`.
-struct Shard {
-    int number = 1, of = 1;
-};
-
 struct FigureOptions {
     std::filesystem::path out = "out";  // the files go to OUT/NAME/
     int jobs = 0;                       // threads that compute; 0 = one per core

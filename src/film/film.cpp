@@ -3,6 +3,7 @@
 #include "base/clock.hpp"
 #include "base/embedded.hpp"
 #include "image/picture.hpp"
+#include "output/film_part.hpp"
 #include "output/png.hpp"
 #include "output/sink.hpp"
 
@@ -87,39 +88,60 @@ std::optional<long> poster_frame(const Scene& scene) {
 VideoOptions video_options(const Scene& scene) {
     auto options = scene.preset.video.options(scene.fps);
     options.metadata = film_metadata(scene.preset);
+    options.frames = schedule_of(scene).frames();
     return options;
 }
 
 Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, Transaction& parts,
            RunRecord& record, const std::atomic<bool>& stop)
     : scene_(scene),
+      options_(options),
       parts_(parts),
       record_(record),
       stop_(stop),
       schedule_(schedule_of(scene)),
+      begin_(first == 0 ? 0 : schedule_.title + schedule_.hold_start + first),
+      drawn_(options.shard   ? frames_of(scene, *options.shard)
+             : options.merge ? FrameRange{0, 0}
+                             : FrameRange{begin_, schedule_.frames()}),
+      next_(begin_),
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
-    if (video.format == FilmFormat::png) {
-        film_name_ = "frames";
-        const long number = first == 0 ? 0 : schedule_.title + schedule_.hold_start + first;
-        const auto place_of = [number, folder = parts.directory(film_name_)](long k) {
-            return folder / fmt::format("{:06}.png", number + k);
-        };
-        sink_ = make_png_sink(place_of, png_threads(options.jobs, video.size),
-                              {.with_alpha = video.transparent, .metadata = film_metadata(scene.preset)}, stop);
-    } else {
-        const auto file = video_options(scene);
-        film_name_ = scene.preset.name + extension(file.format);
-        sink_ = make_video_sink(parts.file(film_name_), file, stop);
-        record.libav = libav_description();
-    }
-    if (video.poster_s) parts.require(scene.preset.name + ".poster.png");
-    if (video.contact_sheet) parts.require(scene.preset.name + ".contact.png");
-    canvas_.emplace(scene, composer_, options.gl, stop);
-    record.gl = canvas_->description();
+    if (options.merge) joined_ = parts_in(scene, parts.folder());
+    if (video.poster_s && !options.shard) parts.require(scene.preset.name + ".poster.png");
+    if (video.contact_sheet && !options.shard) parts.require(scene.preset.name + ".contact.png");
+    if (!joined_ || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
+    record.gl = joined_ ? joined_->gl : canvas_->description();
+    if (video.format == FilmFormat::png)
+        begin_pictures();
+    else
+        begin_video();
 }
 
-const Picture& Film::take(const DisplayList& list) {
+void Film::begin_pictures() {
+    const auto& video = scene_.preset.video;
+    film_name_ = "frames";
+    folder_ = parts_.directory(film_name_);
+    const auto place_of = [this](long k) { return folder_ / fmt::format("{:06}.png", drawn_.first + k); };
+    sink_ = make_png_sink(place_of, png_threads(options_.jobs, video.size),
+                          {.with_alpha = video.transparent, .metadata = film_metadata(scene_.preset)}, stop_);
+}
+
+void Film::begin_video() {
+    auto video = video_options(scene_);
+    film_name_ = options_.shard ? part_name(scene_, *options_.shard) : scene_.preset.name + extension(video.format);
+    if (options_.shard) video.part_header = part_header(scene_, *options_.shard, record_.gl);
+    video.first_frame = options_.shard ? drawn_.first : 0;
+    video.is_stream = options_.to_stream;
+    if (options_.is_partial()) video.frames = 0;
+    const auto place = video.is_stream ? std::filesystem::path("-") : parts_.file(film_name_);
+    sink_ = joined_ ? join_film_parts(place, video, joined_->files, stop_) : make_video_sink(place, video, stop_);
+    record_.libav = libav_description();
+}
+
+/// Draws the list if its frame belongs to the part; nothing otherwise.
+const Picture* Film::take(const DisplayList& list) {
+    if (!drawn_.contains(next_++)) return nullptr;
     const Picture* picture = nullptr;
     {
         Stopwatch watch(record_.draw_cpu_s);
@@ -128,7 +150,7 @@ const Picture& Film::take(const DisplayList& list) {
     Stopwatch watch(record_.write_cpu_s);
     sink_->take(*picture, canvas_->changed());
     ++record_.frames;
-    return *picture;
+    return picture;
 }
 
 /// Draws the first or last frame with a card fading out or in over it.
@@ -145,19 +167,39 @@ void Film::take_card(long frames, bool fades_in) {
 void Film::write_frame(long number) {
     const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
     if (is_first) take_card(schedule_.title, false);
-    const auto list = composer_.frame();
     const long times = 1 + (is_first ? schedule_.hold_start : 0) + (is_last ? schedule_.hold_end : 0);
+    const bool is_poster = number == poster_frame(scene_) && !options_.shard;
+    const bool is_seen = next_ < drawn_.last && next_ + times > drawn_.first;
+    const auto list = is_seen || is_poster ? composer_.frame() : DisplayList();
     for (long k = 0; k < times; ++k) {
-        const auto& picture = take(list);
-        if (k == 0 && number == poster_frame(scene_)) poster_ = picture;
+        const auto* picture = take(list);
+        if (k == 0 && is_poster) poster_ = picture ? *picture : canvas_->draw(list);
     }
     if (is_last) take_card(schedule_.end, true);
 }
 
-void Film::finish() {
+void Film::finish(const std::vector<FilmEvent>& events) {
+    for (const auto& [frame, title] : chapters_of(scene_, events))
+        if (frame >= begin_ && frame < next_) sink_->add_chapter(frame - begin_, title);
     sink_->finish();
+    if (joined_) record_.frames = schedule_.frames();
+    if (joined_ && !folder_.empty()) join_pictures(*joined_, folder_, stop_);
+    if (options_.shard && !folder_.empty()) pack_pictures();
     parts_.finished(film_name_);
     if (poster_) write(".poster.png", *poster_);
+}
+
+/// Puts the pictures of a part into one file.
+void Film::pack_pictures() {
+    const auto name = part_name(scene_, *options_.shard);
+    FilmPartWriter part(parts_.file(name), part_header(scene_, *options_.shard, record_.gl));
+    for (long frame = drawn_.first; frame < drawn_.last; ++frame) {
+        throw_if_set(stop_);
+        const auto path = folder_ / fmt::format("{:06}.png", frame);
+        part.add({.pts = frame, .dts = frame, .bytes = start_of_file(path, std::filesystem::file_size(path))});
+    }
+    part.finish();
+    parts_.keep_only(name, name);
 }
 
 void Film::write(const std::string& ending, const Picture& picture) const {

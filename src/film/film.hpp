@@ -1,6 +1,8 @@
 #pragma once
 
 #include "film/composer.hpp"
+#include "film/events.hpp"
+#include "film/parts.hpp"
 #include "film/recording.hpp"
 #include "film/run.hpp"
 #include "output/sink.hpp"
@@ -25,6 +27,7 @@ struct RunRecord : RunResult {
     double encode_cpu_s = 0;                                     // other threads: encoder or compressor
     double cpu_s = 0;
     MotionRecord motion;
+    std::vector<FilmEvent> events;
     std::string failure;  // the error that ended the run, if any
 };
 
@@ -74,7 +77,8 @@ private:
     std::vector<Rect> changed_;
 };
 
-/// Draws the frames of a run, passes them to the video or picture sequence, and keeps the poster.
+/// Draws the frames of a run, passes them to the video or picture sequence, and keeps the poster. Of a part it draws
+/// the frames of the part; when it joins parts, only the poster.
 class Film {
 public:
     /// Begins with frame `first`, and adds the film's files to `parts`. All functions may throw Error (exit 130) soon
@@ -89,22 +93,31 @@ public:
     /// last.
     void write_frame(long number);
 
-    /// Completes the film and writes the poster.
-    void finish();
+    /// Completes the film, with these events as chapters, and writes the poster.
+    void finish(const std::vector<FilmEvent>& events);
     /// Writes another picture, "NAME.ENDING".
     void write(const std::string& ending, const Picture& picture) const;
 
 private:
-    const Picture& take(const DisplayList& list);
+    void begin_pictures();
+    void begin_video();
+    void pack_pictures();
+    const Picture* take(const DisplayList& list);
     void take_card(long frames, bool fades_in);
 
     const Scene& scene_;
+    const RunOptions& options_;
     Transaction& parts_;
     RunRecord& record_;
     const std::atomic<bool>& stop_;
     const Schedule schedule_;
+    const long begin_;  // the first frame of the file; frames are counted in the whole film
+    const FrameRange drawn_;
+    long next_;
+    std::optional<FilmParts> joined_;
     Composer composer_;
-    std::string film_name_;  // name of the video, or of the folder of pictures
+    std::string film_name_;         // name of the video, or of the folder of pictures
+    std::filesystem::path folder_;  // of the pictures
     std::unique_ptr<Sink> sink_;
     std::optional<Canvas> canvas_;
     std::optional<Picture> poster_;

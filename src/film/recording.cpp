@@ -2,6 +2,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "film/recording_file.hpp"
 #include "integrate/motion_batch.hpp"
 
 #include <cmath>
@@ -19,8 +20,13 @@ void add(SideRecord& record, const Observation& seen, std::optional<double> ener
 }  // namespace
 
 Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-                     Report report, double max_bytes)
-    : scene_(scene), end_(end), with_pictures_(with_pictures), stop_(stop), report_(std::move(report)) {
+                     Report report, double max_bytes, std::filesystem::path file)
+    : scene_(scene),
+      end_(end),
+      with_pictures_(with_pictures),
+      stop_(stop),
+      report_(std::move(report)),
+      file_(std::move(file)) {
     const bool is_bounded = with_pictures && depends_on_motion(scene);
     is_kept_ = with_pictures && (is_bounded || scene.preset.video.contact_sheet) && bytes() <= max_bytes;
     if (!is_bounded && !is_kept_) return;
@@ -51,57 +57,88 @@ void Recording::play(const Visit& visit) {
     if (error_) std::rethrow_exception(error_);
 }
 
+/// The snapshots in order, simulated or from a file.
+class Recording::Source {
+public:
+    Source(const Recording& of, bool with_members) : of_(of), with_members_(with_members) {
+        if (!of.file_.empty())
+            file_.emplace(of.file_, of.scene_);
+        else
+            pair_.emplace(of.scene_);
+        if (with_members_ && pair_) members_.emplace(of.scene_.members, 1);
+    }
+
+    Snapshot at(const Moment& moment, MotionRecord& record) {
+        if (file_) {
+            throw_if_set(of_.stop_);
+            auto snapshot = file_->at(moment, record);
+            if (!with_members_) snapshot.members.clear();
+            return snapshot;
+        }
+        const bool is_sample = moment.share == 0;
+        Snapshot snapshot{is_sample ? pair_->next(of_.stop_) : pair_->advance_to(moment, of_.stop_), {}};
+        record.a.effort = pair_->effort_a();
+        record.b.effort = pair_->effort_b();
+        if (!members_) return snapshot;
+        if (!is_sample)
+            members_->advance_within(moment.share, of_.stop_);
+        else if (moment.sample > 0)
+            members_->advance(of_.stop_);
+        for (std::size_t k = 0; k < members_->size(); ++k) snapshot.members.push_back(members_->bobs(k));
+        return snapshot;
+    }
+
+    /// CPU time of this thread and of those of the simulation.
+    double spent_s() const { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + (pair_ ? pair_->other_cpu_s() : 0); }
+
+private:
+    const Recording& of_;
+    const bool with_members_;
+    std::optional<RecordingReader> file_;
+    std::optional<PairRun> pair_;
+    std::optional<MotionBatch> members_;
+};
+
 /// Simulates the required snapshots; then on to sample `last`, only for the bounds.
 void Recording::simulate(long last, const Visit& visit) {
     const bool is_bounded = last != no_bounds;
     record_ = {};
-    PairRun pair(scene_);
-    std::optional<MotionBatch> members;
     const bool has_members = (with_pictures_ || scene_.preset.member_columns) && !scene_.members.empty();
-    if (has_members && (is_kept_ || !is_bounded)) members.emplace(scene_.members, 1);
-    const auto spent_s = [&] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + pair.other_cpu_s(); };
-    double begun = spent_s();
+    Source source(*this, has_members && (is_kept_ || !is_bounded));
+    double begun = source.spent_s();
     const auto add_sample = [&](const PairState& state) {
         if (is_bounded) bounds_.add(scene_, state, record_.outcome.start_distance);
         if (report_) report_({state.sample + 1, is_bounded ? last + 1 : end_.sample});
     };
-    const auto take = [&](PairState state) {
+    const auto take = [&](const Moment& moment) {
+        const auto snapshot = source.at(moment, record_);
+        const auto& state = snapshot.pair;
         check_distance(scene_, state);
-        record_.a.effort = pair.effort_a();
-        record_.b.effort = pair.effort_b();
         if (state.share == 0) {
             add(record_.a, state.a, state.energy_error_a);
             add(record_.b, state.b, state.energy_error_b);
             record_.outcome.add(scene_.time(state.sample), state);
             add_sample(state);
         }
-        Snapshot snapshot{std::move(state), {}};
-        for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
-        cpu_s_ += spent_s() - begun;
+        cpu_s_ += source.spent_s() - begun;
         visit(snapshot);
-        begun = spent_s();
+        begun = source.spent_s();
     };
     const auto& frames = scene_.frames;
     long frame = 0;
     Moment sample;
     for (; sample < end_; ++sample.sample) {
-        auto state = pair.next(stop_);
-        if (members && sample.sample > 0) members->advance(stop_);
-        take(std::move(state));
+        take(sample);
         for (; with_pictures_ && frame < frames.count && frames.at(frame) < std::min(end_, {sample.sample + 1});
-             ++frame) {
-            const auto moment = frames.at(frame);
-            if (moment.share == 0) continue;
-            auto between = pair.advance_to(moment, stop_);
-            if (members) members->advance_within(moment.share, stop_);
-            take(std::move(between));
-        }
+             ++frame)
+            if (const auto moment = frames.at(frame); moment.share > 0) take(moment);
     }
+    MotionRecord beyond;
     try {
-        for (; sample.sample <= last; ++sample.sample) add_sample(pair.next(stop_));
+        for (; sample.sample <= last; ++sample.sample) add_sample(source.at(sample, beyond).pair);
     } catch (const RunFailure&) {  // the required part is complete
     }
-    cpu_s_ += spent_s() - begun;
+    cpu_s_ += source.spent_s() - begun;
 }
 
 }  // namespace doppel

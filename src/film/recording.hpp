@@ -9,6 +9,7 @@
 #include <atomic>
 #include <deque>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -63,9 +64,9 @@ public:
 
     /// Records the snapshots before `end`. `report` is called for each simulated sample. `scene` and `stop` must
     /// outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
-    /// play() throws the others.
+    /// play() throws the others. With a `file` (RecordingReader), its snapshots replace the simulation.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-              Report report = {}, double max_bytes = usual_bytes);
+              Report report = {}, double max_bytes = usual_bytes, std::filesystem::path file = {});
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 
@@ -86,6 +87,7 @@ public:
 private:
     static constexpr long no_bounds = -1;
     double bytes() const;
+    class Source;
     void simulate(long last, const Visit& visit);
 
     const Scene& scene_;
@@ -93,6 +95,7 @@ private:
     const bool with_pictures_;
     const std::atomic<bool>& stop_;
     const Report report_;
+    const std::filesystem::path file_;
     std::deque<Snapshot> kept_;
     std::exception_ptr error_;
     MotionBounds bounds_;

@@ -5,7 +5,9 @@
 #include "film/film.hpp"
 #include "film/page.hpp"
 #include "film/pair_table.hpp"
+#include "film/parts.hpp"
 #include "film/recording.hpp"
+#include "film/recording_file.hpp"
 #include "output/transaction.hpp"
 #include "scene/scene.hpp"
 
@@ -135,12 +137,17 @@ Part part_of(const Scene& scene, const RunOptions& options) {
 }  // namespace
 
 void check_run(const Scene& scene, const RunOptions& options) {
+    if ((options.shard || options.merge) && options.is_partial())
+        throw bad_input("--shard and --merge are for the whole film; --frames, --from and --to for another part");
+    if (options.shard || options.merge) frames_of(scene, options.shard.value_or(Shard{}));
     part_of(scene, options);
     columns_of(scene, options.columns);
 }
 
-std::vector<std::string> run_files(const Scene& scene, bool pictures) {
+std::vector<std::string> run_files(const Scene& scene, const RunOptions& options) {
     const auto& [name, video] = std::pair(scene.preset.name, scene.preset.video);
+    bool pictures = options.pictures;
+    if (options.shard) return {part_name(scene, *options.shard)};
     std::vector<std::string> files;
     if (pictures) files.push_back(video.format == FilmFormat::png ? "frames/" : name + extension(video.format));
     files.push_back(name + ".csv");
@@ -151,7 +158,48 @@ std::vector<std::string> run_files(const Scene& scene, bool pictures) {
     return files;
 }
 
+namespace {
+
+/// Draws one part of a film.
+RunResult run_part(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
+    const double start = seconds_of(CLOCK_MONOTONIC);
+    const auto& shard = *options.shard;
+    const auto name = part_name(scene, shard);
+    Transaction parts(options.out / scene.preset.name, fmt::format("shard-{}-of-{}", shard.number, shard.of), "film",
+                      options.replacing);
+    RunRecord record;
+    record.files = {parts.folder() / name};
+    if (is_part_complete(scene, shard, parts.folder())) return record;
+    const auto range = frames_of(scene, shard);
+    const auto schedule = schedule_of(scene);
+    const long last = std::clamp(range.last - schedule.title - schedule.hold_start, 1L, schedule.motion);
+    const Moment end = last == schedule.motion ? Moment{scene.samples + 1} : scene.frames.at(last);
+    Recording recording(scene, end, true, stop, {}, Recording::usual_bytes, options.recording);
+    std::optional<Film> film;
+    if (!recording.fails()) film.emplace(scene, recording.bounds(), options, 0, parts, record, stop);
+    long frame = 0;
+    recording.play([&](const Snapshot& snapshot) {
+        throw_if_set(stop);
+        if (!film) return;  // play() throws at the end
+        film->add(snapshot);
+        if (frame == last || snapshot.pair.moment() != scene.frames.at(frame)) return;
+        film->write_frame(frame++);
+        report({record.frames, range.last - range.first});
+    });
+    const auto finish = [&] {
+        film->finish({});
+        throw_if_set(stop);
+        return parts.publish();
+    };
+    parts.keeping_finished(finish);
+    record.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+    return std::move(static_cast<RunResult&>(record));
+}
+
+}  // namespace
+
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
+    if (options.shard) return run_part(scene, options, stop, report);
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const auto part = part_of(scene, options);
     RunRecord record;
@@ -163,7 +211,12 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const long total = is_film ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
     parts.require(scene.preset.name + ".json");
-    Recording recording(scene, part.end, options.pictures, stop);
+    if (options.merge) parts_in(scene, parts.folder());
+    const bool is_recorded = !options.record_to.empty();
+    Recording recording(scene, part.end, options.pictures || is_recorded, stop, {}, Recording::usual_bytes,
+                        options.recording);
+    std::optional<RecordingWriter> recorder;
+    if (is_recorded) recorder.emplace(options.record_to, scene);
     std::optional<Film> film;
     std::optional<FilmPage> page;
     if (is_film && !recording.fails())
@@ -171,13 +224,16 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     if (is_page && !recording.fails()) page.emplace(scene, recording.bounds(), parts);
     const auto csv_name = scene.preset.name + ".csv";
     PairTable table(parts.file(csv_name), scene, options.columns);
+    FlipFinder flips(scene);
     long frame = part.first, done = 0;
     try {
         recording.play([&](const Snapshot& snapshot) {
             const auto& state = snapshot.pair;
             throw_if_set(stop);
+            if (recorder) recorder->add(snapshot, recording.record());
             if (film) film->add(snapshot);
             if (page) page->add(snapshot);
+            if (state.share == 0) flips.add(state);
             if (state.share == 0 && state.sample >= record.first_sample) {
                 table.add(snapshot, recording.record().outcome.start_distance);
                 if (!is_film) report({++done, total});
@@ -193,13 +249,15 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         keep_failed(scene, failure, record, parts, stop);
     }
     const auto finish = [&] {
-        if (film) film->finish();
+        record.motion = recording.record();
+        record.events = film_events(scene, flips.flips(), record.motion.outcome);
+        if (recorder) recorder->finish();
+        if (film) film->finish(record.events);
         if (page) page->finish();
         if (film && scene.preset.video.contact_sheet)
             film->write(".contact.png", contact_sheet_of(scene, recording, part.first, part.last, options.gl, stop));
         table.finish();
         parts.finished(csv_name);
-        record.motion = recording.record();
         record.simulate_cpu_s = recording.cpu_s();
         record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
         add_warnings(scene, record, stop);

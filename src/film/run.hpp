@@ -14,6 +14,11 @@
 
 namespace doppel {
 
+/// Part `number`, from 1, of `of`.
+struct Shard {
+    int number = 1, of = 1;
+};
+
 /// What a run writes, and to which folder.
 struct RunOptions {
     std::filesystem::path out = "out";               // the files go to OUT/NAME/
@@ -24,6 +29,13 @@ struct RunOptions {
     Gl gl = Gl::automatic;                           // which OpenGL draws
     std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all if empty
     Replacing replacing = {};
+    std::optional<Shard> shard = {};       // only this part of the film, into a file for a merge
+    bool merge = false;                    // draw nothing: join the parts in OUT/NAME/
+    bool to_stream = false;                // the film goes to standard output while it is made
+    std::filesystem::path recording = {};  // read the motion from this file
+    std::filesystem::path record_to = {};  // also write the motion to this file
+
+    bool is_partial() const { return first != 0 || last >= 0 || from_s || to_s; }
 };
 
 struct RunResult {
@@ -43,14 +55,18 @@ Moment still_moment(const Scene& scene, const Rational& time);
 /// The file name of such a picture: "NAME.14s.png".
 std::string still_name(const Scene& scene, const Moment& moment, PictureFormat format);
 
-/// Throws Error (exit 2) if the scene lacks some of the frames or columns in `options`.
+/// Throws Error (exit 2) if the scene lacks some of the frames or columns in `options`, or cannot be split as they say.
 void check_run(const Scene& scene, const RunOptions& options);
 
 /// The files that run() writes in OUT/NAME/; names of folders end with "/".
-std::vector<std::string> run_files(const Scene& scene, bool pictures);
+std::vector<std::string> run_files(const Scene& scene, const RunOptions& options);
 
-/// Simulates, draws and writes, in parallel. Files appear complete or not at all. Throws Error: exit 2, 3, 4, or 130
-/// soon after `stop` is set.
+/// The largest number of parts into which a film can be split: one for each segment of 5 s; 1 if its format has none.
+long max_shards(const Scene& scene);
+
+/// Simulates, draws and writes, in parallel. Files appear complete or not at all. A part of a film that is complete is
+/// not made again. Joined parts give the same files as one run. Throws Error: exit 2, 3, 4, 75 if parts are missing, or
+/// 130 soon after `stop` is set.
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report);
 
 }  // namespace doppel

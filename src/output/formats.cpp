@@ -61,7 +61,7 @@ std::optional<FormatError> size_error(const VideoOptions& options, const FormatR
                                                options.format == FilmFormat::mp4
                                                    ? ", and [8192, 4352] for players limited to level 6.2 of H.264"
                                                    : "")};
-    const bool halved = row.is_encoded() && options.pixel_format != PixelFormat::yuv444;
+    const bool halved = row.is_yuv() && options.pixel_format != PixelFormat::yuv444;
     if (halved && (width % 2 != 0 || height % 2 != 0))
         return FormatError{"size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title,
                                                pixel_format_names[static_cast<std::size_t>(options.pixel_format)],
@@ -73,8 +73,8 @@ std::optional<FormatError> alpha_error(const VideoOptions& options, const Format
     const auto error = [](std::string_view key, std::string_view value) {
         return FormatError{
             "transparent",
-            fmt::format("needs a format with opacity: png, apng, html, or webm (VP9, yuv420p); the {} is \"{}\"", key,
-                        value)};
+            fmt::format("needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); the {} is \"{}\"",
+                        key, value)};
     };
     if (!options.transparent) return std::nullopt;
     if (!row.has_alpha && format_row(options.format, "").has_alpha) return error("codec", row.codec);

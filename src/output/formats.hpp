@@ -2,6 +2,7 @@
 
 #include "image/picture.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -12,10 +13,12 @@
 
 namespace doppel {
 
-/// The output format of a film; png: one picture for each frame; html: a page that draws it.
-enum class FilmFormat { mp4, webm, gif, apng, png, html };
-/// The names in presets and on the command line. They are also libav's container names and the file extensions.
-inline constexpr std::array<std::string_view, 6> format_names{"mp4", "webm", "gif", "apng", "png", "html"};
+/// The output format of a film; png: one picture for each frame; html: a page that draws it; y4m: uncompressed YUV
+/// frames with a header; rgb: bytes of RGB, or RGBA if the film is transparent, row by row.
+enum class FilmFormat { mp4, webm, gif, apng, png, html, y4m, rgb };
+/// The names in presets and on the command line, which are also the file extensions.
+inline constexpr std::array<std::string_view, 8> format_names{"mp4", "webm", "gif", "apng",
+                                                              "png", "html", "y4m", "rgb"};
 
 /// Chroma subsampling and bits per sample for H.264, VP9 and AV1.
 enum class PixelFormat { yuv420, yuv444, yuv420_10 };
@@ -31,13 +34,19 @@ struct FormatRow {
     std::string_view codec;  // of VideoOptions; empty if the format has only one codec
     std::string_view title;
     int largest_side;                  // px
-    int largest_crf = 0;               // 0: no quality, encoder preset or pixel format
+    int largest_crf = 0;               // 0: no quality or encoder preset
     bool has_alpha = false;            // for formats with a quality: only with yuv420p
     std::string_view rate_words = {};  // why the frame rate is limited as follows; limits of 0 mean none
     int max_fps = 0, max_terms = 0;    // max_terms: the largest numerator and denominator
     double longest_frame_s = 0;
 
     bool is_encoded() const { return largest_crf > 0; }
+    /// Y, Cb and Cr, in one of the pixel formats.
+    bool is_yuv() const { return is_encoded() || format == FilmFormat::y4m; }
+    /// Whether a film can be joined from parts.
+    bool has_parts() const { return is_encoded() || format == FilmFormat::png; }
+    /// Whether it can be written to a pipe while it is made.
+    bool is_streamed() const { return is_yuv() || format == FilmFormat::rgb; }
 };
 // most viewers show a GIF frame of 1/100 s for 1/10 s
 inline constexpr std::array film_formats{
@@ -51,6 +60,8 @@ inline constexpr std::array film_formats{
               "an animated PNG has 16 bits for each number of a fraction", 0, 65535},
     FormatRow{FilmFormat::png, "", "PNG sequence", 65535, 0, true},
     FormatRow{FilmFormat::html, "", "HTML page", 65535, 0, true},
+    FormatRow{FilmFormat::y4m, "", "Y4M", 65535},
+    FormatRow{FilmFormat::rgb, "", "raw RGB", 65535, 0, true},
 };
 
 /// The codecs to choose from; empty if the format has only one.
@@ -65,12 +76,24 @@ struct VideoOptions {
     Size size;                 // px; even if chroma is subsampled
     long fps_numerator = 120;  // frames/s
     long fps_denominator = 1;
-    PixelFormat pixel_format = PixelFormat::yuv420;  // gif and apng: not used
+    PixelFormat pixel_format = PixelFormat::yuv420;  // gif, apng and rgb: not used
     std::string preset = "doppel";                   // of encoder_presets; gif and apng: not used
     int crf = 18;  // h264 0…51, vp9 and av1 0…63, lower is better; gif and apng: not used
     bool transparent =
         false;  // store the alpha channel (apng, and webm with vp9); otherwise pictures are taken as opaque
     Metadata metadata = {};
+    bool is_stream = false;        // written to a pipe: an MP4 is fragmented
+    std::string part_header = {};  // write a part of the film instead, with this header
+    long first_frame = 0;          // of the part
+
+    long frames = 0;  // of the whole film; 0: unknown, and it is one segment
+
+    /// Frames from a key frame to the next, at most 5 s.
+    long key_interval() const { return std::max(5 * fps_numerator / fps_denominator, 1L); }
+    /// Frames of a segment, about 5 s; the last one has up to twice as many. Segments are encoded independently, so that
+    /// films can be joined from parts. (Of fewer than 8 frames x264 may not space the decoding times evenly.)
+    long segment() const { return key_interval() * ((8 + key_interval() - 1) / key_interval()); }
+    long segments() const { return std::max(frames / segment(), 1L); }
 };
 
 /// An option that the format does not allow: its name in presets, and what it must be ("must be even, as …").
@@ -83,7 +106,7 @@ struct FormatError {
 std::optional<FormatError> format_error(const VideoOptions& options);
 std::optional<FormatError> rate_error(const VideoOptions& options);
 
-/// ".mp4", ".webm", ".gif", ".apng", ".html".
+/// ".mp4", ".webm", …
 inline std::string extension(FilmFormat format) {
     return "." + std::string(format_names[static_cast<std::size_t>(format)]);
 }

@@ -5,6 +5,8 @@
 #include "output/files.hpp"
 #include "output/sink.hpp"
 
+#include <unistd.h>
+
 extern "C" {
 #include <libavutil/imgutils.h>
 #include <libavutil/log.h>
@@ -16,10 +18,13 @@ extern "C" {
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
+#include <map>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -51,19 +56,53 @@ Libav<T> owned(T* thing) {
 
 /// A muxer that writes the open file. libav would open files by name and follow links, so the path of the descriptor is
 /// used. (It opens an MP4 again, to put the index at the front.)
-Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, const char* container) {
+Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, const Encoding& encoding) {
     capture_libav_log();
-    const auto address = fmt::format("file:/proc/self/fd/{}", fileno(file));
+    const auto address = fmt::format("{}{}", encoding.is_stream ? "pipe:" : "file:/proc/self/fd/", fileno(file));
     AVFormatContext* format = nullptr;
-    avformat_alloc_output_context2(&format, nullptr, container, address.c_str());
+    avformat_alloc_output_context2(&format, nullptr, encoding.container, address.c_str());
     auto muxer = owned(format);
+    if (encoding.container == std::string_view("yuv4mpegpipe"))
+        muxer->strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;  // ten bits
     check_libav(avio_open(&muxer->pb, address.c_str(), AVIO_FLAG_WRITE), path, "cannot be written");
     return muxer;
+}
+
+Stream output_file(const std::filesystem::path& place) {
+    if (place != "-") return create_file(place);
+    Stream file(fdopen(dup(STDOUT_FILENO), "wb"));
+    if (!file) throw cannot("standard output", "written");
+    return file;
 }
 
 bool has_chroma(AVPixelFormat pixels) {
     const AVPixFmtDescriptor& about = *av_pix_fmt_desc_get(pixels);
     return !(about.flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL));
+}
+
+FilmPacket packet_of(const AVPacket& packet) {
+    const auto text = [](const std::uint8_t* bytes, std::size_t size) {
+        return std::string(reinterpret_cast<const char*>(bytes), size);
+    };
+    FilmPacket part{packet.pts, packet.dts, packet.flags, text(packet.data, static_cast<std::size_t>(packet.size))};
+    for (int i = 0; i < packet.side_data_elems; ++i) {
+        const auto& side = packet.side_data[i];
+        part.side_data.emplace_back(static_cast<int>(side.type), text(side.data, side.size));
+    }
+    return part;
+}
+
+void fill(AVPacket& packet, const FilmPacket& part) {
+    if (av_new_packet(&packet, static_cast<int>(part.bytes.size())) < 0) throw std::bad_alloc();
+    std::memcpy(packet.data, part.bytes.data(), part.bytes.size());
+    packet.pts = part.pts;
+    packet.dts = part.dts;
+    packet.flags = part.flags;
+    for (const auto& [type, bytes] : part.side_data) {
+        auto* place = av_packet_new_side_data(&packet, static_cast<AVPacketSideDataType>(type), bytes.size());
+        if (!place) throw std::bad_alloc();
+        std::memcpy(place, bytes.data(), bytes.size());
+    }
 }
 
 void tag_bt709(AVCodecContext& codec) {
@@ -165,14 +204,18 @@ Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& 
 }
 
 Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const std::atomic<bool>& stop)
-    : path_(place.string()),
+    : path_(place == "-" ? "standard output" : place.string()),
       encoding_(std::move(encoding)),
       stop_(stop),
-      file_(create_file(place)),
-      format_(open_format(file_.get(), path_, encoding_.container)),
       packet_(owned(av_packet_alloc())) {
-    for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
     frame_ = make_frame(encoding_.size, encoding_.pixels);
+    if (!encoding_.part_header.empty()) {
+        part_.emplace(place, encoding_.part_header);
+        return;
+    }
+    file_ = output_file(place);
+    format_ = open_format(file_.get(), path_, encoding_);
+    for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
 }
 
 void Encoder::write_header() {
@@ -206,10 +249,18 @@ AVFrame& Encoder::frame() {
 void Encoder::send_frame(std::int64_t time, std::int64_t duration) {
     frame_->pts = time;
     duration_ = duration;
+    const auto segment = time / encoding_.segment;
+    if (codec_ && time % encoding_.segment == 0 && segment < encoding_.segments) end_segment();
     if (!codec_) codec_ = open_encoder(encoding_, path_);
     check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
-    if (!stream_) write_header();
     write_packets();
+}
+
+/// Writes the packets that the encoder still holds, and closes it.
+void Encoder::end_segment() {
+    check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
+    write_packets();
+    codec_.reset();
 }
 
 /// Muxes all packets that the encoder has finished.
@@ -219,12 +270,38 @@ void Encoder::write_packets() {
         const int result = avcodec_receive_packet(codec_.get(), packet_.get());
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "cannot be encoded");
-        if (!encoding_.png_chunks.empty()) insert_png_chunks();
-        packet_->duration = duration_;
-        av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
-        check(av_write_frame(format_.get(), packet_.get()), "cannot be written");
+        if (part_)
+            part_->add(packet_of(*packet_));
+        else
+            write_packet();
         av_packet_unref(packet_.get());
     }
+}
+
+void Encoder::write_packet() {
+    if (!stream_) write_header();
+    if (!encoding_.png_chunks.empty()) insert_png_chunks();
+    packet_->duration = duration_;
+    end_ = std::max(end_, packet_->pts + duration_);
+    av_packet_rescale_ts(packet_.get(), encoding_.tick, stream_->time_base);
+    check(av_write_frame(format_.get(), packet_.get()), "cannot be written");
+}
+
+/// The header needs an open encoder. It gets a frame, as some encoders need one, and is closed.
+void Encoder::add(const FilmPacket& packet) {
+    if (!stream_) {
+        codec_ = open_encoder(encoding_, path_);
+        frame_->pts = 0;
+        check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
+        write_header();
+        check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
+        while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) av_packet_unref(packet_.get());
+        codec_.reset();
+    }
+    throw_if_set(stop_);
+    fill(*packet_, packet);
+    write_packet();
+    av_packet_unref(packet_.get());
 }
 
 /// The header of an APNG is part of the first packet.
@@ -239,10 +316,31 @@ void Encoder::insert_png_chunks() {
     encoding_.png_chunks.clear();
 }
 
+/// Chapters in the order of time; of those that begin together the last one.
+void Encoder::write_chapters() {
+    std::map<std::int64_t, std::string> titles;
+    for (const auto& [time, title] : chapters_) titles[time] = title;
+    const auto count = static_cast<unsigned>(titles.size());
+    if (count == 0) return;
+    format_->chapters = static_cast<AVChapter**>(av_calloc(count, sizeof(AVChapter*)));
+    if (!format_->chapters) throw std::bad_alloc();
+    for (auto at = titles.begin(); at != titles.end(); ++at) {
+        auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
+        if (!chapter) throw std::bad_alloc();
+        format_->chapters[format_->nb_chapters++] = chapter;
+        chapter->id = static_cast<int>(format_->nb_chapters);
+        chapter->time_base = encoding_.tick;
+        chapter->start = at->first;
+        chapter->end = std::next(at) == titles.end() ? end_ : std::next(at)->first;
+        check(av_dict_set(&chapter->metadata, "title", at->second.c_str(), 0), "no memory for chapters");
+    }
+}
+
 void Encoder::finish(std::string_view ending, int replaced) {
+    if (codec_) end_segment();
+    if (part_) return part_->finish();
     if (!stream_) throw std::logic_error("a video without frames");
-    check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
-    write_packets();
+    if (!encoding_.is_stream) write_chapters();
     check(av_write_trailer(format_.get()), "the end cannot be written");
     if (!ending.empty()) {
         check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
+#include "output/film_part.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
 
@@ -46,7 +47,10 @@ struct Encoding {
     AVPixelFormat pixels;    // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     Size size;
     AVRational frame_rate;
-    AVRational tick;  // time base, s
+    AVRational tick;                 // time base, s
+    long segment = 1, segments = 1;  // frames after which the encoder starts anew, and the number of such segments
+    bool is_stream = false;          // the file cannot seek
+    std::string part_header{};       // writes a part with this header instead of a video
     std::size_t threads = 1;
     Metadata encoder_options = {}, container_options = {};  // with libav's names
     Metadata metadata = {};
@@ -71,11 +75,12 @@ Libav<AVFrame> make_frame(Size size, AVPixelFormat pixels);
 /// Copies the changed areas to their places in the frame.
 void put(const SampledAreas& changes, AVFrame& frame);
 
-/// An encoder and its output file. All functions throw Error: exit 4 with the path and libav's reason, exit 130 soon
-/// after `stop` is set.
+/// An encoder and its output file, a video or a part of one. All functions throw Error: exit 4 with the path and
+/// libav's reason, exit 130 soon after `stop` is set.
 class Encoder {
 public:
-    /// Opens the file. The encoder is opened with the first frame: SVT-AV1 hangs if closed without one.
+    /// Opens the file; "-" is standard output. The encoder is opened with the first frame: SVT-AV1 hangs if closed
+    /// without one.
     Encoder(const std::filesystem::path& place, Encoding encoding, const std::atomic<bool>& stop);
 
     AVPixelFormat pixels() const { return encoding_.pixels; }
@@ -83,6 +88,10 @@ public:
     AVFrame& frame();
     /// Encodes frame() with this start and duration, in ticks.
     void send_frame(std::int64_t time, std::int64_t duration);
+    /// Adds a packet of a part, in place of frames. All packets are required, in order.
+    void add(const FilmPacket& packet);
+    /// A chapter that begins at this tick, and ends where the next one begins.
+    void add_chapter(std::int64_t time, const std::string& title) { chapters_.emplace_back(time, title); }
     /// Sets an option of the container; it takes effect at the next write.
     void set_option(const char* name, const std::string& value);
     /// Completes the file after the last frame; at least one frame is required. Then overwrites its last `replaced`
@@ -91,7 +100,10 @@ public:
 
 private:
     void write_header();
+    void write_chapters();
+    void end_segment();
     void write_packets();
+    void write_packet();
     void insert_png_chunks();
     void check(int result, std::string_view what) const;
 
@@ -99,12 +111,14 @@ private:
     Encoding encoding_;
     const std::atomic<bool>& stop_;
     Stream file_;
-    Libav<AVFormatContext> format_;  // writes the file
+    std::optional<FilmPartWriter> part_;
+    Libav<AVFormatContext> format_;  // writes the file, unless it is a part
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;
     Libav<AVPacket> packet_;
     AVStream* stream_ = nullptr;
-    std::int64_t duration_ = 1;
+    std::int64_t duration_ = 1, end_ = 0;  // of the last packet, ticks
+    std::vector<std::pair<std::int64_t, std::string>> chapters_;
 };
 
 }  // namespace doppel

@@ -13,6 +13,7 @@ class VideoSink final : public Sink {
 public:
     VideoSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : encoder_(place, encoding_of(options), stop),
+          sent_(options.first_frame),
           encoding_(1, affordable(byte_count(pixels_, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { encode(changes); }) {}
 
@@ -21,6 +22,8 @@ public:
         convert(picture, changed, pixels_, changes);
         encoding_.give(std::move(changes));
     }
+
+    void add_chapter(long frame, const std::string& title) override { encoder_.add_chapter(frame, title); }
 
     void finish() override {
         encoding_.finish();
@@ -36,12 +39,40 @@ private:
 
     Encoder encoder_;
     const AVPixelFormat pixels_ = encoder_.pixels();
-    std::int64_t sent_ = 0;
+    std::int64_t sent_;
     Pool<SampledAreas> spare_;
     Workers<SampledAreas> encoding_;
 };
 
+/// Takes no pictures: the packets of the parts are those of the film.
+class JoiningSink final : public Sink {
+public:
+    JoiningSink(const std::filesystem::path& place, const VideoOptions& options,
+                std::vector<std::filesystem::path> parts, const std::atomic<bool>& stop)
+        : encoder_(place, encoding_of(options), stop), parts_(std::move(parts)) {}
+
+    void take(const Picture& /*picture*/, const std::vector<Rect>& /*changed*/) override {}
+    void add_chapter(long frame, const std::string& title) override { encoder_.add_chapter(frame, title); }
+
+    void finish() override {
+        for (const auto& path : parts_) {
+            FilmPartReader part(path);
+            while (const auto packet = part.next()) encoder_.add(*packet);
+        }
+        encoder_.finish();
+    }
+
+private:
+    Encoder encoder_;
+    const std::vector<std::filesystem::path> parts_;
+};
+
 }  // namespace
+
+std::unique_ptr<Sink> join_film_parts(const std::filesystem::path& place, const VideoOptions& options,
+                                      std::vector<std::filesystem::path> parts, const std::atomic<bool>& stop) {
+    return std::make_unique<JoiningSink>(place, options, std::move(parts), stop);
+}
 
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop) {

@@ -36,13 +36,12 @@ Metadata x264_options(const VideoOptions& options) {
     if (options.preset != "doppel") return {{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
     const int finer = options.pixel_format == PixelFormat::yuv420_10 ? 12 : 0;  // 6 quantizer steps for each bit
     const int quantizer = options.crf == 0 ? 0 : std::min(options.crf + 7, 51) + finer;
-    const auto key_interval = 5 * options.fps_numerator / options.fps_denominator;
     return {
         {"preset", "veryfast"},
         {"x264-params", fmt::format("qp={}:ipratio=3:pbratio=2.5:bframes=3:deadzone-inter=14:partitions=all:b-adapt=0:"
                                     "b-pyramid=none:direct=temporal:weightb=0:weightp=0:subme=2:mbtree=0:aq-mode=0:"
                                     "rc-lookahead=0:scenecut=0:sliced-threads=1:keyint={}",
-                                    quantizer, std::max(key_interval, 1L))}};
+                                    quantizer, options.key_interval())}};
 }
 
 /// Settings of "doppel", found with tests/bench/encoders, as for screen sharing: an eighth of the CPU time for 1.2
@@ -87,13 +86,16 @@ long mp4_timescale(const VideoOptions& options) {
 }
 
 void choose_encoder(const VideoOptions& options, Encoding& encoding) {
+    const auto& row = format_row(options.format, options.codec);
+    if (row.has_parts()) encoding.segment = options.segment(), encoding.segments = options.segments();
     switch (options.format) {
         case FilmFormat::mp4:
             encoding.encoder = &find_encoder({"libx264"}, AV_CODEC_ID_H264);
             encoding.encoder_options = x264_options(options);
             if (options.preset == "doppel") encoding.threads = slice_threads;
-            encoding.container_options = {{"movflags", "+faststart"},
-                                          {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
+            encoding.container_options = {
+                {"movflags", options.is_stream ? "+frag_keyframe+empty_moov+default_base_moof" : "+faststart"},
+                {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
             break;
         case FilmFormat::webm:
             if (options.codec == "av1") {
@@ -113,6 +115,13 @@ void choose_encoder(const VideoOptions& options, Encoding& encoding) {
             encoding.container_options = {{"plays", "0"}};
             encoding.png_chunks = png_text_chunks(options.metadata);
             break;
+        case FilmFormat::y4m:
+        case FilmFormat::rgb:
+            encoding.container = options.format == FilmFormat::y4m ? "yuv4mpegpipe" : "rawvideo";
+            encoding.encoder =
+                &find_encoder({options.format == FilmFormat::y4m ? "wrapped_avframe" : "rawvideo"},
+                              options.format == FilmFormat::y4m ? AV_CODEC_ID_WRAPPED_AVFRAME : AV_CODEC_ID_RAWVIDEO);
+            break;
         case FilmFormat::png:
         case FilmFormat::html:
             throw std::logic_error("no encoder writes this format");
@@ -121,7 +130,8 @@ void choose_encoder(const VideoOptions& options, Encoding& encoding) {
 
 AVPixelFormat pixels_of(const VideoOptions& options) {
     if (options.format == FilmFormat::gif) return AV_PIX_FMT_PAL8;
-    if (options.format == FilmFormat::apng) return options.transparent ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
+    if (options.format == FilmFormat::apng || options.format == FilmFormat::rgb)
+        return options.transparent ? AV_PIX_FMT_RGBA : AV_PIX_FMT_RGB24;
     if (options.pixel_format == PixelFormat::yuv444) return AV_PIX_FMT_YUV444P;
     if (options.pixel_format == PixelFormat::yuv420_10) return AV_PIX_FMT_YUV420P10LE;
     return options.transparent ? AV_PIX_FMT_YUVA420P : AV_PIX_FMT_YUV420P;
@@ -142,6 +152,8 @@ Encoding encoding_of(const VideoOptions& options) {
                       .size = options.size,
                       .frame_rate = rate,
                       .tick = av_inv_q(rate),
+                      .is_stream = options.is_stream,
+                      .part_header = options.part_header,
                       .threads = encoder_threads,
                       .metadata = options.metadata};
     choose_encoder(options, encoding);

@@ -108,7 +108,7 @@ bool made_by(const fs::path& path, std::string_view program) {
         return head.starts_with(fmt::format("{}<!-- {} ", start, program));
     };
     return begins("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") || begins("<!DOCTYPE html>\n") ||
-           head.starts_with(R"({"file":"doppel trials")");
+           head.starts_with(R"({"file":"doppel )");  // a part of a figure or film, or a recording
 }
 
 std::string sha256_of_file(const fs::path& path) {

@@ -244,7 +244,8 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
 
 void format_fields(KeyVisitor& visit, VideoSpec& video) {
     static const auto codecs = codecs_of(FilmFormat::webm);
-    visit({"format", "file format; png: one picture a frame; html: a page to use in a browser"}, video.format);
+    visit({"format", "file format; png: one picture a frame; html: a page to use in a browser; y4m, rgb: uncompressed"},
+          video.format);
     const auto only = [&](bool applies, const char* what) {
         return Condition{applies, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
                          visit.from_command_line("format"), false, "format"};
@@ -253,10 +254,15 @@ void format_fields(KeyVisitor& visit, VideoSpec& video) {
     const bool is_webm = video.format == FilmFormat::webm;
     const auto encoded = only(row.is_encoded(), "of mp4 and webm");
     visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
-    visit({"pixel_format", "of mp4 and webm", "", {}, "", encoded}, video.pixel_format);
-    visit(
-        {"transparent", "no background; of png, apng, html and webm (VP9)", "", {}, "", {.applies = video.transparent}},
-        video.transparent);
+    visit({"pixel_format", "of mp4, webm and y4m", "", {}, "", only(row.is_yuv(), "of mp4, webm and y4m")},
+          video.pixel_format);
+    visit({"transparent",
+           "no background; of png, apng, html, rgb and webm (VP9)",
+           "",
+           {},
+           "",
+           {.applies = video.transparent}},
+          video.transparent);
     visit({"position_bits", "of html: bits of a position, where the page holds the motion", "", from_to(16, 24), "",
            only(video.format == FilmFormat::html, "of html")},
           video.position_bits);

@@ -125,6 +125,20 @@ TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     wait_for(child);
 }
 
+// a whole film of this length would take minutes
+TEST(Streams, AFilmIsStreamedWhileItIsMade) {
+    const auto folder = fresh_folder();
+    const auto piped = shell(folder,
+                             "\"$DOPPEL\" render calm --size 64x64 --set scene.duration_s=2000 --format y4m -o - "
+                             "--progress none 2>errors | head -c 20000 | wc -c");
+    EXPECT_EQ(piped.out, "20000\n");
+    EXPECT_EQ(bytes_of(folder / "errors"), "doppel: standard output: cannot be written: Broken pipe\n");
+    EXPECT_FALSE(fs::exists(folder / "out"));
+    const auto both = shell(folder, "\"$DOPPEL\" render calm -o - --shard 1/2");
+    EXPECT_EQ(both.code, 2);
+    EXPECT_EQ(both.err, "doppel: -o -: parts and their merge need a folder; give another --out\n");
+}
+
 TEST(Streams, AnEmptyArgumentIsNotTakenForNone) {
     const auto folder = fresh_folder();
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases{

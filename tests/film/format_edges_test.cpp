@@ -31,10 +31,10 @@ Preset read(const FormatRow& row, const Edge& edge) {
 TEST(FormatEdges, TheReaderRefusesWhatTheSinkRefuses) {
     const std::array edges{
         Edge{{64, 64}, "25"},
-        Edge{{65, 64}, "25", {"H.264", "VP9", "AV1"}},
+        Edge{{65, 64}, "25", {"H.264", "VP9", "AV1", "Y4M"}},
         Edge{{16384, 64}, "25"},
         Edge{{64, 16384}, "25"},
-        Edge{{16384, 16384}, "25", {"H.264", "VP9", "AV1", "GIF", "animated PNG"}},
+        Edge{{16384, 16384}, "25", {"H.264", "VP9", "AV1", "GIF", "animated PNG", "Y4M", "raw RGB"}},
         Edge{{64, 64}, "1"},
         Edge{{64, 64}, "1/655", {"AV1"}},
         Edge{{64, 64}, "1/656", {"AV1", "GIF"}},

@@ -73,6 +73,12 @@ void describe(const AVFormatContext& format, const AVStream& stream, Video& vide
     video.average_rate = ratio(stream.avg_frame_rate);
     video.base_rate = ratio(stream.r_frame_rate);
     video.duration = seconds(stream.duration, stream.time_base);
+    for (unsigned k = 0; k < format.nb_chapters; ++k) {
+        const AVChapter& chapter = *format.chapters[k];
+        const auto* title = av_dict_get(chapter.metadata, "title", nullptr, 0);
+        video.chapters.emplace_back(av_q2d(chapter.time_base) * static_cast<double>(chapter.start),
+                                    title ? title->value : "");
+    }
 }
 
 /// The duration in ticks of the stream.
@@ -134,7 +140,12 @@ Video read_video(const std::filesystem::path& path, const std::function<void(con
     AVFormatContext* opened = nullptr;
     check(avformat_open_input(&opened, ("file:" + path.string()).c_str(), nullptr, nullptr) >= 0, path, "not opened");
     const std::unique_ptr<AVFormatContext, Free> format(opened);
-    check(avformat_find_stream_info(opened, nullptr) >= 0 && format->nb_streams == 1, path, "not one stream");
+    check(avformat_find_stream_info(opened, nullptr) >= 0, path, "no streams");
+    // an MP4 has its chapters in a second stream, of text
+    const bool has_chapters = format->nb_streams == 2 && format->nb_chapters > 0 &&
+                              format->streams[1]->codecpar->codec_type == AVMEDIA_TYPE_DATA;
+    check(format->nb_streams == 1 || has_chapters, path, "not one stream");
+    if (has_chapters) format->streams[1]->discard = AVDISCARD_ALL;
     const AVStream& stream = *format->streams[0];
     const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
     // libav's own decoder ignores alpha
@@ -160,7 +171,8 @@ Video read_video(const std::filesystem::path& path, const std::function<void(con
         }
     };
     while (av_read_frame(format.get(), packet.get()) >= 0) {
-        check(avcodec_send_packet(codec.get(), packet.get()) >= 0, path, "a packet is refused");
+        if (packet->stream_index == 0)
+            check(avcodec_send_packet(codec.get(), packet.get()) >= 0, path, "a packet is refused");
         av_packet_unref(packet.get());
         take_frames();
     }

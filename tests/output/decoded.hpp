@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace doppel::test {
@@ -30,6 +31,7 @@ struct Video {
     Ratio duration;                               // s
     std::vector<Ratio> times, lasting;            // s, one for each frame, in display order
     bool index_at_front = false;                  // moov before mdat
+    std::vector<std::pair<double, std::string>> chapters;  // start, s; title
 };
 
 /// One decoded frame: luma of YUV; the picture of RGB (gif, apng); alpha if present.

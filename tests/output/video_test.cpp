@@ -66,6 +66,56 @@ TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     }
 }
 
+TEST(Streamed, AreWholeWithoutSeeking) {
+    const auto folder = fresh_folder();
+    for (const auto format : {FilmFormat::mp4, FilmFormat::webm}) {
+        const VideoOptions options{.format = format, .size = small, .fps_numerator = 25, .is_stream = true};
+        const auto video = read_video(film(folder / ("x" + extension(format)), options, 30));
+        EXPECT_EQ(video.times.size(), 30U);
+        EXPECT_EQ(video.average_rate, (Ratio{25, 1}));
+        expect_bt709(video);
+    }
+}
+
+TEST(Y4m, HasAHeaderAndTheFrames) {
+    const auto folder = fresh_folder();
+    for (const auto& [pixels, chroma, bytes] : {std::tuple{PixelFormat::yuv420, "C420jpeg", 1.5},
+                                                {PixelFormat::yuv444, "C444", 3.0},
+                                                {PixelFormat::yuv420_10, "C420p10", 3.0}}) {
+        const VideoOptions options{
+            .format = FilmFormat::y4m, .size = {64, 36}, .fps_numerator = 25, .pixel_format = pixels};
+        const auto text = bytes_of(film(folder / "x.y4m", options, 3));
+        const auto header = text.substr(0, text.find('\n') + 1);
+        EXPECT_TRUE(header.starts_with(fmt::format("YUV4MPEG2 W64 H36 F25:1 Ip A0:0 {} ", chroma))) << header;
+        EXPECT_EQ(text.substr(header.size(), 6), "FRAME\n");
+        EXPECT_EQ(text.size(), header.size() + 3 * (6 + static_cast<std::size_t>(bytes * 64 * 36)));
+    }
+    const VideoOptions options{.format = FilmFormat::y4m, .size = small, .fps_numerator = 25};
+    read_video(film(folder / "x.y4m", options, 2), [](const Luma& frame) {
+        // 49 dB is what rounding to 8 bits of limited range leaves; measured 58
+        EXPECT_GT(luma_psnr(moving_scene(small, frame.frame), frame), 49);
+    });
+}
+
+TEST(Rgb, IsThePixels) {
+    const auto folder = fresh_folder();
+    for (const bool transparent : {false, true}) {
+        const VideoOptions options{
+            .format = FilmFormat::rgb, .size = {64, 36}, .fps_numerator = 25, .transparent = transparent};
+        const auto bytes = bytes_of(film(folder / "x.rgb", options, 3));
+        const std::size_t channels = transparent ? 4 : 3;
+        ASSERT_EQ(bytes.size(), 3 * 64 * 36 * channels);
+        for (long k = 0; k < 3; ++k) {
+            const auto picture = moving_scene({64, 36}, k);
+            for (std::size_t pixel = 0; pixel < 64 * 36; ++pixel)
+                for (std::size_t c = 0; c < channels; ++c)
+                    ASSERT_EQ(static_cast<std::uint8_t>(
+                                  bytes[(64 * 36 * static_cast<std::size_t>(k) + pixel) * channels + c]),
+                              picture.rgba[4 * pixel + c]);
+        }
+    }
+}
+
 /// The times of the key frames, s.
 std::vector<double> key_times(const fs::path& path) {
     std::vector<double> times;
