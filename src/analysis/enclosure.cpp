@@ -1,7 +1,6 @@
 #include "analysis/enclosure.hpp"
 
 #include "analysis/ball_series.hpp"
-#include "base/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -156,7 +155,7 @@ public:
                 for (const double x : image[i]) sum[i] += std::abs(x);
         }
         const double more = 1 + 0x1p-50 * (8 + static_cast<double>(boxes_.size()));
-        for (auto& x : sum) x = widened(x * more);
+        for (auto& x : sum) x = x == 0 ? 0 : widened(x * more);
         return sum;
     }
     void map(const Matrix& m) {
@@ -348,21 +347,22 @@ EnclosedState<Scalar> enclosed_start(const DecimalPendulum& system) {
     EnclosedState<Scalar> start;
     for (std::size_t i = 0; i < 4; ++i) {
         const auto& degrees = i < 2 ? system.angle_deg[i] : system.omega_deg_per_s[i - 2];
-        start[i] = Ball<Scalar>(ball_of_decimal<Ball<Wide>>(degrees) * pi_ball<Ball<Wide>>() / Ball<Wide>(180));
+        const auto number = ball_of_decimal<Ball<Wide>>(degrees);
+        if (number.radius > 0) start[i] = Ball<Scalar>(number * pi_ball<Ball<Wide>>() / Ball<Wide>(180));
     }
     return start;
 }
 
 template <class Scalar>
 std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum& system, const EnclosedState<Scalar>& start,
-                                              const EnclosureSpec& spec, const std::atomic<bool>& stop) {
+                                              const EnclosureSpec& spec, const std::function<void(long)>& watch) {
     Enclosure<Scalar> enclosure(system, start, spec);
     std::vector<EnclosedState<Scalar>> all{enclosure.here()};
     const auto is_wide = [&](const EnclosedState<Scalar>& state) {
         return !std::all_of(state.begin(), state.end(), [&](const auto& x) { return x.radius <= spec.largest_radius; });
     };
     while (static_cast<long>(all.size()) <= spec.samples) {
-        throw_if_set(stop);
+        watch(static_cast<long>(all.size()));
         const auto passed = enclosure.step();
         if (!passed) break;
         for (const auto& state : *passed) {
@@ -376,7 +376,7 @@ std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum& system, con
 #define DOPPEL_ENCLOSURES(Scalar)                                                                                \
     template EnclosedState<Scalar> enclosed_start<Scalar>(const DecimalPendulum&);                               \
     template std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum&, const EnclosedState<Scalar>&, \
-                                                           const EnclosureSpec&, const std::atomic<bool>&);
+                                                           const EnclosureSpec&, const std::function<void(long)>&);
 DOPPEL_ENCLOSURES(double)
 DOPPEL_ENCLOSURES(Quad)
 DOPPEL_ENCLOSURES(Wide)

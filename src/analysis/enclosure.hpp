@@ -1,29 +1,14 @@
 #pragma once
 
+#include "analysis/certified_pair.hpp"
 #include "numeric/ball.hpp"
 #include "numeric/rational.hpp"
 
 #include <array>
-#include <atomic>
-#include <string>
+#include <functional>
 #include <vector>
 
 namespace doppel {
-
-/// Two ideal links, by the decimals of their numbers.
-struct DecimalPendulum {
-    struct Droplet {
-        std::string constant, mass;        // G, m³/(kg s²); kg
-        std::array<std::string, 2> place;  // m
-
-        friend bool operator==(const Droplet&, const Droplet&) = default;
-    };
-    std::array<std::string, 2> mass, length, angle_deg, omega_deg_per_s;  // kg, m, °, °/s
-    std::string gravity;                                                  // m/s²
-    std::vector<Droplet> droplets = {};
-
-    friend bool operator==(const DecimalPendulum&, const DecimalPendulum&) = default;
-};
 
 /// Scales of what an enclosure counts; all 1 for a proof. Tests leave parts out to see that they are needed.
 struct EnclosureCount {
@@ -47,7 +32,7 @@ template <class Scalar>
 EnclosedState<Scalar> enclosed_start(const DecimalPendulum& system);
 
 /// Sets that contain the true states at samples 0, 1 … for all starts in `start`; fewer than required where the proof
-/// ends. Throws Error (exit 130) soon after `stop` is set.
+/// ends. Calls watch(samples) after each step; it may throw.
 ///
 /// The set is c + e, with e in a zonotope: a sum of boxes b_j mapped by matrices G_j. A step of length h uses
 ///     φ(c + e) ∈ p(1) + r + J e
@@ -59,6 +44,6 @@ EnclosedState<Scalar> enclosed_start(const DecimalPendulum& system);
 ///         Computing 61:47.
 template <class Scalar>
 std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum& system, const EnclosedState<Scalar>& start,
-                                              const EnclosureSpec& spec, const std::atomic<bool>& stop);
+                                              const EnclosureSpec& spec, const std::function<void(long)>& watch);
 
 }  // namespace doppel

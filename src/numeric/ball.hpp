@@ -149,6 +149,7 @@ B ball_of_decimal(std::string_view text) {
             break;
         }
     }
+    if (count == 0) return B(0);
     for (int i = 0; i < std::abs(exponent); ++i) scale *= B(10);
     const B size = exponent < 0 ? digits / scale : digits * scale;
     constexpr int exact_digits = 33;

@@ -13,6 +13,7 @@ namespace doppel {
 namespace enclosure_test {
 
 const std::atomic<bool> never = false;
+const auto unwatched = [](long) {};
 
 const DecimalPendulum right_angles{{"1", "1"}, {"1", "1"}, {"90", "90"}, {"0", "0"}, "9.8"};
 const DecimalPendulum uneven{{"0.7", "1.3"}, {"1.1", "0.6"}, {"120", "-35"}, {"40", "-90"}, "9.81"};
@@ -78,7 +79,7 @@ std::vector<EnclosedState<Scalar>> enclosed(const DecimalPendulum& p, long sampl
     spec.samples = samples;
     auto start = enclosed_start<Scalar>(p);
     for (auto& x : start) x.radius += radius;
-    return enclosures<Scalar>(p, start, spec, never);
+    return enclosures<Scalar>(p, start, spec, unwatched);
 }
 
 template <class Scalar>
@@ -181,7 +182,7 @@ TEST(Enclosure, ReversedTimeReturnsToASetThatContainsTheStart) {
     for (const std::size_t i : {2u, 3u}) back[i].center = -back[i].center;
     EnclosureSpec spec;
     spec.samples = 240;
-    const auto end = enclosures<Quad>(uneven, back, spec, never).back();
+    const auto end = enclosures<Quad>(uneven, back, spec, unwatched).back();
     const auto start = enclosed_start<Quad>(uneven);
     for (std::size_t i = 0; i < 4; ++i) {
         const Quad sign = i < 2 ? 1 : -1;
