@@ -8,6 +8,7 @@
 #include "film/film.hpp"
 #include "film/page.hpp"
 #include "scene/captions.hpp"
+#include "scene/certificate.hpp"
 #include "scene/forecast.hpp"
 #include "scene/method_choice.hpp"
 
@@ -216,6 +217,8 @@ void print(const SceneCheck& check) {
         if (forecast) print_forecast(scene, side, *forecast);
         for (const auto& alternative : alternatives) print_line("         {}", alternative);
     }
+    if (scene.certificate)
+        for (const auto& sentence : certificate_words(scene, *scene.certificate)) print_line("  proof  {}", sentence);
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),
                scene.samples, scene.preset.sample_hz.text(),
@@ -300,6 +303,7 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     json["render_s"] = check.render ? Json(check.render->seconds) : Json(nullptr);
     json["times_are_least"] = check.simulation.at_least;
     add_needs(json, check.render);
+    if (scene.certificate) json["certificate"] = certificate_json(scene, *scene.certificate);
     json["horizon_s"] = scene.horizon() ? Json(*scene.horizon()) : Json(nullptr);
     json["warnings"] = std::move(warnings);
     return json;

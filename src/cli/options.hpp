@@ -79,6 +79,11 @@ Override size_override(const std::string& key, const std::string& size);
 /// Throws Error (exit 2) if the results of two presets, `paths`, would have the same names.
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths);
 
+/// Reads the scenes of all presets before the first one runs. `more` = overrides from other options.
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
+/// The files that these runs read.
+std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
+
 /// The values of --set.
 std::vector<Override> overrides_of(const PresetOptions& options);
 

@@ -40,8 +40,9 @@ std::vector<std::string> columns_of_option(const std::string& text) {
     return names;
 }
 
-/// Reads the scenes of all presets before the first one runs. `more` = overrides from other options.
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {}) {
+}  // namespace
+
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
     auto overrides = overrides_of(options);
     overrides.insert(overrides.end(), more.begin(), more.end());
     const auto& stop = watch_interrupts();
@@ -70,6 +71,8 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
     }
     return inputs;
 }
+
+namespace {
 
 /// Calls work(scene, report) for each scene and reports progress in `unit`. `streamed` as for ProgressReport.
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
