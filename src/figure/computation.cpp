@@ -167,15 +167,16 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     // evenly spaced groups, until the time is over
     const TimeLimit limit(allowed_s, stop);
     const std::size_t all_groups = (trials + together - 1) / together;
-    double done = 0, seconds = 0, place = 0.5;
-    std::size_t trials_done = 0, numbers_done = 0;
+    double done = 0, seconds = 0, place = 0.5, from = 0;
+    std::size_t first = 0, trials_done = 0, numbers_done = 0;
+    ComputationEstimate estimate;
     try {
         for (std::size_t calls = 0; calls < all_groups && !limit.reached(); ++calls) {
-            const auto first = static_cast<std::size_t>(place * static_cast<double>(all_groups)) * together;
+            first = static_cast<std::size_t>(place * static_cast<double>(all_groups)) * together;
             place += golden - std::floor(place + golden);
             if (experiment.units(first) == 0) continue;
             std::vector<TrialNumbers> numbers(std::min(together, trials - first));
-            const double from = now();
+            from = now();
             experiment.compute(first, numbers, limit.reached());
             seconds += now() - from;
             for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -186,13 +187,16 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
+        // a group that takes longer than all others before counts as done
+        const double cut_s = now() - from;
+        estimate.at_least = cut_s > seconds;
+        for (std::size_t k = first; estimate.at_least && k < std::min(first + together, trials); ++k)
+            done += experiment.units(k);
+        if (estimate.at_least) seconds += cut_s;
     }
-    if (done == 0) seconds = now() - start;
     const auto groups = static_cast<double>((counted + together - 1) / together);
-    ComputationEstimate estimate;
-    estimate.cpu_s = needed_s + seconds * (done > 0 ? total / done : groups);
+    estimate.cpu_s = needed_s + (done > 0 ? seconds * total / done : 0);
     estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), groups);
-    estimate.at_least = done == 0;
     // of a row of the table, of a number in it, and of a pixel drawn and as PNG; measured
     constexpr double row_bytes = 6, text_bytes = 18, drawn_bytes = 8, png_bytes = 0.15;
     const auto size = layout_of(figure.chart).picture;

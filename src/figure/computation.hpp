@@ -76,7 +76,7 @@ private:
 /// What a figure takes, extrapolated from some trials. The process's memory counts from reset_peak_memory() on.
 struct ComputationEstimate : Needs {
     double seconds = 0;     // with as many threads
-    bool at_least = false;  // not one trial was finished in the time allowed: a lower bound
+    bool at_least = false;  // one trial took more than half of the time allowed: a lower bound
 };
 /// Throws the error of a trial; exit 130 soon after `stop` is set.
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
