@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -63,6 +65,19 @@ Machine within_control_groups(Machine machine, const fs::path& root) {
             machine.memory = static_cast<std::uintmax_t>(limit[0]);
         if (folder == top || folder == folder.parent_path()) return machine;
     }
+}
+
+// proc(5). getrusage() would also count the process that started this one.
+double peak_memory() {
+    std::ifstream status("/proc/self/status");
+    constexpr std::string_view key = "VmHWM:";  // kB
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with(key)) return 1024 * std::strtod(line.c_str() + key.size(), nullptr);
+    return 0;
+}
+
+void reset_peak_memory() {
+    std::ofstream("/proc/self/clear_refs") << "5";
 }
 
 std::size_t affordable(std::size_t bytes, std::size_t maximum, const Machine& machine) {

@@ -20,6 +20,18 @@ const Machine& this_machine();
 /// sys/fs/cgroup. A fraction of a core counts as one core.
 Machine within_control_groups(Machine machine, const std::filesystem::path& root);
 
+/// What a run takes from a machine, estimated.
+struct Needs {
+    double cpu_s = 0;           // of all threads
+    double repeated_cpu_s = 0;  // of it: what each shard of the run does again
+    double memory_bytes = 0, disk_bytes = 0;
+    long most_shards = 0;  // 0: it cannot be split
+};
+
+/// The largest memory that this process has had since reset_peak_memory(), bytes; 0 if /proc does not tell.
+double peak_memory();
+void reset_peak_memory();
+
 /// How many objects of `bytes` bytes may exist at the same time, from 1 to `maximum`. Together they take at most a
 /// quarter of the memory, and at most 2 GiB.
 std::size_t affordable(std::size_t bytes, std::size_t maximum, const Machine& machine = this_machine());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <vector>
@@ -121,6 +122,13 @@ std::string bytes_text(double bytes) {
     if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes / 1e3);
     if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
     return bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9) : fmt::format("{:.1f} TB", bytes / 1e12);
+}
+
+std::string duration_text(double seconds) {
+    constexpr double minute = 60, hour = 3600, many_hours = 10 * hour;
+    return seconds < 100          ? fmt::format("{:.2g} s", seconds)
+           : seconds < many_hours ? fmt::format("{:.0f} min", std::ceil(seconds / minute))
+                                  : fmt::format("{:.0f} h", std::ceil(seconds / hour));
 }
 
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates) {

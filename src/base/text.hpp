@@ -37,6 +37,8 @@ std::string shortened(std::string_view text, std::size_t maximum);
 
 /// A size for people: "512 bytes", "64 kB", "1.5 MB", "2.0 GB", "17.6 TB".
 std::string bytes_text(double bytes);
+/// "2.5 s", "28 min", "16 h".
+std::string duration_text(double seconds);
 
 /// The candidate that differs from `word` by a typing error, if there is one.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);

@@ -1,4 +1,5 @@
 #include "base/machine.hpp"
+#include "base/text.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
@@ -7,6 +8,7 @@
 #include "film/film.hpp"
 #include "film/page.hpp"
 #include "scene/captions.hpp"
+#include "scene/certificate.hpp"
 #include "scene/forecast.hpp"
 #include "scene/method_choice.hpp"
 
@@ -122,6 +124,52 @@ std::vector<std::string> alternatives_of(const Scene& scene, Side Scene::*which,
     return all;
 }
 
+/// How a run is best split for a cluster: shards that take half an hour of one core, or less.
+struct Split {
+    long shards = 1;
+    double shard_s, repeated_share;  // CPU time of a shard, and the share of what every shard does again
+};
+
+Split split(const Needs& needs) {
+    constexpr double job_s = 1800;
+    const double once = needs.repeated_cpu_s, rest = needs.cpu_s - once;
+    const double wanted = needs.cpu_s <= job_s ? 1 : std::ceil(rest / std::max(job_s - once, once));
+    Split split{std::lround(std::clamp(wanted, 1.0, std::max(1.0, static_cast<double>(needs.most_shards)))), 0, 0};
+    split.shard_s = once + rest / static_cast<double>(split.shards);
+    split.repeated_share = split.shard_s > 0 ? once / split.shard_s : 0;
+    return split;
+}
+
+void print_needs(const Needs& needs, bool at_least) {
+    print_line("  needs  {} {} of CPU time, {} of memory{}", at_least ? "more than" : "about",
+               duration_text(needs.cpu_s), bytes_text(needs.memory_bytes),
+               std::isnan(needs.disk_bytes) ? "" : fmt::format(", {} of disk", bytes_text(needs.disk_bytes)));
+    const auto [shards, shard_s, repeated_share] = split(needs);
+    if (shards == 1) return;
+    constexpr double worth_a_word = 0.02;
+    print_line("  split  into {} shards, each about {} of one core: --array=1-{}{}", grouped(shards),
+               duration_text(shard_s), shards,
+               repeated_share < worth_a_word
+                   ? ""
+                   : fmt::format("; each simulates the motion again, {:.0f} % of its time", 100 * repeated_share));
+}
+
+/// Adds `needs` to the JSON of a preset; null for what is unknown.
+void add_needs(Json& json, const std::optional<Needs>& needs) {
+    for (const char* key :
+         {"cpu_s", "memory_bytes", "disk_bytes", "shards", "array", "shard_cpu_s", "shard_repeated_share"})
+        json[key] = nullptr;
+    if (!needs) return;
+    const auto [shards, shard_s, repeated_share] = split(*needs);
+    json["cpu_s"] = needs->cpu_s;
+    json["memory_bytes"] = std::llround(needs->memory_bytes);
+    if (!std::isnan(needs->disk_bytes)) json["disk_bytes"] = std::llround(needs->disk_bytes);
+    json["shards"] = shards;
+    if (needs->most_shards > 0) json["array"] = fmt::format("1-{}", shards);
+    json["shard_cpu_s"] = shard_s;
+    json["shard_repeated_share"] = repeated_share;
+}
+
 /// All results of check for a film.
 struct SceneCheck {
     struct OfSide {
@@ -130,16 +178,17 @@ struct SceneCheck {
     };
     const Scene& scene;
     SimulationEstimate simulation;
-    std::optional<double> render_s;
-    std::string why_not;  // if the rendering time is unknown
+    std::optional<RenderEstimate> render;
+    std::string why_not;  // if `render` is unknown
     std::array<OfSide, 2> sides;
 };
 
 SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
     check_video(video_options(scene));
+    reset_peak_memory();
     SceneCheck check{scene, estimated_simulation(scene, stop), {}, {}, {}};
     try {
-        check.render_s = estimated_render(scene, check.simulation, stop);
+        check.render = estimated_render(scene, check.simulation, stop);
     } catch (const Error& error) {
         if (error.code() == ExitCode::interrupted) throw;
         check.why_not = error.what();
@@ -168,6 +217,8 @@ void print(const SceneCheck& check) {
         if (forecast) print_forecast(scene, side, *forecast);
         for (const auto& alternative : alternatives) print_line("         {}", alternative);
     }
+    if (scene.certificate)
+        for (const auto& sentence : certificate_words(scene, *scene.certificate)) print_line("  proof  {}", sentence);
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
     print_line("  time   {} s: samples 0 to {} at {} Hz, {}{} steps in all", scene.preset.duration_s.value(),
                scene.samples, scene.preset.sample_hz.text(),
@@ -181,8 +232,9 @@ void print(const SceneCheck& check) {
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
                video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(scene));
     print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
-               check.render_s ? fmt::format("{:.2g} s to render", *check.render_s)
-                              : "time to render unknown: " + check.why_not);
+               check.render ? fmt::format("{:.2g} s to render", check.render->seconds)
+                            : "time to render unknown: " + check.why_not);
+    if (check.render) print_needs(*check.render, estimate.at_least);
 }
 
 Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
@@ -248,8 +300,10 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     json["format"] = name_of(video.format);
     json["encoding"] = format_words(scene);
     json["simulate_s"] = check.simulation.seconds;
-    json["render_s"] = check.render_s ? Json(*check.render_s) : Json(nullptr);
+    json["render_s"] = check.render ? Json(check.render->seconds) : Json(nullptr);
     json["times_are_least"] = check.simulation.at_least;
+    add_needs(json, check.render);
+    if (scene.certificate) json["certificate"] = certificate_json(scene, *scene.certificate);
     json["horizon_s"] = scene.horizon() ? Json(*scene.horizon()) : Json(nullptr);
     json["warnings"] = std::move(warnings);
     return json;
@@ -264,6 +318,7 @@ struct FigureCheck {
 
 FigureCheck checked(const FigurePreset& figure, const std::atomic<bool>& stop) {
     FigureCheck check{figure, 0, figure.experiment->measures_time() ? 1 : cores(), {}};
+    reset_peak_memory();
     for (std::size_t trial = 0; trial < figure.experiment->trials(); ++trial)
         check.units += figure.experiment->units(trial);
     check.estimate = estimated_computation(figure, check.threads, stop);
@@ -287,6 +342,7 @@ void print(const FigureCheck& check) {
     print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
                estimate.seconds, threads, threads == 1 ? "" : "s", two_digits(units / estimate.seconds),
                figure.experiment->unit());
+    print_needs(estimate, estimate.at_least);
 }
 
 Json json_of(const PresetText& preset, const FigureCheck& check, Json warnings) {
@@ -303,6 +359,7 @@ Json json_of(const PresetText& preset, const FigureCheck& check, Json warnings) 
     json["threads"] = threads;
     json["compute_s"] = estimate.seconds;
     json["times_are_least"] = estimate.at_least;
+    add_needs(json, estimate);
     json["warnings"] = std::move(warnings);
     return json;
 }

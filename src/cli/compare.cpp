@@ -1,9 +1,12 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/read_file.hpp"
 #include "cli/comparison.hpp"
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
+#include "figure/run.hpp"
+#include "film/film.hpp"
 #include "output/page.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
@@ -12,10 +15,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace doppel {
@@ -23,58 +32,149 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct CompareOptions {
+struct CompareOptions : PresetOptions {
     std::string expected, actual, out = "out", junit, html;
+    std::string render, at, frames, size, gl = "auto";
+    bool update = false, list_outputs = false;
 };
 
-fs::path folder_in(const fs::path& out) {
-    return out / "compare";
-}
-
-/// The name of the difference picture of `actual`.
-std::string difference_name(const fs::path& actual) {
-    return actual.stem().string() + ".diff.png";
-}
+/// What becomes of pictures that differ.
+struct Task {
+    fs::path folder;        // of the difference pictures
+    bool is_drawn = false;  // the actual pictures are temporary; those that differ are kept in `folder`
+    bool updates = false;   // they become the goldens
+    const std::atomic<bool>& stop = never_stopped;
+};
 
 constexpr const char* maker = "Doppel compare";  // in the metadata of every difference picture
 
-/// Removes an earlier difference picture of a picture that passes, and no other file.
-void remove_difference(const fs::path& folder, const std::string& name) {
-    if (std::error_code ignored; made_by(folder / name, maker)) fs::remove(folder / name, ignored);
+/// The PNGs of a folder; none if it does not exist.
+std::set<std::string> png_names(const fs::path& folder) {
+    std::set<std::string> names;
+    if (std::error_code ignored; !fs::exists(folder, ignored)) return names;
+    for (const auto& name : names_in(folder))
+        if (fs::path(name).extension() == ".png") names.insert(name);
+    return names;
 }
 
-/// Compares one pair. If it differs, stores the reason and writes the difference picture. Throws Error (exit 2, 4) if
-/// a picture cannot be read.
-void compare_pair(ComparedPicture& pair, const fs::path& out) {
-    const auto expected = read_png(pair.expected), actual = read_png(pair.actual);
-    pair.size = expected.size, pair.actual_size = actual.size;
-    const auto [expected_path, actual_path] = std::pair(pair.expected.string(), pair.actual.string());
-    if (expected.size != actual.size) {
-        pair.match = Match::differs;
-        pair.message = fmt::format("{}: differs from {}: {}×{} px, expected {}×{}", actual_path, expected_path,
-                                   actual.size.width, actual.size.height, expected.size.width, expected.size.height);
+/// "frame" of "frame.png" and of its variant "frame.egl.png".
+std::string base_of(const fs::path& name) {
+    return name.stem().stem().string();
+}
+
+/// A picture NAME.png and its variants NAME.VARIANT.png, as far as they exist.
+std::vector<fs::path> goldens_of(const fs::path& picture) {
+    std::vector<fs::path> goldens;
+    const auto folder = picture.parent_path();
+    for (const auto& name : png_names(folder.empty() ? "." : folder))
+        if (name == picture.filename())
+            goldens.insert(goldens.begin(), picture);
+        else if (base_of(name) == picture.stem())
+            goldens.push_back(folder / name);
+    return goldens;
+}
+
+/// Finds the golden that the picture matches, or else the nearest one, and returns its pixels.
+Picture nearest_golden(ComparedPicture& pair, const Picture& actual) {
+    Picture nearest;
+    std::optional<std::tuple<bool, bool, long, double>> least;
+    pair.actual_size = actual.size;
+    pair.match = pair.goldens.empty() ? Match::missing : Match::differs;
+    for (const auto& golden : pair.goldens) {
+        auto expected = read_png(golden);
+        const bool same_size = expected.size == actual.size;
+        const auto verdict = same_size ? compare_golden(expected, actual) : GoldenVerdict();
+        const bool passes = same_size && verdict.passes;
+        const std::tuple distance(!passes, !same_size, verdict.strong, verdict.worst_tile);
+        if (least && *least <= distance) continue;
+        least = distance;
+        pair.expected = golden, pair.size = expected.size, pair.verdict = verdict;
+        nearest = std::move(expected);
+        if (!passes) continue;
+        pair.match = Match::passes;
+        break;
+    }
+    return nearest;
+}
+
+void copy_picture(const fs::path& from, const fs::path& to) {
+    write_file(to, read_whole_file(from, {"a picture is a PNG", 100'000'000}));
+}
+
+/// Makes the drawn picture the golden NAME.png; variants stay. Throws Error (exit 4).
+void update_golden(ComparedPicture& pair, const fs::path& golden) {
+    const bool is_new = type_of(golden) == fs::file_type::not_found;
+    if (!is_new && !made_by(golden))
+        throw io_failed("{} is no PNG of Doppel; move it, or give another place for the golden", golden.string());
+    const SingleFile file(golden, "\x89PNG\r\n\x1a\n");
+    copy_picture(pair.actual, file.place());
+    file.publish();
+    pair.match = Match::passes;
+    pair.message = fmt::format("{}: {}", golden.string(), is_new ? "new" : "updated");
+    for (const auto& variant : pair.goldens)
+        if (variant != golden) pair.message += fmt::format("; {} stays as it was", variant.string());
+}
+
+/// "OUT/compare/NAME.diff.png" and so on.
+fs::path place_of(const ComparedPicture& pair, const Task& task, std::string_view ending) {
+    return task.folder / fs::path(pair.name).stem().concat(ending);
+}
+
+/// Writes the difference picture if there is an `expected` one, and keeps a drawn picture.
+void write_difference(ComparedPicture& pair, const Picture* expected, const Picture& actual, const Task& task) {
+    const auto difference = place_of(pair, task, ".diff.png"), kept = place_of(pair, task, ".actual.png");
+    Transaction parts(task.folder, difference.filename(), {}, {.inputs = {pair.expected, pair.actual}});
+    if (expected) {
+        const auto place = parts.file(difference.filename());
+        if (fs::exists(difference) && !made_by(difference, maker))
+            throw io_failed("{} is no difference picture; move it, or give another folder with --out",
+                            difference.string());
+        write_png(place, difference_picture(*expected, actual), {.metadata = {{"encoder", maker}}});
+    }
+    if (task.is_drawn) copy_picture(std::exchange(pair.actual, kept), parts.file(kept.filename()));
+    parts.publish();
+}
+
+/// Removes what an earlier comparison wrote about a picture that passes, and no other file.
+void remove_difference(const ComparedPicture& pair, const Task& task) {
+    std::error_code ignored;
+    if (const auto path = place_of(pair, task, ".diff.png"); made_by(path, maker)) fs::remove(path, ignored);
+    if (const auto path = place_of(pair, task, ".actual.png"); task.is_drawn && made_by(path))
+        fs::remove(path, ignored);
+}
+
+/// Compares a picture with its goldens. Throws Error (exit 2, 4) if one cannot be read.
+void compare_pair(ComparedPicture& pair, const Task& task) {
+    const auto golden = pair.expected;
+    const auto actual = read_png(pair.actual);
+    const auto expected = nearest_golden(pair, actual);
+    if (pair.match == Match::passes) {
+        if (pair.expected != golden) pair.message = fmt::format("{}: matches {}", pair.name, pair.expected.string());
+        return remove_difference(pair, task);
+    }
+    if (task.updates) return update_golden(pair, golden);
+    const bool same_size = expected.size == actual.size;
+    if (same_size || task.is_drawn) write_difference(pair, same_size ? &expected : nullptr, actual, task);
+    if (pair.match == Match::missing) {
+        pair.message = fmt::format("{}: missing; drawn now: {}", golden.string(), pair.actual.string());
         return;
     }
-    pair.verdict = compare_golden(expected, actual);
-    const auto name = difference_name(pair.actual);
-    if (pair.verdict.passes) return remove_difference(folder_in(out), name);
-    pair.match = Match::differs;
-    Transaction parts(folder_in(out), name, {}, {.inputs = {pair.expected, pair.actual}});
-    const auto place = parts.file(name);
-    if (const auto older = parts.folder() / name; fs::exists(older) && !made_by(older, maker))
-        throw io_failed("{} is no difference picture; move it, or give another folder with --out", older.string());
-    write_png(place, difference_picture(expected, actual), {.metadata = {{"encoder", maker}}});
-    const auto files = parts.publish();
-    pair.message = fmt::format("{}: differs from {}: {}; expected, actual and difference ×16: {}", actual_path,
-                               expected_path, pair.verdict.why, files.front().string());
+    const auto count = pair.goldens.size();
+    pair.message = fmt::format("{}: differs from {}{}: ", pair.actual.string(), pair.expected.string(),
+                               count > 1 ? fmt::format(", the nearest of {}", count) : "");
+    pair.message += same_size ? fmt::format("{}; expected, actual and difference ×16: {}", pair.verdict.why,
+                                            place_of(pair, task, ".diff.png").string())
+                              : fmt::format("{}×{} px, expected {}×{}", actual.size.width, actual.size.height,
+                                            expected.size.width, expected.size.height);
 }
 
 /// Like compare_pair(), with the time. Stores the error of an unreadable picture in `first_fault` if it
 /// is the first.
-ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optional<Error>& first_fault) {
+ComparedPicture compared(ComparedPicture pair, const Task& task, std::optional<Error>& first_fault) {
     const double start = seconds_of(CLOCK_MONOTONIC);
+    throw_if_set(task.stop);
     try {
-        compare_pair(pair, out);
+        compare_pair(pair, task);
     } catch (const Error& fault) {
         pair.match = Match::unreadable;
         pair.message = fault.what();
@@ -84,32 +184,150 @@ ComparedPicture compared(ComparedPicture pair, const fs::path& out, std::optiona
     return pair;
 }
 
-std::set<std::string> png_names(const fs::path& folder) {
-    std::set<std::string> names;
-    for (const auto& name : names_in(folder))
-        if (fs::path(name).extension() == ".png") names.insert(name);
-    return names;
-}
-
 /// Compares every picture in either folder. An unreadable picture does not stop the comparison.
-void compare_folders(Comparison& comparison, const fs::path& out, std::optional<Error>& first_fault) {
-    const fs::path expected = comparison.expected, actual = comparison.actual;
+void compare_folders(Comparison& comparison, const fs::path& expected, const fs::path& actual, const Task& task,
+                     std::optional<Error>& first_fault) {
     const auto wanted = png_names(expected), found = png_names(actual);
-    if (wanted.empty()) throw bad_input("{}: there is no PNG to compare with", expected.string());
-    auto names = wanted;
-    names.insert(found.begin(), found.end());
-    for (const auto& name : names) {
-        ComparedPicture pair{.name = name, .expected = expected / name, .actual = actual / name};
-        if (wanted.contains(name) && found.contains(name)) {
-            pair = compared(std::move(pair), out, first_fault);
+    if (wanted.empty() && !task.is_drawn) throw bad_input("{}: there is no PNG to compare with", expected.string());
+    std::map<std::string, std::vector<fs::path>> goldens;
+    for (const auto& name : found) goldens[name];
+    for (const auto& name : wanted) {
+        const auto base = base_of(name) + ".png";
+        const bool is_variant = !found.contains(name) && (wanted.contains(base) || found.contains(base));
+        auto& all = goldens[is_variant ? base : name];
+        all.insert(is_variant ? all.end() : all.begin(), expected / name);
+    }
+    for (const auto& [name, all] : goldens) {
+        ComparedPicture pair{.name = name, .expected = expected / name, .actual = actual / name, .goldens = all};
+        if (found.contains(name) && (task.is_drawn || !all.empty())) {
+            pair = compared(std::move(pair), task, first_fault);
         } else {
             pair.match = Match::missing;
-            pair.message = fmt::format("{}: missing", (wanted.contains(name) ? pair.actual : pair.expected).string());
+            pair.message = task.is_drawn
+                               ? fmt::format("{}: there is no such frame", pair.expected.string())
+                               : fmt::format("{}: missing", (all.empty() ? pair.expected : pair.actual).string());
         }
         if (!pair.message.empty()) print_line("{}", pair.message);
         comparison.pictures.push_back(std::move(pair));
     }
     print_line("{}", comparison.summary());
+}
+
+/// Pictures of --render in a temporary folder.
+struct Drawing {
+    TemporaryFolder folder = {};
+    std::string name = {};              // of the preset
+    fs::path golden = {}, actual = {};  // two pictures, or two folders of frames
+    bool is_sequence = false;
+};
+
+/// The golden of a single picture NAME: EXPECTED, or in the folder EXPECTED. Throws Error (exit 2) if it is missing.
+fs::path single_golden(const CompareOptions& options, const std::string& name) {
+    std::error_code ignored;
+    const fs::path expected = options.expected;
+    const bool is_folder = fs::is_directory(expected, ignored) || expected.extension() != ".png";
+    const auto golden = is_folder ? expected / name : expected;
+    if (!options.update && goldens_of(golden).empty())
+        throw bad_input("{}: there is no such golden picture; --update makes it", golden.string());
+    return golden;
+}
+
+void draw_figure(Drawing& drawing, const FigurePreset& figure, const CompareOptions& options, const Task& task,
+                 const Report& report) {
+    drawing.golden = single_golden(options, figure.name + ".png");
+    const FigureReport reports{[&](std::size_t, const FigureProgress& progress) {
+                                   report({std::lround(progress.done), std::lround(progress.total)});
+                               },
+                               [](std::size_t, const std::string&) {}, [](std::size_t, const RunResult&) {}};
+    run_figures({figure}, {.out = drawing.folder.path()}, task.stop, reports);
+    drawing.actual = drawing.folder.path() / figure.name / (figure.name + ".png");
+}
+
+void draw_still(Drawing& drawing, const Scene& scene, const CompareOptions& options, const Task& task,
+                const Report& report) {
+    const auto at = seconds_of_option("--at", options.at);
+    drawing.golden = single_golden(options, still_name(scene, still_moment(scene, at), PictureFormat::png));
+    const RunOptions run_options{.out = drawing.folder.path(), .gl = gl_named(options.gl)};
+    drawing.actual = draw_still(scene, at, PictureFormat::png, run_options, task.stop, report).files.front();
+}
+
+/// The numbers of the frames to draw: those of the goldens, and those of --frames.
+std::set<long> frame_numbers(const Scene& scene, const CompareOptions& options) {
+    const auto schedule = schedule_of(scene);
+    std::set<long> numbers;
+    for (const auto& name : png_names(options.expected)) {
+        const auto base = base_of(name);
+        long number = 0;
+        std::from_chars(base.data(), base.data() + base.size(), number);
+        if (base == fmt::format("{:06}", number) && number < schedule.frames()) numbers.insert(number);
+    }
+    if (options.frames.empty()) return numbers;
+    const auto [first, last] = frames_of_option(options.frames);
+    check_run(scene, {.first = first, .last = last});
+    const long before = schedule.title + schedule.hold_start;
+    const long end = last == schedule.motion ? schedule.frames() : before + last;
+    for (long number = first == 0 ? 0 : before + first; number < end; ++number) numbers.insert(number);
+    return numbers;
+}
+
+/// Draws frames as `render --format png` names them.
+void draw_frames(Drawing& drawing, const Scene& scene, const CompareOptions& options, const Task& task,
+                 const Report& report) {
+    drawing.golden = options.expected;
+    drawing.is_sequence = true;
+    if (std::error_code ignored; fs::is_regular_file(options.expected, ignored))
+        throw bad_input("{} is a picture; give its time with --at, or a folder of frames", options.expected);
+    const auto numbers = frame_numbers(scene, options);
+    if (numbers.empty())
+        throw bad_input("{}: there is no golden frame such as 000000.png; --frames 0:1 --update makes one",
+                        options.expected);
+    constexpr long gap = 30;  // frames that are drawn although nobody wants them, in place of another run
+    const auto schedule = schedule_of(scene);
+    const auto frame_of = [&](long number) {
+        return std::clamp(number - schedule.title - schedule.hold_start, 0L, schedule.motion - 1);
+    };
+    drawing.actual = drawing.folder.path() / "frames";
+    fs::create_directory(drawing.actual);
+    for (auto next = numbers.begin(); next != numbers.end();) {
+        const auto begin = next;
+        long last = frame_of(*begin);
+        for (; next != numbers.end() && frame_of(*next) <= last + gap; ++next) last = frame_of(*next);
+        const RunOptions run_options{.out = drawing.folder.path() / fmt::format("from {}", *begin),
+                                     .first = frame_of(*begin),
+                                     .last = last + 1,
+                                     .gl = gl_named(options.gl)};
+        run(scene, run_options, task.stop, report);
+        for (auto number = begin; number != next; ++number) {
+            const auto name = fmt::format("{:06}.png", *number);
+            fs::rename(run_options.out / drawing.name / "frames" / name, drawing.actual / name);
+        }
+    }
+}
+
+/// Draws what is compared with the goldens. Throws Error as render and figure do.
+void draw(Drawing& drawing, const CompareOptions& options, const Task& task) {
+    const auto text = find_preset(options.render, &task.stop);
+    const bool is_chart = is_figure(text);
+    drawing.name = text.name;
+    auto overrides = overrides_of(options);
+    overrides.push_back({is_chart ? "chart.format" : "video.format", "\"png\"", "compare, which draws PNG"});
+    if (!options.size.empty()) overrides.push_back(size_override(is_chart ? "chart.size" : "video.size", options.size));
+    if (is_chart && !(options.at + options.frames).empty())
+        throw bad_input("--at and --frames are for films; {} is a figure", drawing.name);
+    ProgressReport progress(progress_style("auto"), drawing.name, is_chart ? "trials" : "frames");
+    const Report report = std::ref(progress);
+    if (is_chart) {
+        draw_figure(drawing, read_figure(text, overrides, {}, task.stop), options, task, report);
+    } else {
+        auto scene = make_scene(read_preset(text, overrides), task.stop);
+        scene.preset.video.poster_s.reset();
+        scene.preset.video.contact_sheet.reset();
+        if (options.at.empty())
+            draw_frames(drawing, scene, options, task, report);
+        else
+            draw_still(drawing, scene, options, task, report);
+    }
+    progress.clear();
 }
 
 /// A requested report. Reserves its path before the work, so that an error is reported at once.
@@ -120,29 +338,57 @@ std::optional<SingleFile> place_of_report(const std::string& file, std::string_v
     return std::optional<SingleFile>(std::in_place, file, start);
 }
 
-/// Returns whether all pictures pass. Throws Error if some could not be read, after writing the reports.
-bool compare(const CompareOptions& options) {
-    std::error_code fault;
-    for (const auto& path : {options.expected, options.actual})
-        if (!fs::exists(path, fault))
-            throw fault ? cannot(path, "read", fault.value()) : bad_input("{}: there is no such file or folder", path);
-    const bool folders = fs::is_directory(options.expected, fault);
-    if (folders != fs::is_directory(options.actual, fault))
-        throw bad_input("{} is a folder and {} is none; compare takes two pictures or two folders",
-                        folders ? options.expected : options.actual, folders ? options.actual : options.expected);
+/// Throws Error (exit 2) if the arguments do not belong together.
+void check_arguments(const CompareOptions& options) {
+    const char* const ci = std::getenv("CI");
+    if (options.update && ci && *ci != 0 && std::string_view(ci) != "false")
+        throw bad_input("--update: goldens are made by a person who looks at them, not by CI; CI is set to \"{}\"", ci);
     const auto is_one_file = fs::path(options.junit).lexically_normal() == fs::path(options.html).lexically_normal();
     if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
+    if (options.actual.empty() == options.render.empty())
+        throw bad_input("compare needs EXPECTED and ACTUAL, or --render PRESET and EXPECTED");
+    std::error_code fault;
+    for (const auto& path : {options.expected, options.actual})
+        if (!fs::exists(path, fault) && (fault || (!path.empty() && !options.update)))
+            throw fault ? cannot(path, "read", fault.value()) : bad_input("{}: there is no such file or folder", path);
+    const bool folders = fs::is_directory(options.expected, fault);
+    if (options.render.empty() && folders != fs::is_directory(options.actual, fault))
+        throw bad_input("{} is a folder and {} is none; compare takes two pictures or two folders",
+                        folders ? options.expected : options.actual, folders ? options.actual : options.expected);
+}
+
+/// Returns whether all pictures pass. Throws Error if some could not be read, after writing the reports.
+bool compare(const CompareOptions& options) {
+    check_arguments(options);
+    if (options.list_outputs) {
+        for (const auto& report : {options.junit, options.html})
+            if (!report.empty()) print_line("{}", report);
+        return true;
+    }
     const auto junit = place_of_report(options.junit, junit_start);
     const auto html = place_of_report(options.html, page_start("compare"));
-    Comparison comparison{options.expected, options.actual, {}};
+    const bool is_drawn = !options.render.empty();
+    std::optional<Drawing> drawing;
+    Task task{fs::path(options.out) / "compare", is_drawn, options.update,
+              is_drawn ? watch_interrupts() : never_stopped};
+    fs::path expected = options.expected, actual = options.actual;
+    bool folders = fs::is_directory(expected);
+    if (is_drawn) {
+        draw(drawing.emplace(), options, task);
+        task.folder = fs::path(options.out) / drawing->name / "compare";
+        expected = drawing->golden, actual = drawing->actual, folders = drawing->is_sequence;
+    }
+    Comparison comparison{options.expected, is_drawn ? options.render : options.actual, {}};
     std::optional<Error> first_fault;
     if (folders) {
-        compare_folders(comparison, options.out, first_fault);
+        compare_folders(comparison, expected, actual, task, first_fault);
     } else {
-        const fs::path expected = options.expected, actual = options.actual;
-        ComparedPicture pair{.name = actual.filename().string(), .expected = expected, .actual = actual};
-        pair = compared(std::move(pair), options.out, first_fault);
-        if (pair.match == Match::differs) print_line("{}", pair.message);
+        ComparedPicture pair{.name = (is_drawn ? expected : actual).filename().string(),
+                             .expected = expected,
+                             .actual = actual,
+                             .goldens = is_drawn ? goldens_of(expected) : std::vector{expected}};
+        pair = compared(std::move(pair), task, first_fault);
+        if (pair.match != Match::unreadable && !pair.message.empty()) print_line("{}", pair.message);
         comparison.pictures.push_back(std::move(pair));
     }
     if (junit) write_junit(junit->place(), comparison);
@@ -168,21 +414,36 @@ std::string Comparison::summary() const {
 
 void add_compare(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<CompareOptions>();
-    auto& command = *app.add_subcommand("compare", "Compares two PNGs, or two folders of them, with the golden policy");
+    auto& command = *app.add_subcommand("compare", "Compares PNGs, or draws and compares them, with the golden policy");
     command.footer(
         "Exit code 0: the same within the golden policy (a few pixels may differ a little, as between\n"
-        "drivers); 1: they differ, and a picture of the difference was written to DIR/compare/.\n"
-        "Example:\n  doppel render calm --format png --frames 0:3 && doppel compare golden out/calm/frames");
+        "drivers); 1: they differ, and a picture of the difference was written to DIR/compare/, with\n"
+        "--render to DIR/NAME/compare/ beside the drawn picture. A picture NAME.png may have variants,\n"
+        "NAME.VARIANT.png: it passes if it matches one of them.\n"
+        "Examples:\n"
+        "  doppel compare golden out/calm/frames\n"
+        "  doppel compare --render calm golden/calm --frames 0:3 --update    makes the goldens\n"
+        "  doppel compare --render calm golden/calm                          draws and compares\n"
+        "  doppel compare --render calm golden/calm.14s.png --at 14\n"
+        "  doppel compare --render fig6 golden");
     command.add_option("EXPECTED", options->expected, "Picture or folder as it should be")->required();
-    command.add_option("ACTUAL", options->actual, "Picture or folder as it is")->required();
-    refuse_dash(command.add_option("-o,--out", options->out, "Where difference pictures go: DIR/compare/"))
-        ->type_name("DIR")
+    command.add_option("ACTUAL", options->actual, "Picture or folder as it is");
+    auto* const render = add_value(command, "--render", options->render, "PRESET",
+                                   "Draw it: the frames whose numbers are in EXPECTED, or a figure");
+    add_value(command, "--at", options->at, "SECONDS", "Draw the picture at this time, as still does")->needs(render);
+    add_value(command, "--frames", options->frames, "A:B", "Draw the frames A to B-1, too")->needs(render);
+    add_set_option(command, *options)->needs(render);
+    add_value(command, "--size", options->size, "WxH", "Size of the picture, px")->needs(render);
+    add_gl_option(command, options->gl)->needs(render);
+    command.add_flag("--update", options->update, "Replace the goldens that differ; refused if CI is set")
+        ->needs(render);
+    refuse_dash(add_value(command, "-o,--out", options->out, "DIR", "Where difference pictures go"))
         ->capture_default_str();
-    refuse_dash(command.add_option("--junit", options->junit, "Also writes a report for test servers: JUnit's XML"))
-        ->type_name("FILE");
-    refuse_dash(command.add_option("--html", options->html,
-                                   "Also writes a page of what differs: expected, actual, difference, slider"))
-        ->type_name("FILE");
+    refuse_dash(
+        add_value(command, "--junit", options->junit, "FILE", "Also write a report for test servers: JUnit's XML"));
+    refuse_dash(add_value(command, "--html", options->html, "FILE",
+                          "Also write a page of what differs: expected, actual, difference, slider"));
+    command.add_flag("--list-outputs", options->list_outputs, "Only list the reports that would be written");
     command.callback([options, &exit_code] {
         if (!compare(*options)) exit_code = static_cast<int>(ExitCode::differs);
     });

@@ -59,7 +59,11 @@ void write_junit(const std::filesystem::path& place, const Comparison& compariso
     for (const auto& picture : comparison.pictures) {
         file.write(fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", suite,
                                markup(picture.name), picture.seconds));
-        file.write(picture.match == Match::passes ? "/>\n" : ">\n" + fault(picture) + "    </testcase>\n");
+        const auto inside = picture.match != Match::passes ? fault(picture)
+                            : picture.message.empty()
+                                ? ""
+                                : "      <system-out>" + markup(picture.message) + "</system-out>\n";
+        file.write(inside.empty() ? "/>\n" : ">\n" + inside + "    </testcase>\n");
     }
     file.write("  </testsuite>\n</testsuites>\n");
     file.close();
@@ -168,7 +172,8 @@ std::string list(const Comparison& comparison, bool passing) {
             picture.verdict.differing > 0
                 ? fmt::format(" <span class=\"quiet\">{} px differ a little</span>", picture.verdict.differing)
                 : "";
-        items += passes ? "<li>" + markup(picture.name) + note + "</li>\n"
+        const auto& told = passes && !picture.message.empty() ? picture.message : picture.name;
+        items += passes ? "<li>" + markup(told) + note + "</li>\n"
                         : "<li><code>" + markup(picture.message) + "</code></li>\n";
     }
     if (items.empty()) return {};

@@ -14,17 +14,18 @@ enum class Match { passes, differs, missing, unreadable };
 
 /// One picture of a golden comparison.
 struct ComparedPicture {
-    std::string name;  // file name without its folder
-    std::filesystem::path expected, actual;
+    std::string name;                            // file name without its folder
+    std::filesystem::path expected, actual;      // expected: the golden that matches, or the nearest one
+    std::vector<std::filesystem::path> goldens;  // any of them may match; the first is no variant, if there is one
     Match match = Match::passes;
-    std::string message;    // the program's message; empty if the picture passes
-    GoldenVerdict verdict;  // valid if both could be read and have the same size
-    Size size, actual_size;
+    std::string message = {};    // the program's message; of a picture that passes, mostly empty
+    GoldenVerdict verdict = {};  // valid if both could be read and have the same size
+    Size size = {}, actual_size = {};
     double seconds = 0;  // duration of the comparison
 };
 
 struct Comparison {
-    std::string expected, actual;  // as the user gave them: two pictures or two folders
+    std::string expected, actual;  // as the user gave them: pictures, folders, or a preset to draw
     std::vector<ComparedPicture> pictures;
 
     long count(Match match) const;

@@ -125,6 +125,7 @@ void add_columns(const std::vector<std::string>& words, const std::string& word,
 
 void add_values(const CLI::Option& option, const std::string& command, const std::vector<std::string>& words,
                 const std::string& word, const std::string& before, Candidates& all) {
+    if (option.get_name() == "--render") return add_presets("check", all);
     if (option.get_name() == "--set") return add_settings(command, words, word, all);
     if (option.get_name() == "--columns") return add_columns(words, word, before, all);
     add_choices(option, before, all);

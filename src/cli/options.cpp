@@ -17,15 +17,19 @@ CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string
     return value.empty() ? option : option->capture_default_str();
 }
 
-void add_preset_options(CLI::App& command, PresetOptions& options) {
-    command.add_option("PRESET", options.presets, "Names (see doppel list) or TOML files")->required();
-    add_value(command, "--set", options.sets, "KEY=VALUE",
-              "Another value for a key, in TOML; text needs no quotes:\n"
-              "--set video.theme=light --set 'system.mass_kg[1]=2'\n"
-              "--set system.force.NAME.length_m=1.2")
+CLI::Option* add_set_option(CLI::App& command, PresetOptions& options) {
+    return add_value(command, "--set", options.sets, "KEY=VALUE",
+                     "Another value for a key, in TOML; text needs no quotes:\n"
+                     "--set video.theme=light --set 'system.mass_kg[1]=2'\n"
+                     "--set system.force.NAME.length_m=1.2")
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_preset_options(CLI::App& command, PresetOptions& options) {
+    command.add_option("PRESET", options.presets, "Names (see doppel list) or TOML files")->required();
+    add_set_option(command, options);
 }
 
 CLI::Option* refuse_dash(CLI::Option* option) {
@@ -90,8 +94,9 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
     add_value(command, "-j,--jobs", options.jobs, "N", jobs)->check(CLI::Range(1, 1024));
 }
 
-void add_gl_option(CLI::App& command, std::string& gl) {
-    add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing", gl_names());
+CLI::Option* add_gl_option(CLI::App& command, std::string& gl) {
+    return add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing",
+                      gl_names());
 }
 
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
@@ -112,6 +117,20 @@ std::optional<Shard> shard_of_option(const std::string& text, bool merges) {
         throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", max_shards, text);
     if (merges) throw bad_input("--shard makes a part and --merge joins them; give one");
     return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
+}
+
+std::pair<long, long> frames_of_option(const std::string& text) {
+    const auto range = two_numbers(text, ':');
+    if (!range || range->first < 0 || range->second <= range->first)
+        throw bad_input("--frames must be A:B with 0 ≤ A < B, the frames A to B−1; it is \"{}\"", text);
+    return *range;
+}
+
+Rational seconds_of_option(const std::string& option, const std::string& text) {
+    const auto seconds = parse_rational(text);
+    if (!seconds || seconds->numerator < 0)
+        throw bad_input("{} must be seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
+    return *seconds;
 }
 
 Override size_override(const std::string& key, const std::string& size) {

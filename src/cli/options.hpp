@@ -44,6 +44,9 @@ CLI::Option* add_value(CLI::App& command, const std::string& names, T& value, co
 CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string& value, const std::string& type,
                         const std::string& help, const std::vector<std::string>& choices);
 
+/// --set.
+CLI::Option* add_set_option(CLI::App& command, PresetOptions& options);
+/// PRESET… and --set.
 void add_preset_options(CLI::App& command, PresetOptions& options);
 /// The overrides that --beside FILE puts on top of a preset and of the overrides `given`; these are included in the
 /// result. Side a shows the track. Side b starts from a fit to the track's first two seconds, and runs as long as the
@@ -58,19 +61,28 @@ void add_out_options(CLI::App& command, OutOptions& options);
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
 
 /// --gl: a name for gl_named().
-void add_gl_option(CLI::App& command, std::string& gl);
+CLI::Option* add_gl_option(CLI::App& command, std::string& gl);
 
 /// Parses "A<separator>B" as two whole numbers; returns nothing otherwise.
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);
 
 /// --shard I/N; nothing if the text is empty. Throws Error (exit 2).
 std::optional<Shard> shard_of_option(const std::string& text, bool merges);
+/// --frames A:B: the first frame, and the one after the last. Throws Error (exit 2).
+std::pair<long, long> frames_of_option(const std::string& text);
+/// The value of --at, --from or --to, "6.8" or "1/3". Throws Error (exit 2).
+Rational seconds_of_option(const std::string& option, const std::string& text);
 
 /// --size WIDTHxHEIGHT as an override of a preset's key. Throws Error (exit 2).
 Override size_override(const std::string& key, const std::string& size);
 
 /// Throws Error (exit 2) if the results of two presets, `paths`, would have the same names.
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths);
+
+/// Reads the scenes of all presets before the first one runs. `more` = overrides from other options.
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
+/// The files that these runs read.
+std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
 
 /// The values of --set.
 std::vector<Override> overrides_of(const PresetOptions& options);

@@ -94,6 +94,7 @@ int run_program(int argc, char** argv) {
         add_list(app);
         add_show(app);
         add_check(app);
+        add_certify(app);
         add_init(app);
         add_schema(app);
         add_completion(app);

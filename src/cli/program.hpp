@@ -19,6 +19,7 @@ void add_compare(CLI::App& app, int& exit_code);  // sets the exit code 1 if pic
 void add_list(CLI::App& app);
 void add_show(CLI::App& app);
 void add_check(CLI::App& app);
+void add_certify(CLI::App& app);
 void add_schema(CLI::App& app);
 void add_init(CLI::App& app);
 void add_completion(CLI::App& app);

@@ -40,16 +40,9 @@ std::vector<std::string> columns_of_option(const std::string& text) {
     return names;
 }
 
-/// The value of --at, --from or --to, "6.8" or "1/3". Throws Error (exit 2).
-Rational seconds_of_option(const std::string& option, const std::string& text) {
-    const auto seconds = parse_rational(text);
-    if (!seconds || seconds->numerator < 0)
-        throw bad_input("{} must be seconds ≥ 0, such as 6.8 or 1/3; it is \"{}\"", option, text);
-    return *seconds;
-}
+}  // namespace
 
-/// Reads the scenes of all presets before the first one runs. `more` = overrides from other options.
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {}) {
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
     auto overrides = overrides_of(options);
     overrides.insert(overrides.end(), more.begin(), more.end());
     const auto& stop = watch_interrupts();
@@ -78,6 +71,8 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
     }
     return inputs;
 }
+
+namespace {
 
 /// Calls work(scene, report) for each scene and reports progress in `unit`. `streamed` as for ProgressReport.
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
@@ -131,10 +126,7 @@ void set_range(const RenderOptions& options, RunOptions& run) {
     if (!options.to.empty()) run.to_s = seconds_of_option("--to", options.to);
     if (options.frames.empty()) return;
     if (run.from_s || run.to_s) throw bad_input("--frames counts frames, --from and --to seconds; give one");
-    const auto range = two_numbers(options.frames, ':');
-    if (!range || range->first < 0 || range->second <= range->first)
-        throw bad_input("--frames must be A:B with 0 ≤ A < B, the frames A to B−1; it is \"{}\"", options.frames);
-    std::tie(run.first, run.last) = *range;
+    std::tie(run.first, run.last) = frames_of_option(options.frames);
 }
 
 std::vector<Override> overrides(const RenderOptions& options) {

@@ -1,6 +1,7 @@
 #include "figure/computation.hpp"
 
 #include "base/clock.hpp"
+#include "base/text.hpp"
 #include "base/threads.hpp"
 #include "scene/captions.hpp"
 
@@ -15,10 +16,6 @@ constexpr std::size_t many_groups = 200, groups_ahead = 16;
 
 double now() {
     return seconds_of(CLOCK_MONOTONIC);
-}
-
-std::string duration_words(double seconds) {
-    return seconds < 100 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.0f} min", std::ceil(seconds / 60));
 }
 
 }  // namespace
@@ -148,7 +145,7 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
 void Computation::report_estimate(double time) {
     const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
     report_.note(fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
-                             figure_.experiment->unit(), two_digits(rate), threads_, duration_words(left / rate)));
+                             figure_.experiment->unit(), two_digits(rate), threads_, duration_text(left / rate)));
 }
 
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
@@ -171,6 +168,7 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     const TimeLimit limit(allowed_s, stop);
     const std::size_t all_groups = (trials + together - 1) / together;
     double done = 0, seconds = 0, place = 0.5;
+    std::size_t trials_done = 0, numbers_done = 0;
     try {
         for (std::size_t calls = 0; calls < all_groups && !limit.reached(); ++calls) {
             const auto first = static_cast<std::size_t>(place * static_cast<double>(all_groups)) * together;
@@ -180,15 +178,36 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
             const double from = now();
             experiment.compute(first, numbers, limit.reached());
             seconds += now() - from;
-            for (std::size_t k = 0; k < numbers.size(); ++k) done += experiment.units(first + k);
+            for (std::size_t k = 0; k < numbers.size(); ++k) {
+                done += experiment.units(first + k);
+                numbers_done += numbers[k].size();
+            }
+            trials_done += numbers.size();
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
     }
     if (done == 0) seconds = now() - start;
     const auto groups = static_cast<double>((counted + together - 1) / together);
-    const double shared = std::min(static_cast<double>(threads), groups);
-    return {(needed_s + seconds * (done > 0 ? total / done : groups)) / shared, done == 0};
+    ComputationEstimate estimate;
+    estimate.cpu_s = needed_s + seconds * (done > 0 ? total / done : groups);
+    estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), groups);
+    estimate.at_least = done == 0;
+    // of a row of the table, of a number in it, and of a pixel drawn and as PNG; measured
+    constexpr double row_bytes = 6, text_bytes = 18, drawn_bytes = 8, png_bytes = 0.15;
+    const auto size = layout_of(figure.chart).picture;
+    const auto map = experiment.map();
+    const double pixels = 1.0 * size.width * size.height;
+    const double rows =
+        map ? 1.0 * map->columns * map->rows * static_cast<double>(map->panels) : static_cast<double>(trials);
+    const auto counted_numbers =
+        static_cast<double>(numbers_done) / static_cast<double>(std::max<std::size_t>(trials_done, 1));
+    const double numbers = rows * (map ? static_cast<double>(map->numbers) : counted_numbers);
+    estimate.memory_bytes =
+        peak_memory() + sizeof(TrialNumbers) * rows + sizeof(double) * numbers + drawn_bytes * pixels;
+    estimate.disk_bytes = row_bytes * rows + text_bytes * numbers + png_bytes * pixels;
+    estimate.most_shards = static_cast<long>(std::min<std::size_t>(all_groups, max_parts));
+    return estimate;
 }
 
 }  // namespace doppel

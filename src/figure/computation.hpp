@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "figure/part_file.hpp"
 
 #include <atomic>
@@ -72,11 +73,12 @@ private:
     double done_units_ = 0, kept_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };
 
-/// Estimates the computing time from some trials. Throws the error of a trial; exit 130 soon after `stop` is set.
-struct ComputationEstimate {
-    double seconds;  // with as many threads
-    bool at_least;   // not one trial was finished in the time allowed: a lower bound
+/// What a figure takes, extrapolated from some trials. The process's memory counts from reset_peak_memory() on.
+struct ComputationEstimate : Needs {
+    double seconds = 0;     // with as many threads
+    bool at_least = false;  // not one trial was finished in the time allowed: a lower bound
 };
+/// Throws the error of a trial; exit 130 soon after `stop` is set.
 ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -5,11 +5,15 @@
 #include "base/machine.hpp"
 #include "base/threads.hpp"
 #include "film/film.hpp"
+#include "film/page.hpp"
+#include "film/pair_table.hpp"
 #include "integrate/motion_batch.hpp"
 #include "output/files.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 
 namespace doppel {
 namespace {
@@ -83,11 +87,19 @@ Scene beginning_of(Scene scene, long samples) {
     return scene;
 }
 
-/// The time for some frames, s.
+/// What some frames take.
 struct FrameCost {
     double frames = 1, wall_s = 0, cpu_s = 0;  // from the first of them on
-    double run_s = 0;                          // of the whole run
+    double bytes = 0;                          // of the film
+    double run_s = 0, key_bytes = 0;           // of the whole run; what a key frame has more than others
 };
+
+double bytes_of(const std::filesystem::path& film) {
+    if (!std::filesystem::is_directory(film)) return static_cast<double>(std::filesystem::file_size(film));
+    double bytes = 0;
+    for (const auto& picture : std::filesystem::directory_iterator(film)) bytes += bytes_of(picture.path());
+    return bytes;
+}
 
 /// Measured on the last `count` frames of the scene.
 FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>& stop) {
@@ -98,23 +110,34 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
         if (progress.done == 1) wall_s = seconds_of(CLOCK_MONOTONIC), cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     });
     return {static_cast<double>(result.frames), seconds_of(CLOCK_MONOTONIC) - wall_s,
-            seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s, result.wall_s};
+            seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s, bytes_of(result.files.front()), result.wall_s};
 }
 
-/// Time for one frame: the difference between many frames and few. `run_s` is that of few.
+/// The cost of one frame: the difference between many frames and few. `run_s` is that of few.
 FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
-    constexpr double sufficient_s = 0.1, slow_s = 0.5;
+    constexpr double sufficient_s = 0.1, slow_s = 2;
     const auto few = cost_of_frames(scene, 2, stop);
-    FrameCost cost{1, few.wall_s, few.cpu_s, few.run_s};
+    FrameCost cost{1, few.wall_s / few.frames, few.cpu_s / few.frames, few.bytes / few.frames, few.run_s};
     for (long count = 8; count <= 128 && few.wall_s < slow_s; count *= 4) {
         const auto many = cost_of_frames(scene, count, stop);
         const double more = many.frames - few.frames, wall_s = many.wall_s - few.wall_s;
         if (more < 1) break;
         cost.wall_s = std::max(wall_s, 0.0) / more;
         cost.cpu_s = std::max(many.cpu_s - few.cpu_s, 0.0) / more;
+        cost.bytes = std::max(many.bytes - few.bytes, 0.0) / more;
+        cost.key_bytes = std::max(few.bytes - few.frames * cost.bytes, 0.0);
         if (wall_s > sufficient_s) break;
     }
     return cost;
+}
+
+/// Memory of x264's own presets for the frames that they look ahead, bytes: the trial is too short to fill it.
+double lookahead_bytes(const VideoSpec& video) {
+    constexpr double frames = 27, yuv_bytes = 1.5;  // frames for each step from ultrafast on; measured
+    const auto preset = std::ranges::find(encoder_presets, video.preset) - encoder_presets.begin();
+    if (video.format != FilmFormat::mp4) return 0;
+    return frames * static_cast<double>(std::max(preset - 1, std::ptrdiff_t{0})) * yuv_bytes * video.size.width *
+           video.size.height;
 }
 
 }  // namespace
@@ -130,22 +153,41 @@ SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bo
     return all;
 }
 
-double estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
+RenderEstimate estimated_render(const Scene& scene, const SimulationEstimate& simulation,
+                                const std::atomic<bool>& stop) {
     // long enough for trails to form, and short
     constexpr double motion_s = 4, begin_s = 0.15, patience_s = 1;
     const auto samples = static_cast<double>(scene.samples);
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
     const double sample_s = motions_s / samples;
-    if (scene.preset.video.format == FilmFormat::html) return motions_s;
+    const auto& video = scene.preset.video;
+    const bool is_page = video.format == FilmFormat::html;
+    constexpr double number_bytes = 18.5;  // in the table, measured: 17.9 to 19.7
+    const double table_bytes = number_bytes * samples * static_cast<double>(columns_of(scene).size());
+    RenderEstimate estimate{{.cpu_s = motions_s,
+                             .repeated_cpu_s = motions_s,
+                             .disk_bytes = table_bytes + (is_page ? estimated_page_bytes(scene) : unknown)},
+                            motions_s};
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
-    if (simulation.at_least || sample_s * static_cast<double>(one_frame) > patience_s) return motions_s;
-    const double wanted = std::min(motion_s * scene.preset.sample_hz.value(), begin_s / std::max(sample_s, 1e-12));
-    const auto begun = beginning_of(
-        scene, std::clamp(static_cast<long>(std::min(wanted, 1e9)), std::min(one_frame, scene.samples), scene.samples));
-    const auto cost = cost_of_frame(begun, stop);
-    const auto frames = static_cast<double>(schedule_of(scene).frames());
-    return cost.run_s + motions_s + std::max(cost.wall_s * frames, cost.cpu_s * frames / cores());
+    if (!is_page && !simulation.at_least && sample_s * static_cast<double>(one_frame) <= patience_s) {
+        const double wanted = std::min(motion_s * scene.preset.sample_hz.value(), begin_s / std::max(sample_s, 1e-12));
+        const auto begun = beginning_of(scene, std::clamp(static_cast<long>(std::min(wanted, 1e9)),
+                                                          std::min(one_frame, scene.samples), scene.samples));
+        const auto cost = cost_of_frame(begun, stop);
+        const auto frames = static_cast<double>(schedule_of(scene).frames());
+        const auto segments = static_cast<double>(max_shards(scene));
+        if (video.format_row().has_parts()) estimate.most_shards = max_shards(scene);
+        estimate.seconds += cost.run_s + std::max(cost.wall_s * frames, cost.cpu_s * frames / cores());
+        estimate.cpu_s += cost.run_s + cost.cpu_s * frames;
+        estimate.disk_bytes = table_bytes + cost.bytes * frames + cost.key_bytes * segments;
+    }
+    const bool keeps_motion = depends_on_motion(scene) || video.contact_sheet;
+    const double motion_bytes = recorded_bytes(scene, {scene.samples + 1});
+    estimate.memory_bytes = peak_memory() + lookahead_bytes(video) +
+                            (keeps_motion && motion_bytes <= Recording::usual_bytes ? motion_bytes : 0);
+    return estimate;
 }
 
 }  // namespace doppel

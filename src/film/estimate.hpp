@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/machine.hpp"
 #include "scene/scene.hpp"
 
 #include <atomic>
@@ -16,8 +17,15 @@ struct SimulationEstimate {
 /// Throws as a run does; exit 130 soon after `stop` is set.
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop);
 
-/// The time to render the scene, s. Draws and writes some frames in a temporary folder, for about a second. Throws as
-/// run() does, for example if there is no OpenGL.
-double estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop);
+/// What it takes to render a scene; each shard simulates the motion again. The process's memory counts from
+/// reset_peak_memory() on.
+struct RenderEstimate : Needs {
+    double seconds = 0;  // on this machine
+};
+
+/// Draws and writes some frames in a temporary folder, for about a second. Throws as run() does, for example if there
+/// is no OpenGL.
+RenderEstimate estimated_render(const Scene& scene, const SimulationEstimate& simulation,
+                                const std::atomic<bool>& stop);
 
 }  // namespace doppel

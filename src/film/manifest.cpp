@@ -1,6 +1,7 @@
 #include "base/clock.hpp"
 #include "film/film.hpp"
 #include "output/written.hpp"
+#include "scene/certificate.hpp"
 #include "scene/forecast.hpp"
 #include "scene/resolved.hpp"
 
@@ -134,6 +135,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
     };
     if (scene.is_single()) manifest.erase("b");
     if (auto fonts = fonts_json(scene.preset); !fonts.empty()) manifest["fonts"] = std::move(fonts);
+    if (scene.certificate) manifest["certificate"] = certificate_json(scene, *scene.certificate);
     if (!record.failure.empty()) manifest["failed"] = record.failure;
     write_manifest(parts, name, std::move(manifest));
 }

@@ -28,7 +28,8 @@ Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, 
       report_(std::move(report)),
       file_(std::move(file)) {
     const bool is_bounded = with_pictures && depends_on_motion(scene);
-    is_kept_ = with_pictures && (is_bounded || scene.preset.video.contact_sheet) && bytes() <= max_bytes;
+    is_kept_ =
+        with_pictures && (is_bounded || scene.preset.video.contact_sheet) && recorded_bytes(scene, end) <= max_bytes;
     if (!is_bounded && !is_kept_) return;
     try {
         simulate(is_bounded ? scene.samples : no_bounds, [&](const Snapshot& snapshot) {
@@ -40,15 +41,14 @@ Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, 
     }
 }
 
-/// Approximate memory of the recording.
-double Recording::bytes() const {
-    const auto bobs = static_cast<double>(scene_.a.mass.size() + scene_.b.mass.size());
+double recorded_bytes(const Scene& scene, const Moment& end) {
+    const auto bobs = static_cast<double>(scene.a.mass.size() + scene.b.mass.size());
     const auto is_quad = [](const Side& side) { return side.motion.precision == Precision::in_quad; };
     double one = sizeof(Snapshot) + bobs * (sizeof(Bob<double>) + sizeof(double));
-    if (is_quad(scene_.a) || is_quad(scene_.b)) one += bobs * sizeof(Bob<Quad>);
-    one += static_cast<double>(scene_.members.size()) *
-           static_cast<double>(sizeof(Bobs<double>) + scene_.a.mass.size() * sizeof(Bob<double>));
-    return one * static_cast<double>(end_.sample + scene_.frames.first_from(end_));
+    if (is_quad(scene.a) || is_quad(scene.b)) one += bobs * sizeof(Bob<Quad>);
+    one += static_cast<double>(scene.members.size()) *
+           static_cast<double>(sizeof(Bobs<double>) + scene.a.mass.size() * sizeof(Bob<double>));
+    return one * static_cast<double>(end.sample + scene.frames.first_from(end));
 }
 
 void Recording::play(const Visit& visit) {

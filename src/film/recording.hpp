@@ -53,6 +53,9 @@ struct Progress {
 };
 using Report = std::function<void(const Progress&)>;
 
+/// Approximate memory of all snapshots of a scene before `end`, bytes.
+double recorded_bytes(const Scene& scene, const Moment& end);
+
 /// The motion of a scene up to a given time: its samples, and for pictures also the frames between them and the members
 /// of an ensemble (which the table may require, too). The whole motion is simulated first and kept if a picture depends
 /// on it (depends_on_motion()) or is drawn after the others (the contact sheet). This takes some 0.7 kB per sample for
@@ -86,7 +89,6 @@ public:
 
 private:
     static constexpr long no_bounds = -1;
-    double bytes() const;
     class Source;
     void simulate(long last, const Visit& visit);
 

@@ -2,6 +2,7 @@
 #include "film/strips.hpp"
 #include "plot/labels.hpp"
 #include "render/stroke.hpp"
+#include "scene/certificate.hpp"
 
 #include <fmt/format.h>
 
@@ -65,6 +66,9 @@ void StripLayer::backdrop(DisplayList& list) const {
         list.push_back(vertical_line(area.left, area.top, area.bottom, line, theme_.frame));
         list.push_back(horizontal_line(area.bottom, area.left, area.right, line, theme_.frame));
     }
+    if (const auto& proof = state_.scene.certificate)  // a band along the axis
+        list.push_back(Box{area.left, area.bottom - 0.25f * em, strip_.time.at(proof->run_until_s()), area.bottom, 0,
+                           theme_.trace.with_alpha(0.5f)});
     draw_limits(list);
 }
 
@@ -94,11 +98,13 @@ void StripLayer::draw_mark(double time, const std::string& text, float& foot, Di
     }
 }
 
-/// Marks the predictability limit. Returns where more text may be placed.
+/// Marks the predictability limits, and the time until which the run is proved. Returns where more text may be placed.
 float StripLayer::draw_limits(DisplayList& list) const {
     float foot = strip_.area.bottom - 0.45f * px(style_.font.strip);
     if (const auto limit = state_.scene.horizon())
         draw_mark(*limit, fmt::format("numerical predictability limit {:.1f} s", *limit), foot, list);
+    if (const auto& proof = state_.scene.certificate)
+        draw_mark(proof->run_until_s(), fmt::format("proved until {:.1f} s", proof->run_until_s()), foot, list);
     if (const auto limit = state_.scene.preset.video.model_limit_s)
         draw_mark(*limit, fmt::format("predictability limit of the model {:.1f} s", *limit), foot, list);
     return foot;

@@ -51,6 +51,7 @@ Json manifest_of(const fs::path& path) {
 }
 
 std::string kind_of_manifest(const Json& manifest) {
+    if (manifest.contains("certificate") && !manifest.contains("frames")) return "certificate";
     return manifest.contains("models") ? "fit" : manifest.contains("figure") ? "figure" : "film";
 }
 

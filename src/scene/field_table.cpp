@@ -119,6 +119,7 @@ std::vector<FieldTable> film_tables() {
     scene(kind_field, std::string(pair_kind));
     clock_fields(scene, preset);
     column_fields(scene, preset);
+    certify_field(scene, preset);
     side_fields(system, preset.a);
     particle({.key = "name",
               .help = "the name that constraints and forces refer to",

@@ -181,6 +181,7 @@ struct Preset {
     Rational sample_hz{120, 1};
     bool energy_columns = false;  // table has kinetic and potential energies
     bool member_columns = false;  // table has the members of an ensemble
+    bool certify = false;         // proves how long the run follows the true motion (scene/certificate.hpp)
     SideSpec a, b;
     VideoSpec video;
 };

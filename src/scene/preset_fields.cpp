@@ -40,6 +40,13 @@ void clock_fields(KeyVisitor& visit, Preset& preset) {
     visit({"sample_hz", "samples a second; divides the steps a second", "Hz", positive}, preset.sample_hz);
 }
 
+void certify_field(KeyVisitor& visit, Preset& preset) {
+    visit({"certify",
+           "proves, for two ideal links, how long the run follows the true motion: in the manifest, the strip and "
+           "`check`"},
+          preset.certify);
+}
+
 void column_fields(KeyVisitor& visit, Preset& preset) {
     visit({"energy_columns", "kinetic and potential energies as last columns of the CSV"}, preset.energy_columns);
     visit({"member_columns", "of an ensemble: angles, rates, places and velocities of each member as last columns"},

@@ -27,6 +27,7 @@ extern const Field title_field, subtitle_field, kind_field, model_field, accurac
 /// [scene], except `kind`.
 void clock_fields(KeyVisitor& visit, Preset& preset);
 /// Further keys of [scene] about a film's table.
+void certify_field(KeyVisitor& visit, Preset& preset);
 void column_fields(KeyVisitor& visit, Preset& preset);
 
 // Keys of [system], [a] and [b].

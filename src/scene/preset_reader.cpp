@@ -298,6 +298,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     clock_fields(scene, preset);
     column_fields(scene, preset);
+    certify_field(scene, preset);
     scene.finish();
     read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");

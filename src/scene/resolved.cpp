@@ -140,6 +140,7 @@ std::string resolved_pair(const Preset& preset) {
     auto clock = preset;
     clock_fields(writer, clock);
     if (preset.energy_columns || preset.member_columns) column_fields(writer, clock);
+    if (preset.certify) certify_field(writer, clock);
     return writer.text() + resolved_sides(preset);
 }
 

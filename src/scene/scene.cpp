@@ -1,7 +1,9 @@
 #include "scene/scene.hpp"
 
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "scene/captions.hpp"
+#include "scene/certificate.hpp"
 #include "scene/method_choice.hpp"
 #include "scene/numeric_key.hpp"
 #include "scene/resolved.hpp"
@@ -118,6 +120,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     check_difference(scene);
     check_tracks(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
+    if (preset.certify)
+        scene.certificate = std::make_shared<Certificate>(certificate_of(scene, usual_run_radius, cores(), stop));
     return scene;
 }
 

@@ -130,6 +130,7 @@ auto for_side(const Preset& preset, char name, const Make& make) {
 }
 
 class MethodChooser;
+struct Certificate;
 
 /// A scene ready to run: the models are chosen, the clock is in whole numbers.
 struct Scene {
@@ -140,6 +141,7 @@ struct Scene {
     Rational fps;                            // frames/s of the video
     FrameTimes frames;                       // the moments they show
     std::shared_ptr<MethodChooser> chooser;  // if a side requires an accuracy
+    std::shared_ptr<const Certificate> certificate{};  // if the preset requires it (scene/certificate.hpp)
 
     double time(const Moment& moment) const;  // s
     double time(long sample) const { return time(Moment{sample}); }

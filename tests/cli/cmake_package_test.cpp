@@ -66,7 +66,7 @@ TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
     EXPECT_NE(failed.code, 0);
     EXPECT_NE(failed.out.find("1 tests failed out of 2"), std::string::npos) << failed.out;
     EXPECT_NE(failed.out.find("40 pixels differ by more than 3/255"), std::string::npos) << failed.out;
-    EXPECT_TRUE(fs::exists(folder_ / "build/doppel/swing/compare/000001.diff.png"));
+    EXPECT_TRUE(fs::exists(folder_ / "build/doppel/swing/mine/compare/000001.diff.png"));
     const auto junit = test::XmlReader(bytes_of(folder_ / "build/doppel/swing/compare.xml")).document();
     EXPECT_EQ(junit["tests"] + junit["failures"], "21");
     const auto page = test::XmlReader(bytes_of(folder_ / "build/doppel/swing/compare.html")).document();

@@ -1,7 +1,9 @@
 // Interfaces to other programs: JSON, --list-outputs, -o -, exit codes.
 #include "cli/sandbox.hpp"
 
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <sstream>
@@ -85,8 +87,9 @@ TEST(Contracts, CheckIsJson) {
     EXPECT_NEAR(a["forecast"]["off_from_s"].get<double>(), 11, 0.1);  // measured 10.98
     EXPECT_EQ(a["forecast"]["motion"], "chaotic");
     EXPECT_EQ(film["warnings"][0], "side a: error above half a rad from 11 s on");
-    EXPECT_EQ(keys_of(all[1]), (Words{"compute_s", "format", "kind", "name", "path", "size", "theme", "threads",
-                                      "times_are_least", "title", "trials", "unit", "units", "warnings", "width_pt"}));
+    EXPECT_EQ(fmt::format("{}", fmt::join(keys_of(all[1]), " ")),
+              "array compute_s cpu_s disk_bytes format kind memory_bytes name path shard_cpu_s shard_repeated_share "
+              "shards size theme threads times_are_least title trials unit units warnings width_pt");
     EXPECT_EQ(all[2]["a"]["model"], "track");
 
     const auto exact = Json::parse(doppel(folder, {"check", "calm", "--json", "--set", "system.accuracy=1e-6"}).out)[0];
@@ -94,6 +97,56 @@ TEST(Contracts, CheckIsJson) {
     EXPECT_TRUE(exact["a"].contains("tolerance"));
     EXPECT_FALSE(exact["steps_are_exact"]);
     EXPECT_EQ(exact["a"]["other_accuracies"].size(), 2u);
+}
+
+TEST(Contracts, CheckTellsAClusterWhatARunTakes) {
+    const auto folder = fresh_folder();
+    const auto check = [&](const Words& arguments) {
+        const auto result = doppel(folder, with({"check", "--json"}, arguments));
+        EXPECT_EQ(result.code, 0) << result.err;
+        return Json::parse(result.out)[0];
+    };
+    // a film: files and memory as estimated, within a factor
+    const Words film{"calm", "--set", "video.size=[320, 180]", "--set", "scene.duration_s=3"};
+    const auto small = check(film);
+    rusage usage{};
+    const auto child = start(folder, with({"render", "--progress", "none"}, film));
+    int status = 0;
+    wait4(child, &status, 0, &usage);
+    ASSERT_EQ(status, 0) << bytes_of(folder / "stderr");
+    double bytes = 0;
+    for (const char* file : {"out/calm/calm.mp4", "out/calm/calm.csv"})
+        bytes += static_cast<double>(fs::file_size(folder / file));
+    EXPECT_NEAR(small["disk_bytes"].get<double>() / bytes, 1, 0.6);  // measured 1.1
+#ifndef DOPPEL_SANITIZE
+    EXPECT_NEAR(small["memory_bytes"].get<double>() / (1024.0 * static_cast<double>(usage.ru_maxrss)), 1, 0.4);
+#endif
+    EXPECT_GT(small["cpu_s"], 0);
+    EXPECT_EQ(small["shards"], 1);
+    EXPECT_EQ(small["array"], "1-1");
+    EXPECT_EQ(small["shard_cpu_s"], small["cpu_s"]);
+
+    // one shard for each 5 s at most, of half an hour at most
+    const Words hours{"calm", "--set", "video.size=[320, 180]", "--set", "scene.duration_s=72000"};
+    const auto large = check(hours);
+    const auto shards = large["shards"].get<long>();
+    EXPECT_TRUE(shards > 1 && shards <= 14401) << shards;
+    EXPECT_EQ(large["array"], fmt::format("1-{}", shards));
+    EXPECT_TRUE(large["shard_cpu_s"] > 900 && large["shard_cpu_s"] <= 1800) << large["shard_cpu_s"];
+    EXPECT_LT(large["shard_repeated_share"], 0.2);
+    const auto words = doppel(folder, with({"check"}, with(hours, {"--set", "system.step_s=1/300000"}))).out;
+    EXPECT_NE(words.find(" of CPU time, "), std::string::npos) << words;
+    EXPECT_NE(words.find(": --array=1-"), std::string::npos) << words;
+    EXPECT_NE(words.find("; each simulates the motion again, "), std::string::npos) << words;
+    const auto whole = check(with(hours, {"--set", "video.format=gif", "--set", "video.fps=30"}));
+    EXPECT_EQ(whole["shards"], 1);
+    EXPECT_TRUE(whole["array"].is_null());
+
+    const auto map = check({"flip-map", "--set", "grid.x.points=40000", "--set", "grid.y.points=40000"});
+    EXPECT_GT(map["shards"], 1);
+    EXPECT_LE(map["shard_cpu_s"], 1800);
+    EXPECT_EQ(map["shard_repeated_share"], 0);
+    EXPECT_NEAR(map["disk_bytes"].get<double>() / (1.6e9 * 24), 1, 0.5);  // 24 bytes a cell
 }
 
 TEST(Contracts, ListedOutputsAreTheWrittenOnes) {

@@ -82,18 +82,29 @@ TEST(FigureProgram, ReportsProgressAsJson) {
     EXPECT_EQ(event["files"].size(), 3u);
 }
 
-TEST(FigureProgram, ExitsWith130WithinASecondOfCtrlC) {
+TEST(FigureProgram, ExitsWithinASecondOfASignalWhileItsThreadsCompute) {
+    for (const auto& [signal, code] : {std::pair(SIGINT, 130), {SIGTERM, 143}}) {
+        const auto folder = fresh_folder();
+        const auto child = start(folder, {"figure", "fig6", "droplet", "--progress", "none", "--jobs", "4"});
+        EXPECT_TRUE(appears(folder / "out/fig6/fig6.json"));
+        const auto requested = std::chrono::steady_clock::now();
+        kill(child, signal);
+        EXPECT_EQ(wait_for(child), code);
+        EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1));  // measured 0.05 s
+        EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
+        // no incomplete file, except the record for resuming
+        for (const auto& name : test::listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
+        EXPECT_TRUE(fs::exists(folder / "out/fig6/fig6.png")) << "all of what was";
+    }
+}
+
+TEST(FigureProgram, AMissingShardIsExit75) {
     const auto folder = fresh_folder();
-    const auto child = start(folder, {"figure", "fig6", "droplet", "--progress", "none"});
-    EXPECT_TRUE(appears(folder / "out/fig6/fig6.json"));
-    const auto requested = std::chrono::steady_clock::now();
-    kill(child, SIGINT);
-    EXPECT_EQ(wait_for(child), 130);
-    EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1));  // measured 0.05 s
-    EXPECT_EQ(bytes_of(folder / "stderr").rfind("doppel: interrupted", 0), 0u);
-    // no incomplete file, except the record for resuming
-    for (const auto& name : test::listing(folder / "out/droplet")) EXPECT_TRUE(name.ends_with(".resume")) << name;
-    EXPECT_TRUE(fs::exists(folder / "out/fig6/fig6.png")) << "all of what was";
+    const std::vector<std::string> figure{"figure", "fig6", "--set", "scene.duration_s=0.5", "--progress", "none"};
+    ASSERT_EQ(doppel(folder, with(figure, {"--shard", "1/2"})).code, 0);
+    const auto merge = doppel(folder, with(figure, {"--merge"}));
+    EXPECT_EQ(merge.code, 75);
+    EXPECT_EQ(merge.err, "doppel: out/fig6: missing parts: 2/2\n");
 }
 
 /// A long run keeps its results, whatever stops it.

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "analysis/certified_pair.hpp"
+#include "numeric/ball.hpp"
+#include "numeric/rational.hpp"
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace doppel {
+
+/// Scales of what an enclosure counts; all 1 for a proof. Tests leave parts out to see that they are needed.
+struct EnclosureCount {
+    double start = 1, truncation = 1, rounding = 1, nonlinearity = 1, earlier_boxes = 1, coefficient = 1;
+};
+
+struct EnclosureSpec {
+    Rational interval{1, 120};    // between samples, s
+    long samples = 0;             // 0 … samples
+    double largest_radius = 0.5;  // of angles, rad, and rates, rad/s: it ends beyond
+    double tolerance = 0.25;      // last terms of a series, in units of rounding
+    EnclosureCount counted = {};
+};
+
+/// θ1, θ2 (rad), ω1, ω2 (rad/s)
+template <class Scalar>
+using EnclosedState = std::array<Ball<Scalar>, 4>;
+
+/// The release of a system.
+template <class Scalar>
+EnclosedState<Scalar> enclosed_start(const DecimalPendulum& system);
+
+/// Sets that contain the true states at samples 0, 1 … for all starts in `start`; fewer than required where the proof
+/// ends. Calls watch(samples) after each step; it may throw.
+///
+/// The set is c + e, with e in a zonotope: a sum of boxes b_j mapped by matrices G_j. A step of length h uses
+///     φ(c + e) ∈ p(1) + r + J e
+/// with the Taylor polynomial p(τ) of the motion from c, τ = t/h, its remainder r, and a Jacobian J of the flow over the
+/// hull of the set (Lohner's mean-value form). With the centre M of J, G_j becomes M G_j; one more box contains r, the
+/// roundings and (J − M) e. Boxes are never turned into others, so that the set grows as the tangents do.
+/// The remainders are functions τ^(order+1) r of which Picard's operator maps the set into itself.
+/// Source  Lohner 1987; Nedialkov, Jackson & Corliss 1999, Appl. Math. Comput. 105:21; for zonotopes Kühn 1998,
+///         Computing 61:47.
+template <class Scalar>
+std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum& system, const EnclosedState<Scalar>& start,
+                                              const EnclosureSpec& spec, const std::function<void(long)>& watch);
+
+}  // namespace doppel

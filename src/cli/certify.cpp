@@ -1,0 +1,138 @@
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/machine.hpp"
+#include "cli/options.hpp"
+#include "cli/program.hpp"
+#include "cli/terminal.hpp"
+#include "output/csv.hpp"
+#include "output/transaction.hpp"
+#include "scene/certificate.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace doppel {
+namespace {
+
+struct CertifyOptions : RunCommandOptions {
+    double radius = usual_run_radius;  // rad
+};
+
+std::vector<std::string> certified_files(const std::string& name) {
+    return {name + ".certified.csv", name + ".certified.json"};
+}
+
+std::vector<std::string> certified_columns(const Scene& scene) {
+    std::vector<std::string> columns{"sample", "time_s"};
+    const auto add = [&](const std::string& number) {
+        for (const char* bound : {"_low", "_high"}) columns.push_back(number + bound);
+    };
+    for (const char letter : scene.letters())
+        for (const char* number : {"theta1_rad", "theta2_rad", "omega1_rad_per_s", "omega2_rad_per_s"})
+            add(fmt::format("{}_{}", letter, number));
+    if (!scene.is_single()) add("distance");
+    return columns;
+}
+
+void write_rows(const Scene& scene, const CertifiedPair& pair, const std::filesystem::path& place) {
+    Csv table(place, certified_columns(scene));
+    const auto add = [&](const Interval& bounds) {
+        table.add(bounds.low);
+        table.add(bounds.high);
+    };
+    for (std::size_t n = 0; n < pair.samples(); ++n) {
+        table.add(static_cast<long>(n));
+        table.add(scene.time(static_cast<long>(n)));
+        for (const auto& side : pair.sides)
+            for (const auto& bounds : side[n]) add(bounds);
+        if (!pair.distance.empty()) add(pair.distance[n]);
+        table.end_row();
+    }
+    table.finish();
+}
+
+/// Writes what is proved, and returns the files with the sentences to print.
+std::pair<RunResult, Certificate> certify(const Scene& scene, const CertifyOptions& options,
+                                          const std::filesystem::path& out, ProgressReport& report) {
+    const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const auto& stop = watch_interrupts();
+    const auto& name = scene.preset.name;
+    const auto files = certified_files(name);
+    Transaction parts(out / name, "certify", "certificate", {inputs_of(options.presets, {scene}), options.force});
+    parts.require(files[1]);
+    const auto place = parts.file(files[0]);
+    auto proved = certificate_of(scene, options.radius, options.jobs > 0 ? options.jobs : cores(), stop,
+                                 [&](long done, long total) {
+                                     report({done, total});
+                                 });
+    write_rows(scene, proved.pair, place);
+    parts.finished(files[0]);
+    RunResult result;
+    result.samples = proved.last() + 1;
+    result.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+    write_manifest(
+        parts, files[1],
+        {{"doppel", program_json()},
+         {"preset", name},
+         {"resolved_preset", json_of_toml(resolved_toml(scene.preset))},
+         {"samples", {{"first", 0}, {"last", proved.last()}, {"of", scene.samples}}},
+         {"certificate", certificate_json(scene, proved)},
+         {"time", {{"wall_s", result.wall_s}, {"cpu_s", seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start}}}});
+    throw_if_set(stop);
+    result.files = parts.publish();
+    return {std::move(result), std::move(proved)};
+}
+
+/// Throws Error (exit 3) if not all is proved, after writing the rest.
+void certify_all(const CertifyOptions& options) {
+    const auto scenes = read_scenes(options);
+    if (options.list_outputs) {
+        for (const auto& scene : scenes) list_outputs(options, scene.preset.name, certified_files(scene.preset.name));
+        return;
+    }
+    const Destination to(options.out, scenes.size(), ".csv");
+    const auto style = progress_style(options.progress);
+    ignore_sigpipe();
+    for (const auto& scene : scenes) {
+        const auto& name = scene.preset.name;
+        ProgressReport report(style, name, "samples", to.streamed());
+        try {
+            const auto [result, proved] = certify(scene, options, to.folder(), report);
+            for (const auto& sentence : certificate_words(scene, proved)) report.note(sentence);
+            report.done(result);
+            if (proved.last() < scene.samples)
+                throw method_failed("{}: nothing is proved after {:.6g} s of {:g} s; the rows end there", name,
+                                    scene.time(proved.last()), scene.time(scene.samples));
+        } catch (...) {
+            report.clear();
+            throw;
+        }
+    }
+}
+
+}  // namespace
+
+void add_certify(CLI::App& app) {
+    auto options = std::make_shared<CertifyOptions>();
+    auto& command =
+        *app.add_subcommand("certify", "Proves bounds of the true motion of two ideal links: CSV, manifest");
+    command.footer(
+        "At every sample the CSV has bounds of each angle and rate, and of the distance of the pair. All\n"
+        "round-off, truncation and the decimals of the preset are included: docs/certified.md. Rows end\n"
+        "where the proof ends, with exit code 3.\n"
+        "Examples:\n"
+        "  doppel certify butterfly\n"
+        "  doppel certify butterfly --radius 0.01\n"
+        "  doppel certify raindrop --set scene.duration_s=60 -o proofs");
+    add_run_options(command, *options, "Threads; default: one a core; same bytes for any N");
+    add_value(command, "--radius", options->radius, "RAD",
+              "Finds how long the preset's own run stays this near the true motion, rad")
+        ->check(CLI::Range(1e-12, 1e3))
+        ->capture_default_str();
+    command.callback([options] { certify_all(*options); });
+}
+
+}  // namespace doppel

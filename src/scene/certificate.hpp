@@ -1,0 +1,48 @@
+#pragma once
+
+#include "analysis/certified_pair.hpp"
+#include "scene/resolved.hpp"
+#include "scene/scene.hpp"
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// What is proved about a scene.
+struct Certificate {
+    /// For the run of a side, by its method: the time until which each angle is proved to be within the radius of the
+    /// true one, at every sample; and the first at which one is proved to be farther from it, s.
+    struct OfRun {
+        std::optional<double> until_s{}, beyond_s{};
+    };
+
+    CertifiedPair pair;
+    double radius;                         // rad
+    std::vector<OfRun> runs;               // of each side
+    std::optional<Interval> diverged_s{};  // bounds of the true time of divergence (analysis/difference.hpp), s
+
+    /// The last sample that is proved.
+    long last() const { return static_cast<long>(pair.samples()) - 1; }
+    /// The time until which the runs of all sides are, s.
+    double run_until_s() const;
+};
+
+/// By which a run has left the true motion, rad.
+inline constexpr double usual_run_radius = 0.5;
+
+/// What to enclose. Throws Error (exit 2) unless the sides are two ideal links, with or without droplets.
+CertifiedPairSpec certified_spec(const Scene& scene);
+
+/// Throws Error: as certified_spec(); exit 130 soon after `stop` is set.
+Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
+                           const CertifiedReport& report = {});
+
+/// The results in sentences.
+std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved);
+
+Json certificate_json(const Scene& scene, const Certificate& proved);
+
+}  // namespace doppel

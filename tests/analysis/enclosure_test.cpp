@@ -1,0 +1,283 @@
+#include "analysis/enclosure.hpp"
+
+#include "integrate/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace doppel {
+namespace enclosure_test {
+
+const std::atomic<bool> never = false;
+const auto unwatched = [](long) {};
+
+const DecimalPendulum right_angles{{"1", "1"}, {"1", "1"}, {"90", "90"}, {"0", "0"}, "9.8"};
+const DecimalPendulum uneven{{"0.7", "1.3"}, {"1.1", "0.6"}, {"120", "-35"}, {"40", "-90"}, "9.81"};
+
+MotionSpec motion_of(const DecimalPendulum& p) {
+    const Quad degree = pi_of<Quad>() / 180;
+    Pendulum<Quad> chain;
+    chain.mass = chain.length = chain.angle = chain.rate = {};
+    chain.gravity = parse_quad(p.gravity);
+    for (std::size_t i = 0; i < 2; ++i) {
+        chain.mass.push_back(parse_quad(p.mass[i]));
+        chain.length.push_back(parse_quad(p.length[i]));
+        chain.angle.push_back(parse_quad(p.angle_deg[i]) * degree);
+        chain.rate.push_back(parse_quad(p.omega_deg_per_s[i]) * degree);
+    }
+    MotionSpec spec;
+    spec.chain = chain;
+    spec.method = "taylor";
+    spec.precision = Precision::in_quad;
+    spec.tolerance = parse_quad("1e-30");
+    return spec;
+}
+
+/// θ1, θ2, ω1, ω2
+using Numbers = std::array<Quad, 4>;
+
+Numbers numbers_of(const Motion& motion) {
+    const auto bobs = motion.observe().exact;
+    return {bobs[0].theta, bobs[1].theta, bobs[0].omega, bobs[1].omega};
+}
+
+/// The states of a motion in quad by the reference's method at samples 0, 1 … from a start moved by `shift`.
+std::vector<Numbers> reference(const DecimalPendulum& p, long samples, const std::array<double, 4>& shift = {}) {
+    auto spec = motion_of(p);
+    for (std::size_t i = 0; i < 2; ++i) {
+        spec.chain->angle[i] += shift[i];
+        spec.chain->rate[i] += shift[i + 2];
+    }
+    const auto motion = make_motion(spec);
+    std::vector<Numbers> all{numbers_of(*motion)};
+    for (long n = 0; n < samples; ++n) {
+        motion->advance(never);
+        all.push_back(numbers_of(*motion));
+    }
+    return all;
+}
+
+/// Whether every state is in its set; the reference's own error is at most 1e-26.
+template <class Scalar>
+bool all_inside(const std::vector<EnclosedState<Scalar>>& sets, const std::vector<Numbers>& states) {
+    if (sets.size() < states.size()) return false;
+    for (std::size_t n = 0; n < states.size(); ++n)
+        for (std::size_t i = 0; i < 4; ++i)
+            if (abs(Wide(Wide(sets[n][i].center) - Wide(states[n][i]))) > Wide(sets[n][i].radius) + Wide(1e-26))
+                return false;
+    return true;
+}
+
+template <class Scalar>
+std::vector<EnclosedState<Scalar>> enclosed(const DecimalPendulum& p, long samples, double radius = 0,
+                                            const EnclosureSpec& other = {}) {
+    auto spec = other;
+    spec.samples = samples;
+    auto start = enclosed_start<Scalar>(p);
+    for (auto& x : start) x.radius += radius;
+    return enclosures<Scalar>(p, start, spec, unwatched);
+}
+
+template <class Scalar>
+double radius_at_end(const std::vector<EnclosedState<Scalar>>& sets) {
+    double worst = 0;
+    for (const auto& x : sets.back()) worst = std::max(worst, x.radius);
+    return worst;
+}
+
+std::array<double, 4> corner(unsigned index, double radius) {
+    std::array<double, 4> shift;
+    for (unsigned i = 0; i < 4; ++i) shift[i] = (index >> i & 1u) != 0 ? radius : -radius;
+    return shift;
+}
+
+TEST(Enclosure, ContainsTheReferenceInQuad) {
+    const auto known = reference(right_angles, 1200);
+    const auto in_double = enclosed<double>(right_angles, 1200);
+    EXPECT_TRUE(all_inside(in_double, known));
+    EXPECT_LT(radius_at_end(in_double), 1e-9);  // measured 5.3e-10
+    const auto in_quad = enclosed<Quad>(right_angles, 360);
+    EXPECT_TRUE(all_inside(in_quad, reference(right_angles, 360)));
+    EXPECT_LT(radius_at_end(in_quad), 1e-28);
+    EXPECT_TRUE(all_inside(enclosed<double>(uneven, 600), reference(uneven, 600)));
+}
+
+TEST(Enclosure, WiderScalarsLieInsideNarrowerOnes) {
+    const auto in_double = enclosed<double>(uneven, 60);
+    const auto in_quad = enclosed<Quad>(uneven, 60);
+    const auto in_wide = enclosed<Wide>(uneven, 60);
+    ASSERT_EQ(in_wide.size(), 61u);
+    EXPECT_LT(radius_at_end(in_wide), 1e-72);
+    for (std::size_t n = 0; n <= 60; ++n)
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_LE(abs(Wide(Wide(in_double[n][i].center) - in_wide[n][i].center)), Wide(in_double[n][i].radius));
+            EXPECT_LE(abs(Wide(Wide(in_quad[n][i].center) - in_wide[n][i].center)), Wide(in_quad[n][i].radius));
+        }
+}
+
+TEST(Enclosure, ContainsAThousandRandomStartsOfAnInterval) {
+    constexpr double radius = 1e-4;
+    constexpr long samples = 12;
+    const auto sets = enclosed<double>(uneven, samples, radius);
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> within(-radius, radius);
+    int outside = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        auto shift = trial < 16 ? corner(static_cast<unsigned>(trial), radius) : std::array<double, 4>{};
+        if (trial >= 16) std::generate(shift.begin(), shift.end(), [&] { return within(random); });
+        auto p = motion_of(uneven);
+        p.sample_interval = {samples, 120};
+        for (std::size_t i = 0; i < 2; ++i) {
+            p.chain->angle[i] += shift[i];
+            p.chain->rate[i] += shift[i + 2];
+        }
+        const auto motion = make_motion(p);
+        motion->advance(never);
+        const auto end = numbers_of(*motion);
+        for (std::size_t i = 0; i < 4; ++i)
+            if (std::abs(static_cast<double>(Quad(Quad(sets.back()[i].center) - end[i]))) > sets.back()[i].radius)
+                ++outside;
+    }
+    EXPECT_EQ(outside, 0);
+}
+
+TEST(Enclosure, ContainsClosedForms) {
+    // without gravity and at the same angle and rate, both links turn as one rod
+    const DecimalPendulum rod{{"1", "2"}, {"1", "0.5"}, {"30", "30"}, {"120", "120"}, "0"};
+    const auto turning = enclosed<Quad>(rod, 120);
+    ASSERT_EQ(turning.size(), 121u);
+    const Quad degree = pi_of<Quad>() / 180;
+    for (const std::size_t n : {1UL, 60UL, 120UL}) {
+        const Quad angle = (30 + Quad(n)) * degree;  // 120 °/s, 120 Hz
+        for (const std::size_t i : {0u, 1u})
+            EXPECT_LE(abs(Quad(turning[n][i].center - angle)), Quad(turning[n][i].radius) + Quad(1e-32));
+    }
+    // a normal mode of 1e-12 degrees: the terms of third order are below 1e-40
+    const DecimalPendulum mode{
+        {"1", "1"}, {"1", "1"}, {"1e-12", "1.41421356237309504880168872420969808e-12"}, {"0", "0"}, "9.8"};
+    const auto swinging = enclosed<Quad>(mode, 120);
+    ASSERT_EQ(swinging.size(), 121u);
+    const Quad rate = sqrt(Quad(parse_quad("9.8") * (2 - sqrt(Quad(2)))));
+    for (const std::size_t n : {1u, 60u, 120u}) {
+        const Quad angle = parse_quad("1e-12") * degree * cos(Quad(rate * Quad(n) / 120));
+        EXPECT_LE(abs(Quad(swinging[n][0].center - angle)), Quad(swinging[n][0].radius) + Quad(1e-46));
+        EXPECT_LT(swinging[n][0].radius, 1e-40);
+    }
+}
+
+TEST(Enclosure, AnEquilibriumStaysWhereItIs) {
+    DecimalPendulum hanging = right_angles;
+    hanging.angle_deg = {"0", "0"};
+    for (const auto& state : enclosed<double>(hanging, 120))
+        for (const auto& x : state) EXPECT_LT(std::abs(x.center) + x.radius, 1e-200);
+}
+
+TEST(Enclosure, ReversedTimeReturnsToASetThatContainsTheStart) {
+    const auto sets = enclosed<Quad>(uneven, 240);
+    auto back = sets.back();
+    for (const std::size_t i : {2u, 3u}) back[i].center = -back[i].center;
+    EnclosureSpec spec;
+    spec.samples = 240;
+    const auto end = enclosures<Quad>(uneven, back, spec, unwatched).back();
+    const auto start = enclosed_start<Quad>(uneven);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Quad sign = i < 2 ? 1 : -1;
+        EXPECT_LE(abs(Quad(sign * end[i].center - start[i].center)), Quad(end[i].radius));
+        EXPECT_LT(end[i].radius, 1e-26);
+    }
+}
+
+TEST(Enclosure, TheWidthGrowsLikeTheTangents) {
+    // the sum of the differences by each coordinate of the start, after 6 s
+    constexpr double radius = 1e-12;
+    constexpr long samples = 720;
+    const auto sets = enclosed<Quad>(right_angles, samples, radius);
+    ASSERT_EQ(sets.size(), 721u);
+    const auto middle = reference(right_angles, samples).back();
+    std::array<double, 4> sum{};
+    for (std::size_t j = 0; j < 4; ++j) {
+        std::array<double, 4> shift{};
+        shift[j] = radius;
+        const auto moved = reference(right_angles, samples, shift).back();
+        for (std::size_t i = 0; i < 4; ++i) sum[i] += std::abs(static_cast<double>(Quad(moved[i] - middle[i])));
+    }
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(sets.back()[i].radius / sum[i], 1, 1e-3);
+}
+
+TEST(Enclosure, EndsWhereTheProofEnds) {
+    EnclosureSpec spec;
+    spec.largest_radius = 1e-8;
+    const auto sets = enclosed<double>(right_angles, 3600, 0, spec);
+    EXPECT_GT(sets.size(), 1200u);
+    EXPECT_LT(sets.size(), 2400u);
+    for (const auto& state : sets)
+        for (const auto& x : state) EXPECT_LE(x.radius, 1e-8);
+    // a set too wide for any step
+    EXPECT_LT(enclosed<double>(right_angles, 120, 0.4).size(), 60u);
+}
+
+TEST(Enclosure, SamplesFarApartAndCloseTogetherAreTheSameMotion) {
+    EnclosureSpec coarse, fine;
+    coarse.interval = {1, 2};
+    fine.interval = {1, 7001};
+    const auto known = reference(uneven, 60).back();
+    const auto one = enclosed<double>(uneven, 1, 0, coarse).back();
+    const auto many = enclosed<double>(uneven, 7001 / 2, 0, fine);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_LE(std::abs(static_cast<double>(Quad(Quad(one[i].center) - known[i]))), one[i].radius);
+        EXPECT_NEAR(many.back()[i].center, one[i].center, 3e-3);
+    }
+}
+
+TEST(Enclosure, ADropletAttracts) {
+    // near and heavy, against the same as a mechanism in quad
+    auto p = uneven;
+    p.droplets = {{"1", "3", {"2.5", "0.5"}}, {"6.674e-11", "0.000034", {"1609", "0"}}};
+    auto spec = motion_of(p);
+    spec.model = Model::mechanism;
+    spec.parts = parts_of(*spec.chain);
+    spec.parts->forces.push_back(Droplet<Quad>{{parse_quad("2.5"), parse_quad("0.5")}, 3, 1});
+    spec.parts->forces.push_back(Droplet<Quad>{{1609, 0}, parse_quad("0.000034"), parse_quad("6.674e-11")});
+    const auto motion = make_motion(spec);
+    std::vector<Numbers> known{numbers_of(*motion)};
+    for (int n = 0; n < 120; ++n) {
+        motion->advance(never);
+        known.push_back(numbers_of(*motion));
+    }
+    EXPECT_TRUE(all_inside(enclosed<double>(p, 120), known));
+    EXPECT_FALSE(all_inside(enclosed<double>(uneven, 120), known));
+    const auto quad = enclosed<Quad>(p, 120);
+    EXPECT_LT(radius_at_end(quad), 1e-28);
+    EXPECT_TRUE(all_inside(quad, known));
+}
+
+/// Whether all 16 corners of a start's box of that radius stay inside.
+bool corners_inside(const EnclosureCount& counted, double radius, double tolerance, long samples = 60) {
+    EnclosureSpec spec;
+    spec.counted = counted;
+    spec.tolerance = tolerance;
+    const auto sets = enclosed<double>(uneven, samples, radius, spec);
+    for (unsigned i = 0; i < (radius == 0 ? 1u : 16u); ++i)
+        if (!all_inside(sets, reference(uneven, samples, corner(i, radius)))) return false;
+    return true;
+}
+
+TEST(Enclosure, EveryPartThatIsCountedIsNeeded) {
+    constexpr double usual = 0.25, coarse = 1e6, wide = 1e-3;
+    EXPECT_TRUE(corners_inside({}, 0, usual));
+    EXPECT_TRUE(corners_inside({}, 0, coarse));
+    EXPECT_TRUE(corners_inside({}, wide, usual));
+    EXPECT_FALSE(corners_inside({.start = 0}, wide, usual));
+    EXPECT_FALSE(corners_inside({.truncation = 0}, 0, coarse));
+    EXPECT_FALSE(corners_inside({.rounding = 0}, 0, usual));
+    EXPECT_FALSE(corners_inside({.nonlinearity = 0}, wide, usual));
+    EXPECT_FALSE(corners_inside({.earlier_boxes = 0}, wide, usual));
+    EXPECT_FALSE(corners_inside({.coefficient = 1 + 1e-9}, 0, usual));
+}
+
+}  // namespace enclosure_test
+}  // namespace doppel
