@@ -55,7 +55,7 @@ FrameRange frames_of(const Scene& scene, const Shard& shard) {
     const auto video = video_options(scene);
     const long segments = video.segments();
     if (shard.of > segments)
-        throw bad_input("--shard {}/{}: {} has {} segments of 5 s; give at most {} parts", shard.number, shard.of,
+        throw bad_input("--shard {}/{}: {} has {} segments; give at most {} parts", shard.number, shard.of,
                         scene.preset.name, segments, segments);
     const auto start = [&](long number) {
         return number == shard.of ? video.frames : segments * number / shard.of * video.segment();

@@ -99,6 +99,11 @@ const FormatRow& format_row(FilmFormat format, std::string_view codec) {
     return found != film_formats.end() ? *found : *std::ranges::find(film_formats, format, &FormatRow::format);
 }
 
+long VideoOptions::key_interval() const {
+    const auto seconds = [&](long count) { return std::max(count * fps_numerator / fps_denominator, 1L); };
+    return frames > 0 ? std::clamp(frames / 8, seconds(1), seconds(5)) : seconds(5);
+}
+
 std::optional<FormatError> format_error(const VideoOptions& options) {
     const auto& row = format_row(options.format, options.codec);
     if (auto error = codec_error(options)) return error;

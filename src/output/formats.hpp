@@ -88,10 +88,11 @@ struct VideoOptions {
 
     long frames = 0;  // of the whole film; 0: unknown, and it is one segment
 
-    /// Frames from a key frame to the next, at most 5 s.
-    long key_interval() const { return std::max(5 * fps_numerator / fps_denominator, 1L); }
-    /// Frames of a segment, about 5 s; the last one has up to twice as many. Segments are encoded independently, so that
-    /// films can be joined from parts. (Of fewer than 8 frames x264 may not space the decoding times evenly.)
+    /// Frames from a key frame to the next: an eighth of the film, but from 1 to 5 s.
+    long key_interval() const;
+    /// Frames of a segment, a key interval or (of few frames) several; the last segment has up to twice as many.
+    /// Segments are encoded independently, so that films can be joined from parts. (Of fewer than 8 frames x264 may not
+    /// space the decoding times evenly.)
     long segment() const { return key_interval() * ((8 + key_interval() - 1) / key_interval()); }
     long segments() const { return std::max(frames / segment(), 1L); }
 };

@@ -13,7 +13,7 @@ namespace parts_test {
 namespace fs = std::filesystem;
 using namespace test;
 
-/// 12 s in 145 frames: a part of 60 frames and one of 85.
+/// 12 s in 145 frames: eight segments of 18 frames, the last of 19.
 Scene film(std::vector<std::string> more = {}) {
     more.insert(more.begin(), {"video.size=[96, 64]", "scene.duration_s=12", "video.fps=12"});
     return scene_of("butterfly", more);
@@ -67,9 +67,9 @@ TEST(FilmParts, JoinedAreTheBytesOfOneRun) {
 
 TEST(FilmParts, HaveAllFramesAtEvenTimes) {
     const auto scene = film();
-    EXPECT_EQ(max_shards(scene), 2);
-    EXPECT_EQ(frames_of(scene, {1, 2}).last, 60);
-    EXPECT_EQ(frames_of(scene, {2, 2}).first, 60);
+    EXPECT_EQ(max_shards(scene), 8);
+    EXPECT_EQ(frames_of(scene, {1, 2}).last, 72);
+    EXPECT_EQ(frames_of(scene, {2, 2}).first, 72);
     EXPECT_EQ(frames_of(scene, {2, 2}).last, 145);
     const auto folder = fresh_folder();
     render_in_parts(scene, {.out = folder});
@@ -83,7 +83,7 @@ TEST(FilmParts, OfACompletePartNothingIsDone) {
     const auto scene = film();
     const auto folder = fresh_folder();
     const RunOptions first{.out = folder, .shard = Shard{1, 2}};
-    EXPECT_EQ(render(scene, first).frames, 60);
+    EXPECT_EQ(render(scene, first).frames, 72);
     const auto part = folder / "butterfly/butterfly.1-of-2.shard";
     EXPECT_EQ(files_in(folder / "butterfly"), (std::set<std::string>{"butterfly.1-of-2.shard"}));
     const auto made = fs::last_write_time(part);
@@ -92,7 +92,7 @@ TEST(FilmParts, OfACompletePartNothingIsDone) {
     EXPECT_EQ(again.files, (std::vector{part}));
     EXPECT_EQ(fs::last_write_time(part), made);
     fs::resize_file(part, fs::file_size(part) - 10);  // a copy that was cut off is made again
-    EXPECT_EQ(render(scene, first).frames, 60);
+    EXPECT_EQ(render(scene, first).frames, 72);
 }
 
 TEST(FilmParts, AreRefusedIfTheyDoNotFit) {
@@ -130,8 +130,8 @@ TEST(FilmParts, NeedAFormatThatCanBeJoined) {
     EXPECT_EQ(refused(gif, {.shard = Shard{1, 2}}),
               (Thrown{ExitCode::bad_input,
                       "--shard: a film in the format GIF cannot be joined from parts; use mp4, webm or png"}));
-    EXPECT_EQ(refused(film(), {.shard = Shard{1, 3}}),
-              (Thrown{ExitCode::bad_input, "--shard 1/3: butterfly has 2 segments of 5 s; give at most 2 parts"}));
+    EXPECT_EQ(refused(film(), {.shard = Shard{1, 9}}),
+              (Thrown{ExitCode::bad_input, "--shard 1/9: butterfly has 8 segments; give at most 8 parts"}));
     EXPECT_EQ(refused(film(), {.first = 5, .shard = Shard{1, 2}}).first, ExitCode::bad_input);
 }
 
