@@ -1,6 +1,6 @@
-// nextflow run film.nf --preset butterfly --shards 6
-params.preset = 'butterfly'
-params.shards = 6
+// nextflow run film.nf --preset fan --shards 8
+params.preset = 'fan'
+params.shards = 8
 
 process shard {
     errorStrategy { task.exitStatus in [75, 143] ? 'retry' : 'terminate' }
