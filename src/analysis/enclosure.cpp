@@ -205,7 +205,7 @@ public:
         set_.add(box);
         const BallSystem<DoubleBall> numbers(system);
         const double shortest = std::min(numbers.l1.center, numbers.l2.center);
-        constexpr double of_period = 512;
+        constexpr double of_period = 16384;
         const double part = std::sqrt(shortest / (std::abs(numbers.g.center) + shortest)) / of_period;
         parts_ = static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / part)));
     }
@@ -337,7 +337,7 @@ private:
     PendulumSeries<TangentBall, DoubleBall> tangent_;
     std::array<Scalar, 4> center_;
     Zonotope set_;
-    long parts_ = 1, length_ = 0, next_length_ = 8, done_ = 0;  // units a sample; of the step; since the start
+    long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // units a sample; of the step; since the start
 };
 
 }  // namespace

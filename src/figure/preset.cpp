@@ -194,8 +194,9 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
     }
     const auto figures = figure_tables();
     all = {named(figures[0], "")};
-    std::erase_if(pair[0].fields,
-                  [](const ListedField& field) { return field.key.ends_with("_columns"); });  // only for films
+    std::erase_if(pair[0].fields, [](const ListedField& field) {  // only for films
+        return field.key.ends_with("_columns") || field.key == "certify";
+    });
     for (const auto& figure : figure_kinds()) {
         if (figure.name != kind) continue;
         if (figure.system == FigureKind::System::pair)

@@ -256,27 +256,43 @@ TEST(Enclosure, ADropletAttracts) {
 }
 
 /// Whether all 16 corners of a start's box of that radius stay inside.
-bool corners_inside(const EnclosureCount& counted, double radius, double tolerance, long samples = 60) {
+bool corners_inside(const EnclosureCount& counted, double radius) {
+    constexpr long samples = 60;
     EnclosureSpec spec;
     spec.counted = counted;
-    spec.tolerance = tolerance;
     const auto sets = enclosed<double>(uneven, samples, radius, spec);
-    for (unsigned i = 0; i < (radius == 0 ? 1u : 16u); ++i)
+    for (unsigned i = 0; i < 16; ++i)
         if (!all_inside(sets, reference(uneven, samples, corner(i, radius)))) return false;
     return true;
 }
 
+/// Whether the motion from doubles, which are no interval, stays inside.
+bool exact_start_inside(const EnclosureCount& counted, double tolerance) {
+    EnclosureSpec spec;
+    spec.samples = 240;
+    spec.counted = counted;
+    spec.tolerance = tolerance;
+    auto start = enclosed_start<double>(uneven);
+    const auto decimals = reference(uneven, 0).front();
+    std::array<double, 4> shift{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        start[i].radius = 0;
+        shift[i] = static_cast<double>(Quad(start[i].center - decimals[i]));
+    }
+    return all_inside(enclosures<double>(uneven, start, spec, unwatched), reference(uneven, spec.samples, shift));
+}
+
 TEST(Enclosure, EveryPartThatIsCountedIsNeeded) {
     constexpr double usual = 0.25, coarse = 1e6, wide = 1e-3;
-    EXPECT_TRUE(corners_inside({}, 0, usual));
-    EXPECT_TRUE(corners_inside({}, 0, coarse));
-    EXPECT_TRUE(corners_inside({}, wide, usual));
-    EXPECT_FALSE(corners_inside({.start = 0}, wide, usual));
-    EXPECT_FALSE(corners_inside({.truncation = 0}, 0, coarse));
-    EXPECT_FALSE(corners_inside({.rounding = 0}, 0, usual));
-    EXPECT_FALSE(corners_inside({.nonlinearity = 0}, wide, usual));
-    EXPECT_FALSE(corners_inside({.earlier_boxes = 0}, wide, usual));
-    EXPECT_FALSE(corners_inside({.coefficient = 1 + 1e-9}, 0, usual));
+    EXPECT_TRUE(exact_start_inside({}, usual));
+    EXPECT_TRUE(exact_start_inside({}, coarse));
+    EXPECT_TRUE(corners_inside({}, wide));
+    EXPECT_FALSE(corners_inside({.start = 0}, wide));
+    EXPECT_FALSE(exact_start_inside({.truncation = 0}, coarse));
+    EXPECT_FALSE(exact_start_inside({.rounding = 0}, usual));
+    EXPECT_FALSE(corners_inside({.nonlinearity = 0}, wide));
+    EXPECT_FALSE(corners_inside({.earlier_boxes = 0}, wide));
+    EXPECT_FALSE(exact_start_inside({.coefficient = 1 + 1e-9}, usual));
 }
 
 }  // namespace enclosure_test

@@ -227,7 +227,7 @@ TEST(Contracts, StandardOutputTakesOneFileAlone) {
 TEST(Contracts, HelpFitsAScreen) {
     const auto folder = fresh_folder();
     for (const char* command : {"", "render", "simulate", "still", "figure", "fit", "compare", "list", "show", "check",
-                                "init", "schema", "completion"}) {
+                                "certify", "init", "schema", "completion"}) {
         auto line = Words{"--help"};
         if (*command != 0) line.insert(line.begin(), command);
         const auto help = doppel(folder, line);

@@ -28,7 +28,7 @@ TEST(FigurePreset, EveryBuiltInOneReadsAndHasATitle) {
     }
     for (const char* name : {"fig2-left", "fig2-right", "fig3-left", "fig3-right", "fig4-left", "fig4-right",
                              "fig5-left", "fig5-right", "fig6", "fig7", "fig8", "why-they-part", "droplet",
-                             "lyapunov-spectrum", "poincare", "flip-map", "links", "driven-spectrum"})
+                             "lyapunov-spectrum", "poincare", "flip-map", "links", "driven-spectrum", "certified"})
         EXPECT_TRUE(names.contains(name)) << name;
 }
 

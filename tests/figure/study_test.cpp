@@ -62,12 +62,19 @@ TEST(Study, HasItsWholeRangeInThePresets) {
 
 TEST(Study, ColumnsAreTheDocumentedOnes) {
     const std::vector<std::pair<const char*, const char*>> tables{
-        {"fig2-left", "sample,time_s,log_ratio"},          {"fig2-right", "theta1_deg,average_log_ratio"},
-        {"fig3-left", "theta1_deg,average_log_ratio"},     {"fig3-right", "mass_ratio,average_log_ratio"},
-        {"fig4-left", "sample,time_s,log_ratio"},          {"fig4-right", "theta1_deg,average_log_ratio"},
-        {"fig5-left", "theta1_deg,average_log_ratio"},     {"fig5-right", "mass_ratio,average_log_ratio"},
-        {"fig6", "sample,time_s,distance_45,distance_50"}, {"fig7", "sample,time_s,distance"},
-        {"fig8", "theta1_deg,average_log_ratio"},          {"droplet", "sample,time_s,distance_79_79,distance_90_90"}};
+        {"fig2-left", "sample,time_s,log_ratio"},
+        {"fig2-right", "theta1_deg,average_log_ratio"},
+        {"fig3-left", "theta1_deg,average_log_ratio"},
+        {"fig3-right", "mass_ratio,average_log_ratio"},
+        {"fig4-left", "sample,time_s,log_ratio"},
+        {"fig4-right", "theta1_deg,average_log_ratio"},
+        {"fig5-left", "theta1_deg,average_log_ratio"},
+        {"fig5-right", "mass_ratio,average_log_ratio"},
+        {"fig6", "sample,time_s,distance_45,distance_50"},
+        {"fig7", "sample,time_s,distance"},
+        {"fig8", "theta1_deg,average_log_ratio"},
+        {"droplet", "sample,time_s,distance_79_79,distance_90_90"},
+        {"certified", "sample,time_s,radius_double,radius_quad,radius_256_bits,distance"}};
     for (const auto& [name, columns] : tables) EXPECT_EQ(header_line(figure_of(name)), columns) << name;
     const auto exponents = header_line(figure_of("fig2-right", {"grid.right=\"exponent\""}));
     EXPECT_EQ(exponents.rfind("theta1_deg,average_log_ratio,exponent_per_s", 0), 0u) << exponents;

@@ -24,7 +24,7 @@ inline const std::vector<RefusedPreset> refused_keys{
     RefusedPreset{"[vidoe]\nfps = 3", R"(presets/x.toml:1:2: a preset has no "vidoe"; did you mean "video"?)"},
     RefusedPreset{
         "[scene]\nzzzzzzzz = 1",
-        R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has duration_s, energy_columns, kind, member_columns, sample_hz)"},
+        R"(presets/x.toml:2:1: [scene] has no "zzzzzzzz"; it has certify, duration_s, energy_columns, kind, member_columns, sample_hz)"},
     RefusedPreset{"scene = 3", "presets/x.toml:1:1: scene must be a table; it is a whole number (3)"},
     RefusedPreset{"[scene", "presets/x.toml:1:7: Error while parsing table header: encountered end-of-file"}};
 
