@@ -68,7 +68,7 @@ std::string part_name(const Scene& scene, const Shard& shard) {
 }
 
 std::string part_header(const Scene& scene, const Shard& shard, const std::string& gl) {
-    Json header{{"file", "doppel film part"}, {"shard", shard.number}, {"of", shard.of}, {"gl", gl}};
+    Json header{{"file", "doppel film shard"}, {"shard", shard.number}, {"of", shard.of}, {"gl", gl}};
     header.update(identity(scene));
     return header.dump();
 }

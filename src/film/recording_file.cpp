@@ -2,10 +2,9 @@
 
 #include "base/embedded.hpp"
 #include "base/error.hpp"
+#include "output/film_part.hpp"
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
-
-#include <libdeflate.h>
 
 #include <cstring>
 #include <stdexcept>
@@ -96,7 +95,7 @@ void RecordingWriter::add(Snapshot snapshot, const MotionRecord& record) {
     auto effort = record;
     archive_all(pack, snapshot, effort);
     Pack head;
-    head(BlockHead{pack.bytes.size(), libdeflate_crc32(0, pack.bytes.data(), pack.bytes.size())});
+    head(BlockHead{pack.bytes.size(), checksum(pack.bytes)});
     file_.write(head.bytes + pack.bytes);
 }
 
@@ -131,8 +130,7 @@ Snapshot RecordingReader::at(const Moment& moment, MotionRecord& record) {
             const auto start = bytes(sizeof(head));
             Unpack{start}(head);
             const auto numbers = bytes(head.bytes);
-            if (libdeflate_crc32(0, numbers.data(), numbers.size()) != head.checksum)
-                throw std::out_of_range("recording");
+            if (checksum(numbers) != head.checksum) throw std::out_of_range("recording");
             Unpack unpack{numbers};
             archive_all(unpack, snapshot, record);
         } while (snapshot.pair.moment() < moment);

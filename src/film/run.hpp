@@ -61,7 +61,7 @@ void check_run(const Scene& scene, const RunOptions& options);
 /// The files that run() writes in OUT/NAME/; names of folders end with "/".
 std::vector<std::string> run_files(const Scene& scene, const RunOptions& options);
 
-/// The largest number of parts into which a film can be split: one for each segment of 5 s; 1 if its format has none.
+/// The largest number of parts into which a film can be split: one for each segment; 1 if its format has none.
 long max_shards(const Scene& scene);
 
 /// Simulates, draws and writes, in parallel. Files appear complete or not at all. A part of a film that is complete is

@@ -15,13 +15,17 @@ using Json = nlohmann::json;
 constexpr std::string_view end_line = "end";
 constexpr std::size_t longest_line = 1 << 16, most_bytes = std::size_t{1} << 31;
 
-std::uint32_t checksum(const FilmPacket& packet) {
-    auto sum = libdeflate_crc32(0, packet.bytes.data(), packet.bytes.size());
-    for (const auto& [type, bytes] : packet.side_data) sum = libdeflate_crc32(sum, bytes.data(), bytes.size());
+std::uint32_t checksum_of(const FilmPacket& packet) {
+    auto sum = checksum(packet.bytes);
+    for (const auto& [type, bytes] : packet.side_data) sum = checksum(bytes, sum);
     return sum;
 }
 
 }  // namespace
+
+std::uint32_t checksum(std::string_view bytes, std::uint32_t before) {
+    return libdeflate_crc32(before, bytes.data(), bytes.size());
+}
 
 FilmPartWriter::FilmPartWriter(const std::filesystem::path& path, const std::string& header) : file_(path) {
     file_.write(header + "\n");
@@ -31,7 +35,7 @@ FilmPartWriter::FilmPartWriter(const std::filesystem::path& path, const std::str
 void FilmPartWriter::add(const FilmPacket& packet) {
     auto sides = Json::array();
     for (const auto& [type, bytes] : packet.side_data) sides.push_back({type, bytes.size()});
-    const Json line{packet.pts, packet.dts, packet.flags, checksum(packet), packet.bytes.size(), sides};
+    const Json line{packet.pts, packet.dts, packet.flags, checksum_of(packet), packet.bytes.size(), sides};
     file_.write(line.dump() + "\n" + packet.bytes);
     for (const auto& [type, bytes] : packet.side_data) file_.write(bytes);
 }
@@ -53,7 +57,7 @@ std::optional<FilmPacket> FilmPartReader::next() {
         const auto json = Json::parse(text);
         FilmPacket packet{json.at(0), json.at(1), json.at(2), bytes(json.at(4))};
         for (const auto& side : json.at(5)) packet.side_data.emplace_back(side.at(0), bytes(side.at(1)));
-        if (json.at(3) != checksum(packet)) throw damaged("is damaged");
+        if (json.at(3) != checksum_of(packet)) throw damaged("is damaged");
         return packet;
     } catch (const Json::exception&) {
         throw damaged("is damaged or incomplete");

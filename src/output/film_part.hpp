@@ -21,7 +21,10 @@ struct FilmPacket {
 };
 
 /// The first characters of a part's header. The header is one line of JSON.
-inline constexpr std::string_view film_part_start = R"({"file":"doppel film part")";
+inline constexpr std::string_view film_part_start = R"({"file":"doppel film shard")";
+
+/// CRC-32 of the bytes that follow those with the checksum `before`.
+std::uint32_t checksum(std::string_view bytes, std::uint32_t before = 0);
 
 /// Writes a part of a film for a merge: the header, then the packets with checksums, then a line that marks the end.
 /// Throws Error (exit 4).

@@ -140,7 +140,7 @@ inline const std::vector<RefusedPreset> refused_video{
                   "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
     RefusedPreset{
         "[video]\nformat = \"avi\"",
-        R"(presets/x.toml:2:1: [video] format must be "mp4", "webm", "gif", "apng", "png" or "html"; it is "avi")"},
+        R"(presets/x.toml:2:1: [video] format must be "mp4", "webm", "gif", "apng", "png", "html", "y4m" or "rgb"; it is "avi")"},
     RefusedPreset{"[video]\ncrf = 60", "presets/x.toml:2:1: [video] crf must be from 0 to 51; it is 60"},
     RefusedPreset{
         "[video]\ntheme = \"drak\"",
@@ -192,21 +192,21 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   "and [8192, 4352] for players limited to level 6.2 of H.264"},
     RefusedPreset{
         "transparent = true\nformat = \"webm\"\ncodec = \"av1\"",
-        R"([video] transparent needs a format with opacity: png, apng, html, or webm (VP9, yuv420p); the codec is "av1")"},
+        R"([video] transparent needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); the codec is "av1")"},
     RefusedPreset{
         "transparent = true\nformat = \"webm\"\npixel_format = \"yuv444p\"",
-        R"([video] transparent needs a format with opacity: png, apng, html, or webm (VP9, yuv420p); the pixel_format is "yuv444p")"},
+        R"([video] transparent needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); the pixel_format is "yuv444p")"},
     RefusedPreset{
         "fps = 60\nformat = \"gif\"",
         "[video] fps must be at most 50, as a frame of a GIF takes 2 to 65535 hundredths of a second; it is 60"},
     RefusedPreset{"codec = \"av1\"", R"([video] codec is a choice of webm; the format is "mp4")"},
     RefusedPreset{"pixel_format = \"yuv444p\"\nformat = \"gif\"",
-                  R"([video] pixel_format is of mp4 and webm; the format is "gif")"},
+                  R"([video] pixel_format is of mp4, webm and y4m; the format is "gif")"},
     RefusedPreset{"crf = 20\nformat = \"png\"", R"([video] crf is of mp4 and webm; the format is "png")"},
     RefusedPreset{"preset = \"slow\"\nformat = \"apng\"", R"([video] preset is of mp4 and webm; the format is "apng")"},
     RefusedPreset{
         "transparent = true",
-        R"([video] transparent needs a format with opacity: png, apng, html, or webm (VP9, yuv420p); the format is "mp4")"},
+        R"([video] transparent needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); the format is "mp4")"},
     RefusedPreset{"poster_s = 30.001", "[video] poster_s must be up to 30 s; it is 30.001"},
     RefusedPreset{"contact_sheet = [0, 4]",
                   "[video] contact_sheet must be two whole numbers from 1 to 32; it is [0, 4]"},
