@@ -59,7 +59,8 @@ TEST(Completion, KnowsCommandsOptionsAndTheirChoices) {
     EXPECT_FALSE(has(commands, "complete"));
     EXPECT_EQ(completed(folder, "sim"), Lines{"simulate"});
     EXPECT_EQ(completed(folder, "render --form"), Lines{"--format"});
-    EXPECT_EQ(completed(folder, "render --format "), (Lines{"apng", "gif", "html", "mp4", "png", "rgb", "webm", "y4m"}));
+    EXPECT_EQ(completed(folder, "render --format "),
+              (Lines{"apng", "gif", "html", "mp4", "png", "rgb", "webm", "y4m"}));
     EXPECT_EQ(completed(folder, "render --format=w"), Lines{"webm"});
     EXPECT_EQ(completed(folder, "figure fig6 --merge fig2-r"), Lines{"fig2-right"});  // a flag takes no value
     EXPECT_EQ(completed(folder, "completion "), (Lines{"bash", "fish", "zsh"}));
