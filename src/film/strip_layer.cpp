@@ -103,8 +103,10 @@ float StripLayer::draw_limits(DisplayList& list) const {
     float foot = strip_.area.bottom - 0.45f * px(style_.font.strip);
     if (const auto limit = state_.scene.horizon())
         draw_mark(*limit, fmt::format("numerical predictability limit {:.1f} s", *limit), foot, list);
-    if (const auto& proof = state_.scene.certificate)
-        draw_mark(proof->run_until_s(), fmt::format("proved until {:.1f} s", proof->run_until_s()), foot, list);
+    if (const auto& proof = state_.scene.certificate) {
+        const double until = proof->run_until_s();
+        draw_mark(until, fmt::format("proved until {:.1f} s", std::floor(10 * until) / 10), foot, list);  // not later
+    }
     if (const auto limit = state_.scene.preset.video.model_limit_s)
         draw_mark(*limit, fmt::format("predictability limit of the model {:.1f} s", *limit), foot, list);
     return foot;
