@@ -37,7 +37,10 @@ void check_identity(const fs::path& path, const Json& header, const Json& wanted
 
 Json header_of(const fs::path& path) {
     auto header = Json::parse(FilmPartReader(path).header(), nullptr, false);
-    if (!header.is_object() || !header.contains("shard")) throw io_failed("{} is damaged; remove it", path.string());
+    const auto number = [&](const char* key) { return header.is_object() ? header.value(key, Json()) : Json(); };
+    const auto shard = number("shard"), of = number("of");
+    if (!shard.is_number_integer() || !of.is_number_integer() || shard < 1 || of < shard)
+        throw io_failed("{} is damaged; remove it", path.string());
     return header;
 }
 

@@ -211,7 +211,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const long total = is_film ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
     parts.require(scene.preset.name + ".json");
-    if (options.merge) parts_in(scene, parts.folder());
+    if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
     const bool is_recorded = !options.record_to.empty();
     Recording recording(scene, part.end, options.pictures || is_recorded, stop, {}, Recording::usual_bytes,
                         options.recording);

@@ -4,6 +4,7 @@
 #include "film/recording_file.hpp"
 #include "film/runs.hpp"
 #include "output/decoded.hpp"
+#include "output/film_part.hpp"
 
 #include <fstream>
 
@@ -119,6 +120,19 @@ TEST(FilmParts, AreRefusedIfTheyDoNotFit) {
     const auto damaged = merge(scene);
     EXPECT_EQ(damaged.first, ExitCode::io_failed);
     EXPECT_NE(damaged.second.find("1-of-2.shard is damaged"), std::string::npos) << damaged.second;
+}
+
+TEST(FilmParts, AreRefusedIfTheirHeaderIsDamaged) {
+    const auto folder = fresh_folder();
+    fs::create_directory(folder / "butterfly");
+    const auto part = folder / "butterfly/butterfly.0-of-0.shard";
+    for (const std::string numbers :
+         {"", ",\"shard\":0,\"of\":0", ",\"shard\":2,\"of\":1", ",\"shard\":\"1\",\"of\":1"}) {
+        write_bytes(part, std::string(film_part_start) + numbers + "}\nend\n");
+        EXPECT_EQ(thrown_by([&] { render(film(), {.out = folder, .merge = true}); }),
+                  (Thrown{ExitCode::io_failed, part.string() + " is damaged; remove it"}))
+            << numbers;
+    }
 }
 
 TEST(FilmParts, NeedAFormatThatCanBeJoined) {
