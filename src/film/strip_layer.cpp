@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace doppel {
 namespace {
@@ -37,8 +38,13 @@ private:
         const auto of_distance = std::ranges::find(layout_.strips, StripKind::distance, &StripLayout::kind);
         return of_distance == layout_.strips.end() ? index_ == 0 : strip_.kind == StripKind::distance;
     }
-    void draw_mark(double time, const std::string& text, float& foot, DisplayList& list) const;
-    float draw_limits(DisplayList& list) const;
+    /// Vertical lines at times with their texts: no line of a mark crosses a text.
+    struct Marks {
+        DisplayList lines, texts;
+        float foot;  // height above which the next text is placed, px
+    };
+    void add_mark(Marks& marks, double time, const std::string& text) const;
+    Marks limits() const;
 
     const std::size_t index_;
     const StripLayout& strip_ = layout_.strips[index_];
@@ -69,47 +75,47 @@ void StripLayer::backdrop(DisplayList& list) const {
     if (const auto& proof = state_.scene.certificate)  // a band along the axis
         list.push_back(Box{area.left, area.bottom - 0.25f * em, strip_.time.at(proof->run_until_s()), area.bottom, 0,
                            theme_.trace.with_alpha(0.5f)});
-    draw_limits(list);
+    auto marks = limits();
+    std::ranges::move(marks.lines, std::back_inserter(list));
 }
 
 /// A dashed vertical line at a time, with its text at the foot, where curves are high up. The text is beside the line,
-/// or on separate lines if there is little space. `foot`: height above which the text is placed, px; it is advanced
-/// past the text.
-void StripLayer::draw_mark(double time, const std::string& text, float& foot, DisplayList& list) const {
+/// or on separate lines if there is little space.
+void StripLayer::add_mark(Marks& marks, double time, const std::string& text) const {
     const auto& area = strip_.area;
+    auto& [lines, texts, foot] = marks;
     const float t = layout_.text, size = px(style_.font.strip), x = strip_.time.at(time), dash = 5 * t, gap = 10 * t;
     for (float top = area.top; style_.width.mark > 0 && top < area.bottom; top += 2 * dash)
-        list.push_back(
+        lines.push_back(
             vertical_line(x, top, std::min(top + dash, area.bottom), px(style_.width.mark), theme_.quiet_text));
     if (!is_of_pair()) return;
     const float width = text_width(text, size), right = area.right - x - 2 * gap, left = x - area.left - 2 * gap;
     const bool is_right = right >= std::min(width, left);
-    const auto lines =
-        wrapped(text, size, Weight::regular, std::clamp(is_right ? right : left, 5 * size, area.width()));
-    const float widest_line = widest(lines, size);
+    const auto rows = wrapped(text, size, Weight::regular, std::clamp(is_right ? right : left, 5 * size, area.width()));
+    const float widest_line = widest(rows, size);
     const float from = std::clamp(is_right ? x + gap : x - gap - widest_line, area.left + 2 * t,
                                   std::max(area.left + 2 * t, area.right - widest_line - 2 * t));
-    for (auto words = lines.rbegin(); words != lines.rend(); ++words, foot -= 1.2f * size) {
+    for (auto words = rows.rbegin(); words != rows.rend(); ++words, foot -= 1.2f * size) {
         // no grid line crosses the text
         if (!state_.scene.preset.video.transparent)
-            list.push_back(Box{from - 4 * t, foot - 0.9f * size, from + text_width(*words, size) + 4 * t,
-                               foot + 0.28f * size, 0, theme_.background.with_alpha(0.85f)});
-        list.push_back(label(*words, {from, foot}, size, theme_.text));
+            texts.push_back(Box{from - 4 * t, foot - 0.9f * size, from + text_width(*words, size) + 4 * t,
+                                foot + 0.28f * size, 0, theme_.background.with_alpha(0.85f)});
+        texts.push_back(label(*words, {from, foot}, size, theme_.text));
     }
 }
 
-/// Marks the predictability limits, and the time until which the run is proved. Returns where more text may be placed.
-float StripLayer::draw_limits(DisplayList& list) const {
-    float foot = strip_.area.bottom - 0.45f * px(style_.font.strip);
+/// The marks of the predictability limits, and of the time until which the run is proved.
+StripLayer::Marks StripLayer::limits() const {
+    Marks marks{{}, {}, strip_.area.bottom - 0.45f * px(style_.font.strip)};
     if (const auto limit = state_.scene.horizon())
-        draw_mark(*limit, fmt::format("numerical predictability limit {:.1f} s", *limit), foot, list);
+        add_mark(marks, *limit, fmt::format("numerical predictability limit {:.1f} s", *limit));
     if (const auto& proof = state_.scene.certificate) {
         const double until = proof->run_until_s();
-        draw_mark(until, fmt::format("proved until {:.1f} s", std::floor(10 * until) / 10), foot, list);  // not later
+        add_mark(marks, until, fmt::format("proved until {:.1f} s", std::floor(10 * until) / 10));  // not later
     }
     if (const auto limit = state_.scene.preset.video.model_limit_s)
-        draw_mark(*limit, fmt::format("predictability limit of the model {:.1f} s", *limit), foot, list);
-    return foot;
+        add_mark(marks, *limit, fmt::format("predictability limit of the model {:.1f} s", *limit));
+    return marks;
 }
 
 void StripLayer::frame(DisplayList& list) const {
@@ -117,11 +123,11 @@ void StripLayer::frame(DisplayList& list) const {
     const auto& area = strip_.area;
     for (auto& words : placed_caption(strip_, state_.scene, layout_, now, state_.outcome.start_distance == 0))
         list.push_back(std::move(words));
-    if (const auto since = state_.outcome.divergence.since(); since && is_of_pair()) {
-        DisplayList below;
-        float foot = draw_limits(below);
-        draw_mark(*since, fmt::format("diverged at {:.1f} s", *since), foot, list);
-    }
+    auto marks = limits();
+    marks.lines.clear();  // are in the backdrop
+    if (const auto since = state_.outcome.divergence.since(); since && is_of_pair())
+        add_mark(marks, *since, fmt::format("diverged at {:.1f} s", *since));
+    for (auto* part : {&marks.lines, &marks.texts}) std::ranges::move(*part, std::back_inserter(list));
     const float x = strip_.time.at(state_.time());
     if (style_.width.mark > 0)
         list.push_back(vertical_line(x, area.top, area.bottom, px(style_.width.mark), theme_.cursor));
