@@ -108,8 +108,6 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     if (options.merge) joined_ = parts_in(scene, parts.folder());
-    if (video.poster_s && !options.shard) parts.require(scene.preset.name + ".poster.png");
-    if (video.contact_sheet && !options.shard) parts.require(scene.preset.name + ".contact.png");
     if (!joined_ || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = joined_ ? joined_->gl : canvas_->description();
     if (video.format == FilmFormat::png)

@@ -210,7 +210,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const bool is_film = options.pictures && !is_page;
     const long total = is_film ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
-    parts.require(scene.preset.name + ".json");
+    for (const auto& file : run_files(scene, options)) parts.require(file);  // before the simulation
     if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
     const bool is_recorded = !options.record_to.empty();
     Recording recording(scene, part.end, options.pictures || is_recorded, stop, {}, Recording::usual_bytes,

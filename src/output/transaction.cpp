@@ -229,6 +229,11 @@ fs::path Transaction::directory(const std::string& name) {
     return path;
 }
 
+void Transaction::require(const std::string& name) const {
+    const bool is_folder = name.ends_with('/');
+    refuse_foreign_files(is_folder ? name.substr(0, name.size() - 1) : name, is_folder);
+}
+
 void Transaction::remove(const std::string& name) {
     if (type_of(folder_ / name) != Type::regular) return;
     const auto origin = origin_of(folder_, name, written_);

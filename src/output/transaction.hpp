@@ -38,8 +38,8 @@ public:
     std::filesystem::path file(const std::string& name);
     /// The same for a new empty folder. Publishing replaces an older folder NAME as a whole.
     std::filesystem::path directory(const std::string& name);
-    /// Throws as file() does, for a file that is written later.
-    void require(const std::string& name) const { refuse_foreign_files(name, false); }
+    /// Throws as file() and directory() do, for a file or a folder "NAME/" that is written later.
+    void require(const std::string& name) const;
     /// Publishing removes the file NAME if Doppel made it.
     void remove(const std::string& name);
 

@@ -51,8 +51,8 @@ TEST(Docs, ExamplesPrintTheShownLines) {
 }
 
 /// The commands of a page, run one after another in one folder. To save time, films without a range have two frames,
-/// and pictures without a size are small. Figures that take minutes only list their files. Commands with other
-/// programs (GNU parallel, Slurm) have their own tests (Recipe).
+/// pictures without a size are small, and new presets last 10 s. Figures that take minutes only list their files.
+/// Commands with other programs (GNU parallel, Slurm) have their own tests (Recipe).
 class PageOfCommands : public testing::TestWithParam<fs::path> {
 protected:
     static std::string commands_of(const fs::path& page) {
@@ -68,7 +68,7 @@ protected:
     static constexpr const char* shortened = R"(#!/bin/bash
 case "$1 $*" in
     test*|package*) exit 0 ;;
-    init*) rm -f "${@: -1}" ;;
+    init*) rm -f "${@: -1}"; "$DOPPEL" "$@" && sed -i 's/^duration_s = 30$/duration_s = 10/' *.toml; exit ;;
     figure*" all "*|figure*--tiles*|figure*mine.toml*) set -- "$@" --list-outputs ;;
     render*--size*|render*--quality*|still*) ;;
     render*) set -- "$@" --size 320x180 ;;
@@ -84,6 +84,8 @@ mkdir -p presets golden/mine
 ln -s ")" DOPPEL_SOURCE_DIR R"(/presets/data" presets/data
 ./doppel init mine.toml
 cp mine.toml presets/
+)";
+    static constexpr const char* prepare_goldens = R"(
 ./doppel render mine.toml --format png --size 480x270 --frames 0:3 --set video.fps=1 --out kept
 ./doppel figure fig6 --size 480x270 --set scene.duration_s=3 --out kept
 cp kept/mine/frames/* golden/mine/
@@ -97,8 +99,9 @@ TEST_P(PageOfCommands, Runs) {
     const auto folder = fresh_folder();
     test::write_bytes(folder / "doppel", shortened);
     fs::permissions(folder / "doppel", fs::perms::owner_all);
-    const auto result =
-        shell(folder, "set -e; unset CI; PATH=\"$PWD:$PATH\"\n" + std::string(prepare) + "set -x\n" + commands);
+    const bool has_goldens = std::regex_search(commands, std::regex("golden|kept"));
+    const auto result = shell(folder, "set -e; unset CI; PATH=\"$PWD:$PATH\"\n" + std::string(prepare) +
+                                          (has_goldens ? prepare_goldens : "") + "set -x\n" + commands);
     EXPECT_EQ(result.code, 0) << result.out << result.err;
 }
 

@@ -27,8 +27,8 @@ const std::vector<std::string> small{"--set",  "grid.x.to=9", "--set",      "sce
                                      "--size", "320x180",     "--progress", "none"};
 
 /// A map that takes about 2 to 10 s on one core.
-const std::vector<std::string> long_map{"figure", "flip-map",          "--set",  "grid.x.points=900",
-                                        "--set",  "grid.y.points=900", "--size", "320x320"};
+const std::vector<std::string> long_map{"figure", "flip-map",          "--set",  "grid.x.points=600",
+                                        "--set",  "grid.y.points=600", "--size", "320x320"};
 
 /// Waits until the file exists.
 bool appears(const fs::path& file) {

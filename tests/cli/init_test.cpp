@@ -107,8 +107,11 @@ TEST(Init, EachKeyOfAFigureCanBeUncommented) {
         const std::string name(kind.name);
         ASSERT_EQ(doppel(folder, {"init", "--figure", name}).code, 0);
         std::size_t keys = 0;
+        auto whole = bytes_of(folder / (name + ".toml"));
+        if (const auto at = whole.find("\nduration_s = 30"); at != std::string::npos)
+            whole.replace(at, 16, "\nduration_s = 1");  // what an accuracy takes is computed for each key
         auto refused = refused_keys(
-            bytes_of(folder / (name + ".toml")),
+            whole,
             [](const auto& text) {
                 read_figure({"x", "x.toml", text});
             },

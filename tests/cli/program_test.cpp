@@ -217,7 +217,7 @@ TEST(Program, AnEstimateIsNearWhatRenderingTakesAndLeavesNothing) {
                                       "--set",
                                       "video.size=[320, 180]",
                                       "--set",
-                                      "scene.duration_s=3"};
+                                      "scene.duration_s=1.5"};
         auto check = film, render = film;
         check.insert(check.begin(), "check");
         render.insert(render.begin(), "render");

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"lyapunov-spectrum", {"series.duration_s=5", "series.samples=10"}},
         Case{"driven-spectrum", {"series.duration_s=5", "series.samples=10"}},
         Case{"why-they-part",
-             {"scene.duration_s=0.5", "grid.color.values=[\"euler\", \"gauss6/rattle6\", \"dop853\"]",
+             {"scene.duration_s=0.2", "grid.color.values=[\"euler\", \"gauss6/rattle6\", \"dop853\"]",
               "grid.x.points=4", "grid.x.to=0.001", "grid.x.tolerance_points=4"}},
         Case{"stability", {"grid.x.points=5", "grid.y.points=4", "scene.duration_s=2"}},
         Case{"stability-mass",
