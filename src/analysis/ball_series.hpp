@@ -2,12 +2,11 @@
 
 #include "numeric/ball.hpp"
 #include "numeric/dual.hpp"
+#include "numeric/tape.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
-#include <utility>
+#include <map>
 #include <vector>
 
 namespace doppel {
@@ -16,8 +15,6 @@ using DoubleBall = Ball<double>;
 using TangentBall = Dual<DoubleBall, 4>;
 
 /// Σ a b, with the roundings counted together.
-template <class Number>
-class SumOfProducts;
 template <class Scalar>
 class SumOfProducts<Ball<Scalar>> {
 public:
@@ -80,165 +77,111 @@ inline bool contains(const TangentBall& bound, const TangentBall& other) {
 /// where r(τ) is in a bound. Number is a ball, or one with derivatives by the start.
 template <class Number>
 class BallSeries {
-    using Bound = decltype(bound_of(Number()));
-    enum class Operation : unsigned char { constant, state, sum, difference, product };
-
 public:
-    /// A quantity of the equation.
-    class Term {
-    public:
-        Term operator+(const Term& b) const { return series_->add(Operation::sum, node_, b.node_); }
-        Term operator-(const Term& b) const { return series_->add(Operation::difference, node_, b.node_); }
-        Term operator*(const Term& b) const { return series_->add(Operation::product, node_, b.node_); }
-        friend Term operator+(const Number& a, const Term& b) { return b.constant(a) + b; }
-        friend Term operator*(const Number& a, const Term& b) { return b.constant(a) * b; }
+    using Quantity = Taped<Number>;
 
-        const Number& start() const { return series_->nodes_[node_].c.front(); }
-        void set_rate(const Term& rate) const { series_->nodes_[node_].a = rate.node_; }
+    /// `order` = n
+    explicit BallSeries(int order) : order_(order), tape_(order + 1) {}
 
-    private:
-        friend BallSeries;
-        Term(BallSeries& series, std::size_t node) : series_(&series), node_(node) {}
-        Term constant(const Number& value) const {
-            const Term made = series_->add(Operation::constant);
-            series_->nodes_.back().c.front() = value;
-            return made;
-        }
-
-        BallSeries* series_;
-        std::size_t node_;
-    };
-
-    explicit BallSeries(int order) : order_(static_cast<std::size_t>(order)), step_(order_ + 3) {}
-    BallSeries(const BallSeries&) = delete;
-    BallSeries& operator=(const BallSeries&) = delete;
-
-    /// A quantity with a rate. `start` follows from the starts of earlier terms; without it, set_start() is used.
-    Term state(std::function<Number()> start = {}) {
-        const Term made = add(Operation::state);
-        nodes_.back().start = std::move(start);
+    /// Begins another equation.
+    void clear() {
+        tape_.clear();
+        states_.clear();
+    }
+    Quantity state(const Number& start) {
+        const auto made = Quantity::argument(start, tape_);
+        states_[made.node()].start = start;
         return made;
     }
-    void set_start(std::size_t node, const Number& start) { nodes_[node].c.front() = start; }
+    void set_rate(const Quantity& state, const Quantity& rate) { states_.at(state.node()).rate = rate.node(); }
 
-    /// Computes the coefficients up to order n for a step h, s.
+    /// Computes the series for a step h, s.
     void expand(const Number& h) {
-        for (std::size_t k = 1; k < step_.size(); ++k) step_[k] = h / Number(static_cast<int>(k));
-        for (std::size_t k = 0; k <= order_; ++k)
-            for (auto& node : nodes_) node.c[k] = coefficient(node, k);
-        for (auto& node : nodes_) {
-            node.size = Bound(0);
-            for (const auto& c : node.c) node.size += bound_of(c);
+        tape_.finish();
+        for (const auto& [node, state] : states_) tape_.term(node, 0) = state.start;
+        for (int k = 0; k <= order_; ++k) {
+            tape_.compute(k);
+            const Number step = h / Number(k + 1);
+            for (const auto& [node, state] : states_) tape_.term(node, k + 1) = step * tape_.term(state.rate, k);
         }
-        for (auto& node : nodes_)
-            if (node.operation == Operation::product) node.tail = tail(nodes_[node.a], nodes_[node.b]);
+        last_step_ = bound_of(h) / Bound(order_ + 2);
+        bounds_.assign(tape_.nodes().size(), {});
+        for (std::size_t i = 0; i < bounds_.size(); ++i)
+            for (int k = 0; k <= order_; ++k) bounds_[i].size += bound_of(tape_.series(static_cast<int>(i))[k]);
+        for (std::size_t i = 0; i < bounds_.size(); ++i) bounds_[i].tail = tail(tape_.nodes()[i]);
     }
     /// Finds remainders of the states. Picard's operator maps all functions with these remainders to such functions, so
     /// that a solution exists (Schauder) and is one of them. False if none are found.
     bool find_remainders() {
-        for (auto& node : nodes_) node.rest = Bound(0);
         constexpr int attempts = 12;
         for (int attempt = 0; attempt < attempts; ++attempt) {
-            for (auto& node : nodes_)
-                if (node.operation != Operation::state) node.rest = remainder(node);
+            for (std::size_t i = 0; i < bounds_.size(); ++i)
+                if (const auto& node = tape_.nodes()[i]; node.operation != Operation::argument)
+                    bounds_[i].rest = remainder(node, bounds_[i].tail);
             bool is_proved = true;
-            for (auto& node : nodes_)
-                if (node.operation == Operation::state) {
-                    node.image = remainder(node);
-                    is_proved = is_proved && contains(node.rest, node.image);
-                }
-            for (auto& node : nodes_)
-                if (node.operation == Operation::state) node.rest = is_proved ? node.image : Bound(2) * node.image;
+            for (auto& [node, state] : states_) {
+                state.image = bound_of(tape_.term(node, order_ + 1)) + last_step_ * bounds(state.rate).rest;
+                is_proved = is_proved && contains(bounds(node).rest, state.image);
+            }
+            for (const auto& [node, state] : states_)
+                bounds(node).rest = is_proved ? state.image : Bound(2) * state.image;
             if (is_proved) return true;
         }
         return false;
     }
 
-    /// At τ.
-    Number value(std::size_t node, const Number& tau, bool has_remainder = true) const {
-        const auto& c = nodes_[node].c;
-        Number sum = has_remainder ? Number(nodes_[node].rest) : Number(0);
-        for (std::size_t k = c.size(); k-- > 0;) sum = sum * tau + c[k];
+    /// A state at τ.
+    Number value(int node, const Number& tau, bool has_remainder = true) const {
+        const auto* c = tape_.series(node);
+        Number sum = has_remainder ? Number(bounds(node).rest) : Number(0);
+        for (int k = order_; k >= 0; --k) sum = sum * tau + c[k];
         return sum;
     }
-    const Number& coefficient(std::size_t node, int k) const { return nodes_[node].c[static_cast<std::size_t>(k)]; }
+    const Number& coefficient(int node, int k) const { return tape_.series(node)[k]; }
 
 private:
-    struct Node {
-        Operation operation;
-        std::size_t a, b;  // operands; a = rate of a state
-        std::vector<Number> c;
-        std::function<Number()> start{};
-        // Σ |c_k|; of products, Σ |a_i b_j| over i + j > n; the remainder; its image by Picard's operator
-        Bound size{}, tail{}, rest{}, image{};
+    using Bound = decltype(bound_of(Number()));
+    using Operation = typename Tape<Number>::Operation;
+    using Node = typename Tape<Number>::Node;
+    struct State {
+        Number start;
+        int rate = 0;   // node
+        Bound image{};  // of the remainder by Picard's operator
+    };
+    struct Bounds {
+        // Σ |c_k|; for a product, Σ |a_i b_j| over i + j > n; the remainder
+        Bound size{}, tail{}, rest{};
     };
 
-    Term add(Operation operation, std::size_t a = 0, std::size_t b = 0) {
-        nodes_.push_back({operation, a, b, std::vector<Number>(order_ + 1)});
-        return {*this, nodes_.size() - 1};
-    }
+    Bounds& bounds(int node) { return bounds_[static_cast<std::size_t>(node)]; }
+    const Bounds& bounds(int node) const { return bounds_[static_cast<std::size_t>(node)]; }
 
-    Number coefficient(const Node& node, std::size_t k) const {
-        const auto &a = nodes_[node.a], &b = nodes_[node.b];
-        switch (node.operation) {
-            case Operation::constant:
-                break;
-            case Operation::state:
-                if (k > 0) return step_[k] * a.c[k - 1];
-                return node.start ? node.start() : node.c[0];
-            case Operation::sum:
-                return a.c[k] + b.c[k];
-            case Operation::difference:
-                return a.c[k] - b.c[k];
-            case Operation::product:
-                return &a == &b ? square(a, k) : convolution(a, b, k, a.operation == Operation::constant ? 0 : k);
-        }
-        return node.c[k];
-    }
-    /// Σ a_j b_{k−j} over 0 ≤ j ≤ last
-    static Number convolution(const Node& a, const Node& b, std::size_t k, std::size_t last) {
-        SumOfProducts<Number> sum;
-        for (std::size_t j = 0; j <= last; ++j) sum.add(a.c[j], b.c[k - j]);
-        return sum.value();
-    }
-    static Number square(const Node& a, std::size_t k) {
-        if (k == 0) return a.c[0] * a.c[0];
-        const Number half = convolution(a, a, k, (k - 1) / 2), sum = half + half;
-        return k % 2 == 0 ? sum + a.c[k / 2] * a.c[k / 2] : sum;
-    }
-    Bound tail(const Node& a, const Node& b) const {
-        if (a.operation == Operation::constant) return Bound(0);
+    Bound tail(const Node& node) const {
+        if (node.operation != Operation::product || node.a < 0 || node.b < 0) return Bound(0);
+        const Number *a = tape_.series(node.a), *b = tape_.series(node.b);
         SumOfProducts<Bound> sum;
         Bound of_b(0);
-        for (std::size_t i = 1; i <= order_; ++i) {
-            of_b += bound_of(b.c[order_ + 1 - i]);
-            sum.add(bound_of(a.c[i]), of_b);
+        for (int i = 1; i <= order_; ++i) {
+            of_b += bound_of(b[order_ + 1 - i]);
+            sum.add(bound_of(a[i]), of_b);
         }
         return sum.value();
     }
-    Bound remainder(const Node& node) const {
-        const auto &a = nodes_[node.a], &b = nodes_[node.b];
-        switch (node.operation) {
-            case Operation::constant:
-                break;
-            case Operation::state:
-                return bound_of(coefficient(node, order_ + 1)) + bound_of(step_[order_ + 2]) * a.rest;
-            case Operation::sum:
-            case Operation::difference:
-                return a.rest + b.rest;
-            case Operation::product: {
-                SumOfProducts<Bound> sum;
-                sum.add(a.size, b.rest);
-                sum.add(a.rest, b.size + b.rest);
-                return sum.value() + node.tail;
-            }
-        }
-        return Bound(0);
+    Bound remainder(const Node& node, const Bound& tail) const {
+        const Bounds constant{.size = bound_of(node.constant)};
+        const auto &a = node.a < 0 ? constant : bounds(node.a), &b = node.b < 0 ? constant : bounds(node.b);
+        if (node.operation != Operation::product) return a.rest + b.rest;  // a sum or a difference
+        SumOfProducts<Bound> sum;
+        sum.add(a.size, b.rest);
+        sum.add(a.rest, b.size + b.rest);
+        return sum.value() + tail;
     }
 
-    std::size_t order_;         // n
-    std::vector<Number> step_;  // h/k
-    std::vector<Node> nodes_;
+    int order_;
+    Tape<Number> tape_;
+    std::map<int, State> states_;  // by nodes
+    std::vector<Bounds> bounds_;   // of all nodes
+    Bound last_step_{};            // h/(n + 2)
 };
 
 }  // namespace doppel

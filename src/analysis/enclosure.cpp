@@ -9,69 +9,79 @@
 namespace doppel {
 namespace {
 
-template <class Term>
-struct Turn {
-    Term sin, cos, sin_rate, cos_rate;
-};
-
 /// The series of two links. Sines, cosines and inverses are states, too, so that all right-hand sides are polynomials.
 ///     (m1 + m2 sin²D) l1 θ1″ = P1 − m2 cosD P2 ,   l2 θ2″ = P2 − cosD l1 θ1″ ,   D = θ1 − θ2
 ///     P1 = −m2 l2 sinD ω2² − (m1 + m2) g sinθ1 + F·t1 ,   P2 = l1 sinD ω1² − g sinθ2 + F2·t2 / m2
 /// with the droplets' forces F = F1 + F2 and the directions t = (cosθ, sinθ).
-template <class Number, class B>
+template <class Number>
 class PendulumSeries : public BallSeries<Number> {
 public:
-    using Term = typename BallSeries<Number>::Term;
+    using Quantity = typename BallSeries<Number>::Quantity;
+    using Vector = std::array<Quantity, 2>;
 
-    /// The nodes 0 … 3 are θ1, θ2, ω1 and ω2. `coefficient`: 1
-    PendulumSeries(const EnclosedSystem& system, int order, double coefficient) : BallSeries<Number>(order) {
-        const auto chain = system.chain.template cast<B>();
-        const B &m1 = chain.mass[0], &m2 = chain.mass[1], &l1 = chain.length[0], &l2 = chain.length[1];
-        const Term angle1 = this->state(), angle2 = this->state(), w1 = this->state(), w2 = this->state();
-        angle1.set_rate(w1);
-        angle2.set_rate(w2);
-        const auto one = turn(angle1, w1), two = turn(angle2, w2), between = turn(angle1 - angle2, w1 - w2);
+    /// In balls B. `coefficient`: 1
+    template <class B>
+    PendulumSeries(const EnclosedSystem& system, const B& coefficient, int order)
+        : BallSeries<Number>(order),
+          chain_(system.chain.template cast<B>().template cast<Number>()),
+          droplets_(Cast<Number>()(Cast<B>()(system.droplets))),
+          coefficient_(coefficient) {}
+
+    /// The equation from θ1, θ2, ω1, ω2, which are its nodes 0 … 3.
+    void start(const std::array<Number, 4>& y) {
+        const auto &m1 = chain_.mass[0], &m2 = chain_.mass[1], &l1 = chain_.length[0], &l2 = chain_.length[1];
+        this->clear();
+        const Quantity angle1 = this->state(y[0]), angle2 = this->state(y[1]);
+        const Quantity w1 = this->state(y[2]), w2 = this->state(y[3]);
+        this->set_rate(angle1, w1);
+        this->set_rate(angle2, w2);
+        const Turn one(*this, angle1, w1), two(*this, angle2, w2), between(*this, angle1 - angle2, w1 - w2);
 
         // 1/a, where (1/a)′ = −a′/a²
-        const Term mass = m1 + m2 * (between.sin * between.sin);
-        const Term inverse = this->state([mass] { return Number(1) / mass.start(); });
-        inverse.set_rate((B(-2) * m2) * ((inverse * inverse) * (between.sin * between.sin_rate)));
+        const Quantity inverse = this->state(Number(1) / (m1 + m2 * (between.sin * between.sin)).value);
+        this->set_rate(inverse, Number(-2) * m2 * (inverse * inverse * (between.sin * between.sin_rate)));
 
-        Term p1 = (-(m2 * l2)) * (between.sin * (w2 * w2)) + (-((m1 + m2) * chain.gravity)) * one.sin;
-        Term p2 = l1 * (between.sin * (w1 * w1)) + (-chain.gravity) * two.sin;
-        for (const auto& droplet : Cast<B>()(system.droplets)) {
-            const Term x = l1 * one.sin, y = (-l1) * one.cos, vx = l1 * one.sin_rate, vy = (-l1) * one.cos_rate;
-            const auto first = attraction(droplet, x, y, vx, vy);
-            const auto second = attraction(droplet, x + l2 * two.sin, y + (-l2) * two.cos, vx + l2 * two.sin_rate,
-                                           vy + (-l2) * two.cos_rate);
-            const Term fx = m1 * first[0] + m2 * second[0], fy = m1 * first[1] + m2 * second[1];
-            p1 = p1 + (fx * one.cos + fy * one.sin);
-            p2 = p2 + (second[0] * two.cos + second[1] * two.sin);
+        Quantity p1 = -(m2 * l2) * (between.sin * (w2 * w2)) - (m1 + m2) * chain_.gravity * one.sin;
+        Quantity p2 = l1 * (between.sin * (w1 * w1)) - chain_.gravity * two.sin;
+        for (const auto& droplet : droplets_) {
+            const Vector place{l1 * one.sin, -l1 * one.cos}, velocity{l1 * one.sin_rate, -l1 * one.cos_rate};
+            const Vector first = attraction(droplet, place, velocity);
+            const Vector second = attraction(droplet, {place[0] + l2 * two.sin, place[1] - l2 * two.cos},
+                                             {velocity[0] + l2 * two.sin_rate, velocity[1] - l2 * two.cos_rate});
+            p1 += (m1 * first[0] + m2 * second[0]) * one.cos + (m1 * first[1] + m2 * second[1]) * one.sin;
+            p2 += second[0] * two.cos + second[1] * two.sin;
         }
-        const Term b1 = inverse * (p1 - m2 * (between.cos * p2)), b2 = p2 - between.cos * b1;
-        w1.set_rate((B(decltype(B::center)(coefficient)) / l1) * b1);
-        w2.set_rate((B(1) / l2) * b2);
+        const Quantity b1 = inverse * (p1 - m2 * (between.cos * p2));
+        this->set_rate(w1, coefficient_ / l1 * b1);
+        this->set_rate(w2, Number(1) / l2 * (p2 - between.cos * b1));
     }
 
 private:
-    Turn<Term> turn(const Term& angle, const Term& rate) {
-        const Term sin = this->state([angle] { return SinCos<Number>(angle.start()).sin; });
-        const Term cos = this->state([angle] { return SinCos<Number>(angle.start()).cos; });
-        const Turn<Term> all{sin, cos, cos * rate, B(-1) * (sin * rate)};
-        sin.set_rate(all.sin_rate);
-        cos.set_rate(all.cos_rate);
-        return all;
+    /// Sine and cosine of an angle as states.
+    struct Turn {
+        Quantity sin, cos, sin_rate, cos_rate;
+
+        Turn(PendulumSeries& series, const Quantity& angle, const Quantity& rate) {
+            const SinCos<Number> at(angle.value);
+            sin = series.state(at.sin);
+            cos = series.state(at.cos);
+            series.set_rate(sin, sin_rate = cos * rate);
+            series.set_rate(cos, cos_rate = -(sin * rate));
+        }
+    };
+    /// −G M r/|r|³, where (1/|r|)′ = −(r·r′)/|r|³
+    Vector attraction(const Droplet<Number>& droplet, const Vector& place, const Vector& velocity) {
+        const Quantity x = place[0] - droplet.place[0], y = place[1] - droplet.place[1];
+        const Quantity inverse = this->state(Number(1) / sqrt((x * x + y * y).value));
+        const Quantity cube = inverse * inverse * inverse;
+        this->set_rate(inverse, -(cube * (x * velocity[0] + y * velocity[1])));
+        const Quantity pull = -(droplet.constant * droplet.mass) * cube;
+        return {pull * x, pull * y};
     }
-    /// −G M r/|r|³ at (x, y), where (1/|r|)′ = −(r·r′)/|r|³
-    std::array<Term, 2> attraction(const Droplet<B>& droplet, const Term& x, const Term& y, const Term& vx,
-                                   const Term& vy) {
-        const Term rx = (-droplet.place[0]) + x, ry = (-droplet.place[1]) + y, square = rx * rx + ry * ry;
-        const Term inverse = this->state([square] { return Number(1) / sqrt(square.start()); });
-        const Term cube = inverse * (inverse * inverse);
-        inverse.set_rate(B(-1) * (cube * (rx * vx + ry * vy)));
-        const Term pull = (-(droplet.constant * droplet.mass)) * cube;
-        return {pull * rx, pull * ry};
-    }
+
+    Pendulum<Number> chain_;
+    std::vector<Droplet<Number>> droplets_;
+    Number coefficient_;
 };
 
 /// The order of the series.
@@ -111,8 +121,8 @@ public:
 
     Enclosure(const EnclosedSystem& system, const EnclosureSpec& spec)
         : spec_(spec),
-          middle_(system, order_of<Scalar>, spec.counted.coefficient),
-          tangent_(system, tangent_order, spec.counted.coefficient) {
+          middle_(system, B(Scalar(spec.counted.coefficient)), order_of<Scalar>),
+          tangent_(system, DoubleBall(spec.counted.coefficient), tangent_order) {
         const auto chain = system.chain.template cast<B>();
         const std::array start{chain.angle[0], chain.angle[1], chain.rate[0], chain.rate[1]};
         set_.edges.setZero(4, 4);
@@ -131,12 +141,15 @@ public:
     /// The sets at the samples that the next step passes; nothing if no step can be proved.
     std::optional<std::vector<EnclosedState<Scalar>>> step() {
         const Box hull = set_.hull();
+        std::array<B, 4> middle;
+        std::array<TangentBall, 4> around;
         for (std::size_t i = 0; i < 4; ++i) {
-            const B at(set_.center[i]);
             const auto axis = static_cast<Eigen::Index>(i);
-            middle_.set_start(i, at);
-            tangent_.set_start(i, TangentBall::variable(DoubleBall(at).widened_by(hull[axis]), axis));
+            middle[i] = B(set_.center[i]);
+            around[i] = TangentBall::variable(DoubleBall(middle[i]).widened_by(hull[axis]), axis);
         }
+        middle_.start(middle);
+        tangent_.start(around);
         if (!find_step()) return std::nullopt;
         std::vector<EnclosedState<Scalar>> passed;
         for (long n = parts_ - done_ % parts_; n <= length_; n += parts_) passed.push_back(image(hull, n).state());
@@ -146,7 +159,7 @@ public:
     }
 
 private:
-    static constexpr int tangent_order = 16;
+    static constexpr int tangent_order = 12;
 
     static Ball<Wide> number(std::int64_t n) { return Wide(n); }
     /// The length of so many parts, s.
@@ -177,7 +190,7 @@ private:
     double longer() const {
         constexpr int order = order_of<Scalar>;
         double factor = 4;
-        for (std::size_t i = 0; i < 4; ++i) {
+        for (int i = 0; i < 4; ++i) {
             const auto size = [&](int k) { return middle_.coefficient(i, k).size(); };
             const double least = spec_.tolerance * B::roundoff * std::max({1.0, size(0), size(1)});
             for (int k = order - 3; k <= order; ++k) factor = std::min(factor, std::pow(least / size(k), 1.0 / k));
@@ -193,12 +206,12 @@ private:
         Box rounding;
         for (std::size_t i = 0; i < 4; ++i) {
             const auto row = static_cast<Eigen::Index>(i);
-            const auto tangent = tangent_.value(i, TangentBall(DoubleBall(tau))).tangent;
+            const auto tangent = tangent_.value(static_cast<int>(i), TangentBall(DoubleBall(tau))).tangent;
             for (Eigen::Index j = 0; j < 4; ++j) {
                 middle(row, j) = tangent[j].center;
                 spread(row, j) = spec_.counted.nonlinearity * tangent[j].radius;
             }
-            const B end = middle_.value(i, B(tau), spec_.counted.truncation != 0);
+            const B end = middle_.value(static_cast<int>(i), B(tau), spec_.counted.truncation != 0);
             all.center[i] = end.center;
             rounding[row] = spec_.counted.rounding * end.radius;
         }
@@ -212,8 +225,8 @@ private:
     }
 
     EnclosureSpec spec_;
-    PendulumSeries<B, B> middle_;
-    PendulumSeries<TangentBall, DoubleBall> tangent_;
+    PendulumSeries<B> middle_;
+    PendulumSeries<TangentBall> tangent_;
     Zonotope<Scalar> set_;
     long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // of a sample; of the step; since the start
 };

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -77,6 +78,10 @@ struct Ball {
     double high() const { return bound(1); }
 
     friend bool operator==(const Ball& a, const Ball& b) = default;
+    /// An order of balls, not of their numbers.
+    friend bool operator<(const Ball& a, const Ball& b) {
+        return std::tie(a.center, a.radius) < std::tie(b.center, b.radius);
+    }
     friend Ball operator+(const Ball& a, const Ball& b) { return rounded(a.center + b.center, a.radius + b.radius); }
     friend Ball operator-(const Ball& a, const Ball& b) { return rounded(a.center - b.center, a.radius + b.radius); }
     friend Ball operator-(const Ball& a) { return {Scalar(-a.center), a.radius}; }
