@@ -3,6 +3,7 @@
 #include "numeric/rational.hpp"
 
 #include <array>
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -24,7 +25,7 @@ struct CertifiedPairSpec {
     long samples = 0;              // 0 … samples
     std::optional<int> bits = {};  // only with these
     int jobs = 1;
-    std::function<void(long done, long total)> report;  // of samples; may throw
+    std::function<void(long done, long total)> report = {};  // of samples
 };
 
 /// Enclosures of the true motion of one or two sides at samples 0, 1 … as far as all are proved.
@@ -41,7 +42,8 @@ struct CertifiedPair {
 };
 
 /// With the fewest bits for which all angles (rad) and rates (rad/s) are known to 1e-6 and the distance to 1 %,
-/// otherwise with the most. Throws what `report` throws.
-CertifiedPair certified_pair(const std::vector<EnclosedSystem>& sides, const CertifiedPairSpec& spec);
+/// otherwise with the most. Throws Error (exit 130) soon after `stop` is set.
+CertifiedPair certified_pair(const std::vector<EnclosedSystem>& sides, const CertifiedPairSpec& spec,
+                             const std::atomic<bool>& stop);
 
 }  // namespace doppel

@@ -3,8 +3,9 @@
 #include "analysis/ball_series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -28,7 +29,7 @@ public:
           coefficient_(coefficient) {}
 
     /// The equation from θ1, θ2, ω1, ω2, which are its nodes 0 … 3.
-    void start(const std::array<Number, 4>& y) {
+    void start(const State<Number, 4>& y) {
         const auto &m1 = chain_.mass[0], &m2 = chain_.mass[1], &l1 = chain_.length[0], &l2 = chain_.length[1];
         this->clear();
         const Quantity angle1 = this->state(y[0]), angle2 = this->state(y[1]);
@@ -97,7 +98,7 @@ using Box = Eigen::Array4d;  // radii
 /// All states center + Σ_j b_j (column j of `edges`), |b_j| ≤ 1.
 template <class Scalar>
 struct Zonotope {
-    std::array<Scalar, 4> center;
+    EnclosedState<Scalar> center;  // of radius 0
     Eigen::Matrix<double, 4, Eigen::Dynamic> edges;
 
     Box hull() const {
@@ -108,7 +109,7 @@ struct Zonotope {
     EnclosedState<Scalar> state() const {
         const Box box = hull();
         EnclosedState<Scalar> all;
-        for (std::size_t i = 0; i < 4; ++i) all[i] = {center[i], box[static_cast<Eigen::Index>(i)]};
+        for (int i = 0; i < 4; ++i) all[i] = {center[i].center, box[i]};
         return all;
     }
 };
@@ -124,38 +125,33 @@ public:
           middle_(system, B(Scalar(spec.counted.coefficient)), order_of<Scalar>),
           tangent_(system, DoubleBall(spec.counted.coefficient), tangent_order) {
         const auto chain = system.chain.template cast<B>();
-        const std::array start{chain.angle[0], chain.angle[1], chain.rate[0], chain.rate[1]};
+        set_.center << chain.angle[0], chain.angle[1], chain.rate[0], chain.rate[1];
         set_.edges.setZero(4, 4);
-        for (Eigen::Index i = 0; i < 4; ++i) {
-            const auto& x = start[static_cast<std::size_t>(i)];
-            set_.center[static_cast<std::size_t>(i)] = x.center;
-            set_.edges(i, i) = spec.counted.start * x.radius;
-        }
+        for (int i = 0; i < 4; ++i) std::swap(set_.edges(i, i), set_.center[i].radius);
+        set_.edges *= spec.counted.start;
         const double shortest = std::min(chain.length[0].high(), chain.length[1].high());
         constexpr double of_period = 16384;
         const double part = std::sqrt(shortest / (std::abs(chain.gravity.high()) + shortest)) / of_period;
         parts_ = static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / part)));
     }
 
-    EnclosedState<Scalar> here() const { return set_.state(); }
-    /// The sets at the samples that the next step passes; nothing if no step can be proved.
-    std::optional<std::vector<EnclosedState<Scalar>>> step() {
-        const Box hull = set_.hull();
-        std::array<B, 4> middle;
-        std::array<TangentBall, 4> around;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const auto axis = static_cast<Eigen::Index>(i);
-            middle[i] = B(set_.center[i]);
-            around[i] = TangentBall::variable(DoubleBall(middle[i]).widened_by(hull[axis]), axis);
+    /// As enclosures().
+    std::vector<EnclosedState<Scalar>> samples(const Watch& watch) {
+        std::vector<EnclosedState<Scalar>> all{set_.state()};
+        while (static_cast<long>(all.size()) <= spec_.samples) {
+            watch(static_cast<long>(all.size()));
+            const Box hull = set_.hull();
+            start(hull);
+            if (!find_step()) break;
+            for (long n = parts_ - done_ % parts_; n <= length_; n += parts_) {
+                const auto sample = image(hull, n);
+                if (!(sample.hull() <= spec_.largest_radius).all()) return all;
+                all.push_back(sample.state());
+            }
+            set_ = image(hull, length_);
+            done_ += length_;
         }
-        middle_.start(middle);
-        tangent_.start(around);
-        if (!find_step()) return std::nullopt;
-        std::vector<EnclosedState<Scalar>> passed;
-        for (long n = parts_ - done_ % parts_; n <= length_; n += parts_) passed.push_back(image(hull, n).state());
-        set_ = image(hull, length_);
-        done_ += length_;
-        return passed;
+        return all;
     }
 
 private:
@@ -167,6 +163,13 @@ private:
         return number(parts) * number(spec_.interval.numerator) / (number(spec_.interval.denominator) * number(parts_));
     }
 
+    void start(const Box& hull) {
+        State<TangentBall, 4> around;
+        for (int i = 0; i < 4; ++i)
+            around[i] = TangentBall::variable(DoubleBall(set_.center[i]).widened_by(hull[i]), i);
+        middle_.start(set_.center);
+        tangent_.start(around);
+    }
     /// Finds the length of the step, and proves that the motion exists that long.
     bool find_step() {
         length_ = std::min(next_length_, spec_.samples * parts_ - done_);
@@ -204,16 +207,15 @@ private:
         Zonotope<Scalar> all;
         Eigen::Matrix4d middle, spread;  // J = middle ± spread
         Box rounding;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const auto row = static_cast<Eigen::Index>(i);
-            const auto tangent = tangent_.value(static_cast<int>(i), TangentBall(DoubleBall(tau))).tangent;
-            for (Eigen::Index j = 0; j < 4; ++j) {
-                middle(row, j) = tangent[j].center;
-                spread(row, j) = spec_.counted.nonlinearity * tangent[j].radius;
+        for (int i = 0; i < 4; ++i) {
+            const auto tangent = tangent_.value(i, TangentBall(DoubleBall(tau))).tangent;
+            for (int j = 0; j < 4; ++j) {
+                middle(i, j) = tangent[j].center;
+                spread(i, j) = spec_.counted.nonlinearity * tangent[j].radius;
             }
-            const B end = middle_.value(static_cast<int>(i), B(tau), spec_.counted.truncation != 0);
+            const B end = middle_.value(i, B(tau), spec_.counted.truncation != 0);
             all.center[i] = end.center;
-            rounding[row] = spec_.counted.rounding * end.radius;
+            rounding[i] = spec_.counted.rounding * end.radius;
         }
         // what mapping by the middle of the Jacobian leaves out, with its rounding
         const Box missing = ((spread + 0x1p-49 * middle.cwiseAbs()) * hull.matrix()).array();
@@ -235,27 +237,12 @@ private:
 
 template <class Scalar>
 std::vector<EnclosedState<Scalar>> enclosures(const EnclosedSystem& system, const EnclosureSpec& spec,
-                                              const std::function<void(long)>& watch) {
-    Enclosure<Scalar> enclosure(system, spec);
-    std::vector<EnclosedState<Scalar>> all{enclosure.here()};
-    while (static_cast<long>(all.size()) <= spec.samples) {
-        watch(static_cast<long>(all.size()));
-        const auto passed = enclosure.step();
-        if (!passed) break;
-        for (const auto& state : *passed) {
-            for (const auto& x : state)
-                if (!(x.radius <= spec.largest_radius)) return all;
-            all.push_back(state);
-        }
-    }
-    return all;
+                                              const Watch& watch) {
+    return Enclosure<Scalar>(system, spec).samples(watch);
 }
 
-template std::vector<EnclosedState<double>> enclosures(const EnclosedSystem&, const EnclosureSpec&,
-                                                       const std::function<void(long)>&);
-template std::vector<EnclosedState<Quad>> enclosures(const EnclosedSystem&, const EnclosureSpec&,
-                                                     const std::function<void(long)>&);
-template std::vector<EnclosedState<Wide>> enclosures(const EnclosedSystem&, const EnclosureSpec&,
-                                                     const std::function<void(long)>&);
+template std::vector<EnclosedState<double>> enclosures(const EnclosedSystem&, const EnclosureSpec&, const Watch&);
+template std::vector<EnclosedState<Quad>> enclosures(const EnclosedSystem&, const EnclosureSpec&, const Watch&);
+template std::vector<EnclosedState<Wide>> enclosures(const EnclosedSystem&, const EnclosureSpec&, const Watch&);
 
 }  // namespace doppel

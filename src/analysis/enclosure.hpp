@@ -5,7 +5,6 @@
 #include "physics/force.hpp"
 #include "physics/pendulum.hpp"
 
-#include <array>
 #include <functional>
 #include <vector>
 
@@ -34,10 +33,13 @@ struct EnclosureSpec {
 
 /// θ1, θ2 (rad), ω1, ω2 (rad/s)
 template <class Scalar>
-using EnclosedState = std::array<Ball<Scalar>, 4>;
+using EnclosedState = State<Ball<Scalar>, 4>;
+
+/// Called after each step with the number of samples done; may throw.
+using Watch = std::function<void(long samples)>;
 
 /// Sets that contain the true states at samples 0, 1 … for all systems and starts in the balls; fewer than required
-/// where the proof ends. Calls watch(samples) after each step; it may throw.
+/// where the proof ends.
 ///
 /// The set is c + e, with e in a zonotope: the sum of edges g_j b_j, |b_j| ≤ 1. A step of length h uses
 ///     φ(c + e) ∈ p(1) + r + J e
@@ -48,6 +50,6 @@ using EnclosedState = std::array<Ball<Scalar>, 4>;
 ///         Computing 61:47.
 template <class Scalar>
 std::vector<EnclosedState<Scalar>> enclosures(const EnclosedSystem& system, const EnclosureSpec& spec,
-                                              const std::function<void(long)>& watch);
+                                              const Watch& watch);
 
 }  // namespace doppel

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -21,13 +22,13 @@ using Wide = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<256, boost::multiprecision::digit_base_2, void, int>,
     boost::multiprecision::et_off>;
 
-/// The largest relative error of + − × / and √, rounded to nearest.
+/// The largest relative error of + − × / and √, rounded to nearest: 2⁻⁵³ for double.
 template <class Scalar>
-inline constexpr double unit_roundoff = 0x1p-53;
-template <>
-inline constexpr double unit_roundoff<Quad> = 0x1p-113;
-template <>
-inline constexpr double unit_roundoff<Wide> = 0x1p-256;
+inline constexpr double unit_roundoff = [] {
+    double unit = 1;
+    for (int i = 0; i < std::numeric_limits<Scalar>::digits; ++i) unit /= 2;
+    return unit;
+}();
 
 /// At least x ≥ 0 after up to six operations of doubles ≥ 0, whatever the rounding mode; also if some were lost to
 /// underflow.
@@ -158,24 +159,12 @@ inline Ball<Wide> ball_of_decimal(std::string_view text) {
     return text.front() == '-' ? -size : size;
 }
 
-/// π = 16 atan(1/5) − 4 atan(1/239), Machin 1706
-template <class Target>
-const Target& pi_ball() {
-    static const Target pi = [] {
-        using B = typename Target::InWide;
-        const auto atan_of_inverse = [](int n) {
-            // Σ ±1 / ((2k + 1) n^(2k+1)); alternating, so the rest is below its first term
-            B power = B(1) / B(n), sum(0);
-            for (int k = 0;; ++k) {
-                const B term = power / B(2 * k + 1);
-                if (term.size() < 1e-3 * B::roundoff) return sum.widened_by(term.size());
-                sum += k % 2 == 0 ? term : -term;
-                power = power / B(n * n);
-            }
-        };
-        return Target(B(16) * atan_of_inverse(5) - B(4) * atan_of_inverse(239));
-    }();
-    return pi;
+/// π, from its first 80 digits.
+template <class B>
+B pi_ball() {
+    static const typename B::InWide pi(
+        Wide("3.1415926535897932384626433832795028841971693993751058209749445923078164062862089"), 1e-76);
+    return B(pi);
 }
 
 template <class Scalar, class Count>

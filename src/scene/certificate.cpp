@@ -94,16 +94,6 @@ std::string bits_words(int bits) {
     return bits == certified_bits[0] ? "double" : bits == certified_bits[1] ? "quad" : fmt::format("{} bits", bits);
 }
 
-CertifiedPairSpec spec_of(const Scene& scene, const std::atomic<bool>& stop,
-                          const std::function<void(long, long)>& report = {}) {
-    return {.interval = scene.a.motion.sample_interval,
-            .samples = scene.samples,
-            .report = [&stop, report](long done, long total) {
-                throw_if_set(stop);
-                if (report) report(done, total);
-            }};
-}
-
 }  // namespace
 
 void check_provable(const Scene& scene) {
@@ -112,19 +102,18 @@ void check_provable(const Scene& scene) {
 
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
                            const std::function<void(long, long)>& report) {
-    auto spec = spec_of(scene, stop, report);
-    spec.jobs = jobs;
-    Certificate all{certified_pair(systems_of(scene), spec), radius};
+    const CertifiedPairSpec spec{
+        .interval = scene.a.motion.sample_interval, .samples = scene.samples, .jobs = jobs, .report = report};
+    Certificate all{certified_pair(systems_of(scene), spec, stop), radius};
     follow_runs(scene, all, stop);
     all.diverged_s = divergence_of(scene, all.pair);
     return all;
 }
 
 std::vector<double> certified_radii(const Scene& scene, int bits, const std::atomic<bool>& stop) {
-    auto spec = spec_of(scene, stop);
-    spec.bits = bits;
+    const CertifiedPairSpec spec{.interval = scene.a.motion.sample_interval, .samples = scene.samples, .bits = bits};
     std::vector<double> radii;
-    for (const auto& row : certified_pair({systems_of(scene).front()}, spec).rows) radii.push_back(row.radius);
+    for (const auto& row : certified_pair({systems_of(scene).front()}, spec, stop).rows) radii.push_back(row.radius);
     radii.resize(static_cast<std::size_t>(scene.samples) + 1, NAN);
     return radii;
 }
