@@ -23,12 +23,6 @@ std::vector<Ball<Wide>> decimals(const std::vector<Quad>& numbers, const Ball<Wi
 }
 
 EnclosedSystem system_of(const SideSpec& spec) {
-    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
-    if (!spec.particles.empty() || spec.links() != 2 || !spec.physical.is_none() || !spec.track.is_none() ||
-        !spec.constraints.empty() || !std::all_of(spec.forces.begin(), spec.forces.end(), is_droplet))
-        throw bad_input(
-            "a proof needs two ideal links: no friction, drive, track or further constraint, and no force "
-            "but gravity and droplets");
     const auto degree = pi_ball<Ball<Wide>>() / Ball<Wide>(180);
     EnclosedSystem all{{decimals(spec.mass_kg), decimals(spec.length_m), decimals(spec.angle_deg, degree),
                         decimals(spec.omega_deg_per_s, degree), decimal(spec.gravity_m_per_s2)}};
@@ -40,10 +34,9 @@ EnclosedSystem system_of(const SideSpec& spec) {
 }
 
 std::vector<EnclosedSystem> systems_of(const Scene& scene) {
-    std::vector<EnclosedSystem> all;
-    for (const char letter : scene.letters())
-        all.push_back(
-            for_side(scene.preset, letter, [&] { return system_of(letter == 'a' ? scene.preset.a : scene.preset.b); }));
+    check_provable(scene);
+    std::vector<EnclosedSystem> all{system_of(scene.preset.a)};
+    if (!scene.is_single()) all.push_back(system_of(scene.preset.b));
     return all;
 }
 
@@ -97,7 +90,16 @@ std::string bits_words(int bits) {
 }  // namespace
 
 void check_provable(const Scene& scene) {
-    systems_of(scene);
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
+    for (const char letter : scene.letters())
+        for_side(scene.preset, letter, [&] {
+            const auto& side = letter == 'a' ? scene.preset.a : scene.preset.b;
+            if (!side.particles.empty() || side.links() != 2 || !side.physical.is_none() || !side.track.is_none() ||
+                !side.constraints.empty() || !std::all_of(side.forces.begin(), side.forces.end(), is_droplet))
+                throw bad_input(
+                    "a proof needs two ideal links: no friction, drive, track or further constraint, and no force "
+                    "but gravity and droplets");
+        });
 }
 
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
