@@ -18,7 +18,7 @@ template <class Number>
 class PendulumSeries : public BallSeries<Number> {
 public:
     using Quantity = typename BallSeries<Number>::Quantity;
-    using Vector = std::array<Quantity, 2>;
+    using Vector = Place<Quantity>;
 
     /// In balls B. `coefficient`: 1
     template <class B>
@@ -30,7 +30,8 @@ public:
 
     /// The equation from θ1, θ2, ω1, ω2, which are its nodes 0 … 3.
     void start(const State<Number, 4>& y) {
-        const auto &m1 = chain_.mass[0], &m2 = chain_.mass[1], &l1 = chain_.length[0], &l2 = chain_.length[1];
+        const Quantity m1 = chain_.mass[0], m2 = chain_.mass[1], l1 = chain_.length[0], l2 = chain_.length[1];
+        const Quantity g = chain_.gravity;
         this->clear();
         const Quantity angle1 = this->state(y[0]), angle2 = this->state(y[1]);
         const Quantity w1 = this->state(y[2]), w2 = this->state(y[3]);
@@ -40,21 +41,20 @@ public:
 
         // 1/a, where (1/a)′ = −a′/a²
         const Quantity inverse = this->state(Number(1) / (m1 + m2 * (between.sin * between.sin)).value);
-        this->set_rate(inverse, Number(-2) * m2 * (inverse * inverse * (between.sin * between.sin_rate)));
+        this->set_rate(inverse, Quantity(-2) * m2 * (inverse * inverse * (between.sin * between.sin_rate)));
 
-        Quantity p1 = -(m2 * l2) * (between.sin * (w2 * w2)) - (m1 + m2) * chain_.gravity * one.sin;
-        Quantity p2 = l1 * (between.sin * (w1 * w1)) - chain_.gravity * two.sin;
+        Quantity p1 = -(m2 * l2) * (between.sin * (w2 * w2)) - (m1 + m2) * g * one.sin;
+        Quantity p2 = l1 * (between.sin * (w1 * w1)) - g * two.sin;
         for (const auto& droplet : droplets_) {
-            const Vector place{l1 * one.sin, -l1 * one.cos}, velocity{l1 * one.sin_rate, -l1 * one.cos_rate};
+            const Vector place = l1 * one.rod(), velocity = l1 * one.rod_rate();
             const Vector first = attraction(droplet, place, velocity);
-            const Vector second = attraction(droplet, {place[0] + l2 * two.sin, place[1] - l2 * two.cos},
-                                             {velocity[0] + l2 * two.sin_rate, velocity[1] - l2 * two.cos_rate});
-            p1 += (m1 * first[0] + m2 * second[0]) * one.cos + (m1 * first[1] + m2 * second[1]) * one.sin;
-            p2 += second[0] * two.cos + second[1] * two.sin;
+            const Vector second = attraction(droplet, place + l2 * two.rod(), velocity + l2 * two.rod_rate());
+            p1 += (m1 * first + m2 * second).dot(one.across());
+            p2 += second.dot(two.across());
         }
         const Quantity b1 = inverse * (p1 - m2 * (between.cos * p2));
-        this->set_rate(w1, coefficient_ / l1 * b1);
-        this->set_rate(w2, Number(1) / l2 * (p2 - between.cos * b1));
+        this->set_rate(w1, Quantity(coefficient_) / l1 * b1);
+        this->set_rate(w2, Quantity(1) / l2 * (p2 - between.cos * b1));
     }
 
 private:
@@ -69,15 +69,16 @@ private:
             series.set_rate(sin, sin_rate = cos * rate);
             series.set_rate(cos, cos_rate = -(sin * rate));
         }
+        Vector rod() const { return {sin, -cos}; }
+        Vector rod_rate() const { return {sin_rate, -cos_rate}; }
+        Vector across() const { return {cos, sin}; }
     };
     /// −G M r/|r|³, where (1/|r|)′ = −(r·r′)/|r|³
     Vector attraction(const Droplet<Number>& droplet, const Vector& place, const Vector& velocity) {
-        const Quantity x = place[0] - droplet.place[0], y = place[1] - droplet.place[1];
-        const Quantity inverse = this->state(Number(1) / sqrt((x * x + y * y).value));
-        const Quantity cube = inverse * inverse * inverse;
-        this->set_rate(inverse, -(cube * (x * velocity[0] + y * velocity[1])));
-        const Quantity pull = -(droplet.constant * droplet.mass) * cube;
-        return {pull * x, pull * y};
+        const Vector r = place - droplet.place.template cast<Quantity>();
+        const Quantity inverse = this->state(Number(1) / sqrt(r.dot(r).value));
+        this->set_rate(inverse, -(inverse * inverse * inverse * r.dot(velocity)));
+        return Quantity(-(droplet.constant * droplet.mass)) * (inverse * inverse * inverse) * r;
     }
 
     Pendulum<Number> chain_;
