@@ -2,292 +2,186 @@
 
 #include "numeric/ball.hpp"
 #include "numeric/dual.hpp"
+#include "numeric/tape.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <map>
 #include <vector>
-
-template <>
-struct Eigen::NumTraits<doppel::UpperBound> : Eigen::GenericNumTraits<doppel::UpperBound> {
-    enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 0,
-        RequireInitialization = 1,
-        ReadCost = 1,
-        AddCost = 3,
-        MulCost = 3
-    };
-};
 
 namespace doppel {
 
 using DoubleBall = Ball<double>;
 using TangentBall = Dual<DoubleBall, 4>;
-using TangentBound = Dual<UpperBound, 4>;
 
-template <class Scalar>
-UpperBound size_of(const Ball<Scalar>& x) {
-    return x.size();
-}
-inline TangentBound size_of(const TangentBall& x) {
-    TangentBound size(x.value.size());
-    for (Eigen::Index i = 0; i < 4; ++i) size.tangent[i] = x.tangent[i].size();
-    return size;
-}
-template <class Scalar>
-double center_size(const Ball<Scalar>& x) {
-    return x.center_size();
-}
-inline double center_size(const TangentBall&) {
-    return 0;  // not used
-}
-
-/// Σ a b. Of balls, the roundings are counted together.
-template <class Number>
-class SumOfProducts {
-public:
-    void add(const Number& a, const Number& b, double, double) { sum_ += a * b; }
-    const Number& value() const { return sum_; }
-
-private:
-    Number sum_ = Number(0);
-};
+/// Σ a b, with the roundings counted together.
 template <class Scalar>
 class SumOfProducts<Ball<Scalar>> {
 public:
-    void add(const Ball<Scalar>& a, const Ball<Scalar>& b, double size_a, double size_b) {
+    void add(const Ball<Scalar>& a, const Ball<Scalar>& b) {
         sum_ += a.center * b.center;
-        spread_ += size_a * b.radius + size_b * a.radius + a.radius * b.radius;
-        sizes_ += size_a * size_b;
+        spread_ += a.center_size() * b.radius + b.center_size() * a.radius + a.radius * b.radius;
+        sizes_ += a.center_size() * b.center_size();
         ++count_;
     }
     Ball<Scalar> value() const {
         // each of the products and of the partial sums is rounded once; so are those of the sizes
         const double rounding = (count_ + 1) * 2 * unit_roundoff<Scalar> * sizes_;
-        return Ball<Scalar>(sum_).widened_by(widened(spread_ + rounding) * (1 + count_ * 0x1p-50));
+        return {sum_, widened(widened(spread_ + rounding) * (1 + count_ * 0x1p-50))};
     }
 
 private:
     Scalar sum_ = Scalar(0);
     double spread_ = 0, sizes_ = 0, count_ = 0;
 };
+template <>
+class SumOfProducts<TangentBall> {
+public:
+    void add(const TangentBall& a, const TangentBall& b) {
+        value_.add(a.value, b.value);
+        for (Eigen::Index i = 0; i < 4; ++i) {
+            tangent_[i].add(a.value, b.tangent[i]);
+            tangent_[i].add(b.value, a.tangent[i]);
+        }
+    }
+    TangentBall value() const {
+        TangentBall sum(value_.value());
+        for (Eigen::Index i = 0; i < 4; ++i) sum.tangent[i] = tangent_[i].value();
+        return sum;
+    }
 
-/// 1/x and its derivatives, for |x| ≥ least and the sizes x of its derivatives; infinite unless least > 0.
-inline UpperBound inverse_bound(const UpperBound&, double least) {
-    return least > 0 ? widened(1 / least) : std::numeric_limits<double>::infinity();
-}
-inline TangentBound inverse_bound(const TangentBound& x, double least) {
-    const auto inverse = inverse_bound(x.value, least);
-    return {inverse, inverse * inverse * x.tangent};
-}
-inline bool is_within(const UpperBound& a, const UpperBound& b) {
-    return a.value <= b.value && std::isfinite(b.value);
-}
-inline bool is_within(const TangentBound& a, const TangentBound& b) {
-    for (Eigen::Index i = 0; i < 4; ++i)
-        if (!is_within(a.tangent[i], b.tangent[i])) return false;
-    return is_within(a.value, b.value);
-}
-inline const DoubleBall& value_of(const TangentBall& x) {
-    return x.value;
-}
-inline double value_of(const TangentBound& x) {
-    return x.value.value;
-}
-inline double value_of(const UpperBound& x) {
-    return x.value;
-}
+private:
+    SumOfProducts<DoubleBall> value_, tangent_[4];
+};
+
+/// The ball around 0 with all sizes of x, and of its derivatives.
 template <class Scalar>
-const Ball<Scalar>& value_of(const Ball<Scalar>& x) {
-    return x;
+DoubleBall bound_of(const Ball<Scalar>& x) {
+    return {0, x.size()};
+}
+inline TangentBall bound_of(const TangentBall& x) {
+    return {bound_of(x.value), x.tangent.unaryExpr([](const DoubleBall& entry) { return bound_of(entry); })};
+}
+/// Whether a bound is finite and contains another.
+inline bool contains(const DoubleBall& bound, const DoubleBall& other) {
+    return other.radius <= bound.radius && std::isfinite(bound.radius);
+}
+inline bool contains(const TangentBall& bound, const TangentBall& other) {
+    bool all = contains(bound.value, other.value);
+    for (Eigen::Index i = 0; i < 4; ++i) all = all && contains(bound.tangent[i], other.tangent[i]);
+    return all;
 }
 
-/// The operations of a right-hand side, and the Taylor series of all their results in τ = t/h, with remainders
-/// τ^(order + 1) r, 0 ≤ τ ≤ 1. Number is a ball, or one with derivatives by the start.
+/// A differential equation of sums and products, and the Taylor series of its solution in τ = t/h with a remainder,
+///     y(τ) = Σ_{k ≤ n} c_k τ^k + τ^(n+1) r(τ) ,   0 ≤ τ ≤ 1 ,
+/// where r(τ) is in a bound. Number is a ball, or one with derivatives by the start.
 template <class Number>
 class BallSeries {
 public:
-    using Bound = decltype(size_of(Number(0)));
+    using Quantity = Taped<Number>;
 
-    explicit BallSeries(int order) : order_(order), terms_(static_cast<std::size_t>(order) + 1) {}
+    /// `order` = n
+    explicit BallSeries(int order) : order_(order), tape_(order + 1) {}
 
-    int state(const Number& start) { return add(Operation::integral, -1, -1, start); }
-    void set_rate(int state, int rate) { nodes_[static_cast<std::size_t>(state)].a = rate; }
-    void set_start(int state, const Number& start) { nodes_[static_cast<std::size_t>(state)].constant = start; }
-    int sum(int a, int b) { return add(Operation::sum, a, b); }
-    int difference(int a, int b) { return add(Operation::difference, a, b); }
-    int product(int a, int b) { return add(Operation::product, a, b); }
-    int scaled(const Number& factor, int a) { return add(Operation::scaled, a, -1, factor); }
-    int shifted(const Number& constant, int a) { return add(Operation::shifted, a, -1, constant); }
-    /// 1/a, where a ≥ least > 0 is known for all arguments; otherwise least = 0.
-    int inverse(int a, double least) { return add(Operation::inverse, a, -1, Number(0), least); }
+    /// Begins another equation.
+    void clear() {
+        tape_.clear();
+        states_.clear();
+    }
+    Quantity state(const Number& start) {
+        const auto made = Quantity::argument(start, tape_);
+        states_[made.node()].start = start;
+        return made;
+    }
+    void set_rate(const Quantity& state, const Quantity& rate) { states_.at(state.node()).rate = rate.node(); }
 
-    /// Computes all coefficients for a step h, s.
+    /// Computes the series for a step h, s.
     void expand(const Number& h) {
-        h_ = h;
-        for (std::size_t k = 0; k < terms_; ++k)
-            for (auto& node : nodes_) {
-                node.c[k] = coefficient(node, k);
-                node.sizes[k] = center_size(node.c[k]);
-            }
-        for (auto& node : nodes_) {
-            node.sum = Bound(0);
-            for (const auto& c : node.c) node.sum += size_of(c);
+        tape_.finish();
+        for (const auto& [node, state] : states_) tape_.term(node, 0) = state.start;
+        for (int k = 0; k <= order_; ++k) {
+            tape_.compute(k);
+            const Number step = h / Number(k + 1);
+            for (const auto& [node, state] : states_) tape_.term(node, k + 1) = step * tape_.term(state.rate, k);
         }
-        for (auto& node : nodes_)
-            node.tail = node.operation == Operation::product   ? tail(at(node.a), at(node.b))
-                        : node.operation == Operation::inverse ? tail(at(node.a), node)
-                                                               : Bound(0);
+        last_step_ = bound_of(h) / Bound(order_ + 2);
+        bounds_.assign(tape_.nodes().size(), {});
+        for (std::size_t i = 0; i < bounds_.size(); ++i)
+            for (int k = 0; k <= order_; ++k) bounds_[i].size += bound_of(tape_.series(static_cast<int>(i))[k]);
+        for (std::size_t i = 0; i < bounds_.size(); ++i) bounds_[i].tail = tail(tape_.nodes()[i]);
     }
     /// Finds remainders of the states. Picard's operator maps all functions with these remainders to such functions, so
     /// that a solution exists (Schauder) and is one of them. False if none are found.
     bool find_remainders() {
-        for (auto& node : nodes_) node.rest = Bound(0);
-        bool is_proved = false;
         constexpr int attempts = 12;
         for (int attempt = 0; attempt < attempts; ++attempt) {
-            evaluate_remainders();
-            const bool was_proved = is_proved;
-            is_proved = true;
-            for (auto& node : nodes_)
-                if (node.operation == Operation::integral) {
-                    node.image = integral_remainder(node);
-                    is_proved &= is_within(node.image, node.rest);
-                }
-            is_proved |= was_proved;  // then this is a refinement
-            for (auto& node : nodes_)
-                if (node.operation == Operation::integral)
-                    node.rest = is_proved ? node.image : Bound(UpperBound(2)) * node.image + tiny();
-            if (was_proved) break;
+            for (std::size_t i = 0; i < bounds_.size(); ++i)
+                if (const auto& node = tape_.nodes()[i]; node.operation != Operation::argument)
+                    bounds_[i].rest = remainder(node, bounds_[i].tail);
+            bool is_proved = true;
+            for (auto& [node, state] : states_) {
+                state.image = bound_of(tape_.term(node, order_ + 1)) + last_step_ * bounds(state.rate).rest;
+                is_proved = is_proved && contains(bounds(node).rest, state.image);
+            }
+            for (const auto& [node, state] : states_)
+                bounds(node).rest = is_proved ? state.image : Bound(2) * state.image;
+            if (is_proved) return true;
         }
-        return is_proved;
+        return false;
     }
 
-    /// At τ, without the remainder.
-    Number value(int node, const Number& tau) const {
-        const auto& c = at(node).c;
-        Number sum = c.back();
-        for (std::size_t k = terms_ - 1; k-- > 0;) sum = sum * tau + c[k];
+    /// A state at τ.
+    Number value(int node, const Number& tau, bool has_remainder = true) const {
+        const auto* c = tape_.series(node);
+        Number sum = has_remainder ? Number(bounds(node).rest) : Number(0);
+        for (int k = order_; k >= 0; --k) sum = sum * tau + c[k];
         return sum;
     }
-    const Bound& remainder(int node) const { return at(node).rest; }
-    /// The size of the coefficient k of a state.
-    double size(int node, int k) const { return value_of(at(node).c[static_cast<std::size_t>(k)]).size(); }
-    int order() const { return order_; }
+    const Number& coefficient(int node, int k) const { return tape_.series(node)[k]; }
 
 private:
-    enum class Operation : unsigned char { integral, sum, difference, product, scaled, shifted, inverse };
-    struct Node {
-        Operation operation;
-        int a, b;
-        Number constant;
-        double least;
-        std::vector<Number> c;
-        std::vector<double> sizes;  // of centres
-        // sum of the sizes of coefficients; of products beyond the order; the remainder; its image by Picard's operator
-        Bound sum{}, tail{}, rest{}, image{};
+    using Bound = decltype(bound_of(Number()));
+    using Operation = typename Tape<Number>::Operation;
+    using Node = typename Tape<Number>::Node;
+    struct State {
+        Number start;
+        int rate = 0;   // node
+        Bound image{};  // of the remainder by Picard's operator
+    };
+    struct Bounds {
+        // Σ |c_k|; for a product, Σ |a_i b_j| over i + j > n; the remainder
+        Bound size{}, tail{}, rest{};
     };
 
-    int add(Operation operation, int a, int b, const Number& constant = Number(0), double least = 0) {
-        nodes_.push_back(
-            {operation, a, b, constant, least, std::vector<Number>(terms_, Number(0)), std::vector<double>(terms_)});
-        return static_cast<int>(nodes_.size()) - 1;
-    }
-    const Node& at(int node) const { return nodes_[static_cast<std::size_t>(node)]; }
+    Bounds& bounds(int node) { return bounds_[static_cast<std::size_t>(node)]; }
+    const Bounds& bounds(int node) const { return bounds_[static_cast<std::size_t>(node)]; }
 
-    static Bound tiny() {
-        Bound all(UpperBound(0x1p-900));
-        if constexpr (requires { all.tangent; }) all.tangent.setConstant(UpperBound(0x1p-900));
-        return all;
-    }
-    static Number convolution(const Node& a, const Node& b, std::size_t first, std::size_t k) {
-        SumOfProducts<Number> sum;
-        for (std::size_t j = first; j <= k; ++j) sum.add(a.c[j], b.c[k - j], a.sizes[j], b.sizes[k - j]);
+    Bound tail(const Node& node) const {
+        if (node.operation != Operation::product || node.a < 0 || node.b < 0) return Bound(0);
+        const Number *a = tape_.series(node.a), *b = tape_.series(node.b);
+        SumOfProducts<Bound> sum;
+        Bound of_b(0);
+        for (int i = 1; i <= order_; ++i) {
+            of_b += bound_of(b[order_ + 1 - i]);
+            sum.add(bound_of(a[i]), of_b);
+        }
         return sum.value();
     }
-    static Number square(const Node& a, std::size_t k) {
-        SumOfProducts<Number> half;
-        for (std::size_t j = 0; 2 * j < k; ++j) half.add(a.c[j], a.c[k - j], a.sizes[j], a.sizes[k - j]);
-        const Number sum = half.value() + half.value();
-        return k % 2 == 0 ? sum + a.c[k / 2] * a.c[k / 2] : sum;
-    }
-    Number coefficient(const Node& node, std::size_t k) const {
-        switch (node.operation) {
-            case Operation::integral:
-                return k == 0 ? node.constant : h_ * at(node.a).c[k - 1] / Number(static_cast<int>(k));
-            case Operation::sum:
-                return at(node.a).c[k] + at(node.b).c[k];
-            case Operation::difference:
-                return at(node.a).c[k] - at(node.b).c[k];
-            case Operation::product:
-                return node.a == node.b ? square(at(node.a), k) : convolution(at(node.a), at(node.b), 0, k);
-            case Operation::scaled:
-                return node.constant * at(node.a).c[k];
-            case Operation::shifted:
-                return k == 0 ? node.constant + at(node.a).c[0] : at(node.a).c[k];
-            case Operation::inverse:
-                return k == 0 ? Number(1) / at(node.a).c[0] : -(convolution(at(node.a), node, 1, k) * node.c[0]);
-        }
-        return Number(0);
-    }
-    /// Σ |a_i| |b_j| over i + j > order
-    Bound tail(const Node& a, const Node& b) const {
-        Bound sum(0), of_b(0);
-        for (std::size_t i = 1; i < terms_; ++i) {
-            of_b += size_of(b.c[terms_ - i]);
-            sum += size_of(a.c[i]) * of_b;
-        }
-        return sum;
-    }
-    /// At most |x| in the step; ≤ 0 if it may vanish.
-    static double least(const Node& node) {
-        UpperBound others(value_of(node.rest));
-        for (auto c = node.c.begin() + 1; c != node.c.end(); ++c) others += value_of(*c).size();
-        const double least = value_of(node.c.front()).least() - others.value;
-        return least > 0 ? least * (1 - 0x1p-50) : least;
-    }
-
-    /// Of all nodes, from those of the states.
-    void evaluate_remainders() {
-        for (auto& node : nodes_) {
-            const auto &a = at(std::max(node.a, 0)), &b = at(std::max(node.b, 0));
-            switch (node.operation) {
-                case Operation::integral:
-                    break;
-                case Operation::sum:
-                case Operation::difference:
-                    node.rest = a.rest + b.rest;
-                    break;
-                case Operation::product:
-                    node.rest = node.tail + a.sum * b.rest + b.sum * a.rest + a.rest * b.rest;
-                    break;
-                case Operation::scaled:
-                    node.rest = size_of(node.constant) * a.rest;
-                    break;
-                case Operation::shifted:
-                    node.rest = a.rest;
-                    break;
-                case Operation::inverse:  // u − û = (1 − û a)/a
-                    node.rest =
-                        (node.tail + node.sum * a.rest) * inverse_bound(a.sum + a.rest, std::max(node.least, least(a)));
-                    break;
-            }
-        }
-    }
-    Bound integral_remainder(const Node& node) const {
-        const Bound h = size_of(h_);
-        return h * (size_of(at(node.a).c.back()) * Bound(UpperBound(widened(1.0 / (order_ + 1)))) +
-                    at(node.a).rest * Bound(UpperBound(widened(1.0 / (order_ + 2)))));
+    Bound remainder(const Node& node, const Bound& tail) const {
+        const Bounds constant{.size = bound_of(node.constant)};
+        const auto &a = node.a < 0 ? constant : bounds(node.a), &b = node.b < 0 ? constant : bounds(node.b);
+        if (node.operation != Operation::product) return a.rest + b.rest;  // a sum or a difference
+        SumOfProducts<Bound> sum;
+        sum.add(a.size, b.rest);
+        sum.add(a.rest, b.size + b.rest);
+        return sum.value() + tail;
     }
 
     int order_;
-    std::size_t terms_;
-    Number h_ = Number(0);
-    std::vector<Node> nodes_;
+    Tape<Number> tape_;
+    std::map<int, State> states_;  // by nodes
+    std::vector<Bounds> bounds_;   // of all nodes
+    Bound last_step_{};            // h/(n + 2)
 };
 
 }  // namespace doppel

@@ -3,180 +3,87 @@
 #include "analysis/ball_series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <type_traits>
+#include <utility>
 
 namespace doppel {
 namespace {
 
-/// The numbers of a system, enclosed.
-template <class B>
-struct BallSystem {
-    struct Droplet {
-        B strength, x, y;  // G M
-    };
-    B m1, m2, l1, l2, g;
-    std::vector<Droplet> droplets;
-
-    explicit BallSystem(const DecimalPendulum& p)
-        : m1(of(p.mass[0])), m2(of(p.mass[1])), l1(of(p.length[0])), l2(of(p.length[1])), g(of(p.gravity)) {
-        for (const auto& d : p.droplets)
-            droplets.push_back({of(d.constant) * of(d.mass), of(d.place[0]), of(d.place[1])});
-    }
-    static B of(const std::string& text) { return ball_of_decimal<B>(text); }
-};
-
-template <class Scalar>
-Ball<Scalar> square_root(const Ball<Scalar>& x) {
-    return sqrt(x);
-}
-TangentBall square_root(const TangentBall& x) {
-    const auto root = sqrt(x.value);
-    return {root, x.tangent / DoubleBall(DoubleBall(2) * root)};
-}
-
-/// The series of two links; the sines and cosines of the angles are states, too.
+/// The series of two links. Sines, cosines and inverses are states, too, so that all right-hand sides are polynomials.
 ///     (m1 + m2 sin²D) l1 θ1″ = P1 − m2 cosD P2 ,   l2 θ2″ = P2 − cosD l1 θ1″ ,   D = θ1 − θ2
 ///     P1 = −m2 l2 sinD ω2² − (m1 + m2) g sinθ1 + F·t1 ,   P2 = l1 sinD ω1² − g sinθ2 + F2·t2 / m2
 /// with the droplets' forces F = F1 + F2 and the directions t = (cosθ, sinθ).
-template <class Number, class B>
-class PendulumSeries {
+template <class Number>
+class PendulumSeries : public BallSeries<Number> {
 public:
-    /// `coefficient`: 1
-    PendulumSeries(const DecimalPendulum& decimals, int order, double coefficient) : series(order), system_(decimals) {
-        const auto n = [](const B& x) { return Number(x); };
-        for (auto& node : state) node = series.state(Number(0));
-        for (auto& node : turn_) node = series.state(Number(0));
-        const auto [s1, c1, s2, c2] = turn_;
-        const int w1 = state[2], w2 = state[3];
-        const auto& [m1, m2, l1, l2, g, droplets] = system_;
-        const int sin_d = series.difference(series.product(s1, c2), series.product(c1, s2));
-        const int cos_d = series.sum(series.product(c1, c2), series.product(s1, s2));
-        int p1 = series.sum(series.scaled(n(-(m2 * l2)), series.product(sin_d, series.product(w2, w2))),
-                            series.scaled(n(-((m1 + m2) * g)), s1));
-        int p2 =
-            series.sum(series.scaled(n(l1), series.product(sin_d, series.product(w1, w1))), series.scaled(n(-g), s2));
-        for (const auto& droplet : droplets) attract(droplet, p1, p2);
-        const int mass = series.shifted(n(m1), series.scaled(n(m2), series.product(sin_d, sin_d)));
-        const int b1 = series.product(series.inverse(mass, m1.least()),
-                                      series.difference(p1, series.scaled(n(m2), series.product(cos_d, p2))));
-        const int b2 = series.difference(p2, series.product(cos_d, b1));
-        series.set_rate(state[0], w1);
-        series.set_rate(state[1], w2);
-        series.set_rate(w1, series.scaled(n(B(Scalar(coefficient)) / l1), b1));
-        series.set_rate(w2, series.scaled(n(B(1) / l2), b2));
-        series.set_rate(s1, series.product(c1, w1));
-        series.set_rate(c1, series.scaled(Number(-1), series.product(s1, w1)));
-        series.set_rate(s2, series.product(c2, w2));
-        series.set_rate(c2, series.scaled(Number(-1), series.product(s2, w2)));
-    }
+    using Quantity = typename BallSeries<Number>::Quantity;
+    using Vector = Place<Quantity>;
 
-    void start_at(const std::array<Number, 4>& y) {
-        for (std::size_t i = 0; i < 4; ++i) series.set_start(state[i], y[i]);
-        const SinCos<Number> one(y[0]), two(y[1]);
-        const std::array turns{one.sin, one.cos, two.sin, two.cos};
-        for (std::size_t i = 0; i < 4; ++i) series.set_start(turn_[i], turns[i]);
-        for (const auto& cube : cubes_) {
-            const Number x = place(cube.on_second, turns[0], turns[2]) - Number(cube.droplet.x);
-            const Number y_ = -place(cube.on_second, turns[1], turns[3]) - Number(cube.droplet.y);
-            const Number r2 = x * x + y_ * y_;
-            series.set_start(cube.node, Number(1) / (r2 * square_root(r2)));
+    /// In balls B. `coefficient`: 1
+    template <class B>
+    PendulumSeries(const EnclosedSystem& system, const B& coefficient, int order)
+        : BallSeries<Number>(order),
+          chain_(system.chain.template cast<B>().template cast<Number>()),
+          droplets_(Cast<Number>()(Cast<B>()(system.droplets))),
+          coefficient_(coefficient) {}
+
+    /// The equation from θ1, θ2, ω1, ω2, which are its nodes 0 … 3.
+    void start(const State<Number, 4>& y) {
+        const Quantity m1 = chain_.mass[0], m2 = chain_.mass[1], l1 = chain_.length[0], l2 = chain_.length[1];
+        const Quantity g = chain_.gravity;
+        this->clear();
+        const Quantity angle1 = this->state(y[0]), angle2 = this->state(y[1]);
+        const Quantity w1 = this->state(y[2]), w2 = this->state(y[3]);
+        this->set_rate(angle1, w1);
+        this->set_rate(angle2, w2);
+        const Turn one(*this, angle1, w1), two(*this, angle2, w2), between(*this, angle1 - angle2, w1 - w2);
+
+        // 1/a, where (1/a)′ = −a′/a²
+        const Quantity inverse = this->state(Number(1) / (m1 + m2 * (between.sin * between.sin)).value);
+        this->set_rate(inverse, Quantity(-2) * m2 * (inverse * inverse * (between.sin * between.sin_rate)));
+
+        Quantity p1 = -(m2 * l2) * (between.sin * (w2 * w2)) - (m1 + m2) * g * one.sin;
+        Quantity p2 = l1 * (between.sin * (w1 * w1)) - g * two.sin;
+        for (const auto& droplet : droplets_) {
+            const Vector place = l1 * one.rod(), velocity = l1 * one.rod_rate();
+            const Vector first = attraction(droplet, place, velocity);
+            const Vector second = attraction(droplet, place + l2 * two.rod(), velocity + l2 * two.rod_rate());
+            p1 += (m1 * first + m2 * second).dot(one.across());
+            p2 += second.dot(two.across());
         }
+        const Quantity b1 = inverse * (p1 - m2 * (between.cos * p2));
+        this->set_rate(w1, Quantity(coefficient_) / l1 * b1);
+        this->set_rate(w2, Quantity(1) / l2 * (p2 - between.cos * b1));
     }
-
-    BallSeries<Number> series;
-    std::array<int, 4> state{};
 
 private:
-    using Scalar = std::remove_cvref_t<decltype(B().center)>;
-    struct Cube {
-        int node;  // 1/r³
-        bool on_second;
-        typename BallSystem<B>::Droplet droplet;
+    /// Sine and cosine of an angle as states.
+    struct Turn {
+        Quantity sin, cos, sin_rate, cos_rate;
+
+        Turn(PendulumSeries& series, const Quantity& angle, const Quantity& rate) {
+            const SinCos<Number> at(angle.value);
+            sin = series.state(at.sin);
+            cos = series.state(at.cos);
+            series.set_rate(sin, sin_rate = cos * rate);
+            series.set_rate(cos, cos_rate = -(sin * rate));
+        }
+        Vector rod() const { return {sin, -cos}; }
+        Vector rod_rate() const { return {sin_rate, -cos_rate}; }
+        Vector across() const { return {cos, sin}; }
     };
-
-    Number place(bool on_second, const Number& a, const Number& b) const {
-        const Number first = Number(system_.l1) * a;
-        return on_second ? first + Number(system_.l2) * b : first;
-    }
-    int place_node(bool on_second, int a, int b) {
-        const int first = series.scaled(Number(system_.l1), a);
-        return on_second ? series.sum(first, series.scaled(Number(system_.l2), b)) : first;
-    }
-    /// Adds a droplet's forces to P1 and P2: −G M m r/r³ on each mass, where (r⁻³)′ = −3 r⁻³ (r·r′)/r².
-    void attract(const typename BallSystem<B>::Droplet& droplet, int& p1, int& p2) {
-        const auto [s1, c1, s2, c2] = turn_;
-        const int w1 = state[2], w2 = state[3];
-        std::array<int, 2> force_x{}, force_y{};
-        for (const bool second : {false, true}) {
-            const int x = series.shifted(Number(-droplet.x), place_node(second, s1, s2));
-            const int y = series.shifted(Number(-droplet.y), series.scaled(Number(-1), place_node(second, c1, c2)));
-            const int vx = place_node(second, series.product(c1, w1), series.product(c2, w2));
-            const int vy = place_node(second, series.product(s1, w1), series.product(s2, w2));
-            const int r2 = series.sum(series.product(x, x), series.product(y, y));
-            const int cube = series.state(Number(0));
-            const int approach = series.sum(series.product(x, vx), series.product(y, vy));
-            series.set_rate(
-                cube, series.scaled(Number(-3), series.product(series.product(cube, series.inverse(r2, 0)), approach)));
-            cubes_.push_back({cube, second, droplet});
-            const int pull = series.scaled(Number(-droplet.strength), cube);
-            force_x[second] = series.product(pull, x);
-            force_y[second] = series.product(pull, y);
-        }
-        const auto weighted = [&](const std::array<int, 2>& f) {
-            return series.sum(series.scaled(Number(system_.m1), f[0]), series.scaled(Number(system_.m2), f[1]));
-        };
-        p1 = series.sum(p1, series.sum(series.product(weighted(force_x), c1), series.product(weighted(force_y), s1)));
-        p2 = series.sum(p2, series.sum(series.product(force_x[1], c2), series.product(force_y[1], s2)));
+    /// −G M r/|r|³, where (1/|r|)′ = −(r·r′)/|r|³
+    Vector attraction(const Droplet<Number>& droplet, const Vector& place, const Vector& velocity) {
+        const Vector r = place - droplet.place.template cast<Quantity>();
+        const Quantity inverse = this->state(Number(1) / sqrt(r.dot(r).value));
+        this->set_rate(inverse, -(inverse * inverse * inverse * r.dot(velocity)));
+        return Quantity(-(droplet.constant * droplet.mass)) * (inverse * inverse * inverse) * r;
     }
 
-    BallSystem<B> system_;
-    std::array<int, 4> turn_{};  // s1, c1, s2, c2
-    std::vector<Cube> cubes_;
-};
-
-using Matrix = std::array<std::array<double, 4>, 4>;
-using Box = std::array<double, 4>;  // radii
-
-/// e ∈ Σ G_j b_j with boxes b_j = [−1, 1]⁴, and its image under matrices.
-class Zonotope {
-public:
-    /// At least |e| by components.
-    Box hull() const { return hull_of(Matrix{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}); }
-    /// At least |M e|, up to rounding of M G_j, which is `rounding`.
-    Box hull_of(const Matrix& m) const {
-        Box sum{};
-        for (const auto& g : boxes_) {
-            const auto image = product(m, g);
-            for (std::size_t i = 0; i < 4; ++i)
-                for (const double x : image[i]) sum[i] += std::abs(x);
-        }
-        const double more = 1 + 0x1p-50 * (8 + static_cast<double>(boxes_.size()));
-        for (auto& x : sum) x = x == 0 ? 0 : widened(x * more);
-        return sum;
-    }
-    void map(const Matrix& m) {
-        for (auto& g : boxes_) g = product(m, g);
-    }
-    void add(const Box& box) {
-        Matrix g{};
-        for (std::size_t i = 0; i < 4; ++i) g[i][i] = box[i];
-        boxes_.push_back(g);
-    }
-    void keep_last() { boxes_.erase(boxes_.begin(), boxes_.end() - 1); }
-
-private:
-    static Matrix product(const Matrix& m, const Matrix& g) {
-        Matrix all{};
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t k = 0; k < 4; ++k)
-                for (std::size_t j = 0; j < 4; ++j) all[i][j] += m[i][k] * g[k][j];
-        return all;
-    }
-    std::vector<Matrix> boxes_;
+    Pendulum<Number> chain_;
+    std::vector<Droplet<Number>> droplets_;
+    Number coefficient_;
 };
 
 /// The order of the series.
@@ -187,199 +94,156 @@ constexpr int order_of<Quad> = 38;
 template <>
 constexpr int order_of<Wide> = 70;
 
+using Box = Eigen::Array4d;  // radii
+
+/// All states center + Σ_j b_j (column j of `edges`), |b_j| ≤ 1.
+template <class Scalar>
+struct Zonotope {
+    EnclosedState<Scalar> center;  // of radius 0
+    Eigen::Matrix<double, 4, Eigen::Dynamic> edges;
+
+    Box hull() const {
+        const double more = 1 + 0x1p-51 * (16 + static_cast<double>(edges.cols()));
+        const Box sum = edges.array().abs().rowwise().sum();
+        return sum.unaryExpr([&](double x) { return x == 0 ? 0 : widened(x * more); });
+    }
+    EnclosedState<Scalar> state() const {
+        const Box box = hull();
+        EnclosedState<Scalar> all;
+        for (int i = 0; i < 4; ++i) all[i] = {center[i].center, box[i]};
+        return all;
+    }
+};
+
 /// Steps from sample to sample. The step's length is counted in equal parts of the interval of samples.
 template <class Scalar>
 class Enclosure {
 public:
     using B = Ball<Scalar>;
 
-    Enclosure(const DecimalPendulum& system, const EnclosedState<Scalar>& start, const EnclosureSpec& spec)
+    Enclosure(const EnclosedSystem& system, const EnclosureSpec& spec)
         : spec_(spec),
-          middle_(system, order_of<Scalar>, spec.counted.coefficient),
-          tangent_(system, tangent_order, spec.counted.coefficient) {
-        Box box{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            center_[i] = start[i].center;
-            box[i] = spec.counted.start * start[i].radius;
-        }
-        set_.add(box);
-        const BallSystem<DoubleBall> numbers(system);
-        const double shortest = std::min(numbers.l1.center, numbers.l2.center);
+          middle_(system, B(Scalar(spec.counted.coefficient)), order_of<Scalar>),
+          tangent_(system, DoubleBall(spec.counted.coefficient), tangent_order) {
+        const auto chain = system.chain.template cast<B>();
+        set_.center << chain.angle[0], chain.angle[1], chain.rate[0], chain.rate[1];
+        set_.edges.setZero(4, 4);
+        for (int i = 0; i < 4; ++i) std::swap(set_.edges(i, i), set_.center[i].radius);
+        set_.edges *= spec.counted.start;
+        const double shortest = std::min(chain.length[0].high(), chain.length[1].high());
         constexpr double of_period = 16384;
-        const double part = std::sqrt(shortest / (std::abs(numbers.g.center) + shortest)) / of_period;
+        const double part = std::sqrt(shortest / (std::abs(chain.gravity.high()) + shortest)) / of_period;
         parts_ = static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / part)));
     }
 
-    /// The sets at the samples that the next step passes; nothing if no step can be proved.
-    std::optional<std::vector<EnclosedState<Scalar>>> step() {
-        const Box hull = set_.hull();
-        start_step(hull);
-        if (!find_step()) return std::nullopt;
-        std::vector<EnclosedState<Scalar>> passed;
-        for (long n = parts_ - done_ % parts_; n < length_; n += parts_) passed.push_back(sample(hull, n));
-        advance(hull);
-        if (done_ % parts_ == 0) passed.push_back(here());
-        return passed;
-    }
-    EnclosedState<Scalar> here() const {
-        const Box hull = set_.hull();
-        EnclosedState<Scalar> state;
-        for (std::size_t i = 0; i < 4; ++i) state[i] = {center_[i], hull[i]};
-        return state;
+    /// As enclosures().
+    std::vector<EnclosedState<Scalar>> samples(const Watch& watch) {
+        std::vector<EnclosedState<Scalar>> all{set_.state()};
+        while (static_cast<long>(all.size()) <= spec_.samples) {
+            watch(static_cast<long>(all.size()));
+            const Box hull = set_.hull();
+            start(hull);
+            if (!find_step()) break;
+            for (long n = parts_ - done_ % parts_; n <= length_; n += parts_) {
+                const auto sample = image(hull, n);
+                if (!(sample.hull() <= spec_.largest_radius).all()) return all;
+                all.push_back(sample.state());
+            }
+            set_ = image(hull, length_);
+            done_ += length_;
+        }
+        return all;
     }
 
 private:
-    static constexpr int tangent_order = 16;
+    static constexpr int tangent_order = 12;
 
+    static Ball<Wide> number(std::int64_t n) { return Wide(n); }
     /// The length of so many parts, s.
-    template <class T>
-    T seconds(long parts) const {
-        const auto number = [](std::int64_t n) { return ball_of_decimal<T>(std::to_string(n)); };
+    Ball<Wide> seconds(long parts) const {
         return number(parts) * number(spec_.interval.numerator) / (number(spec_.interval.denominator) * number(parts_));
     }
 
-    void start_step(const Box& hull) {
-        std::array<B, 4> at;
-        std::array<TangentBall, 4> around;
-        for (std::size_t i = 0; i < 4; ++i) {
-            at[i] = B(center_[i]);
-            around[i] = TangentBall::variable(DoubleBall(at[i]).widened_by(hull[i]), static_cast<Eigen::Index>(i));
-        }
-        middle_.start_at(at);
-        tangent_.start_at(around);
+    void start(const Box& hull) {
+        State<TangentBall, 4> around;
+        for (int i = 0; i < 4; ++i)
+            around[i] = TangentBall::variable(DoubleBall(set_.center[i]).widened_by(hull[i]), i);
+        middle_.start(set_.center);
+        tangent_.start(around);
     }
     /// Finds the length of the step, and proves that the motion exists that long.
     bool find_step() {
-        const long left = spec_.samples * parts_ - done_;
-        for (length_ = std::min(next_length_, left); length_ > 0; length_ = length_ * 3 / 4) {
-            middle_.series.expand(seconds<B>(length_));
+        length_ = std::min(next_length_, spec_.samples * parts_ - done_);
+        while (length_ > 0) {
+            const auto h = seconds(length_);
+            middle_.expand(B(h));
             const double longest = static_cast<double>(length_) * longer();
             next_length_ = static_cast<long>(std::clamp(longest, 1.0, 4.0 * static_cast<double>(length_)));
-            if (longest < static_cast<double>(length_)) {
+            if (longest + 1 < static_cast<double>(length_)) {
                 length_ = static_cast<long>(longest);
-                if (length_ == 0) return false;
-                middle_.series.expand(seconds<B>(length_));
+                continue;
             }
-            tangent_.series.expand(TangentBall(seconds<DoubleBall>(length_)));
-            if (middle_.series.find_remainders() && tangent_.series.find_remainders()) return true;
+            tangent_.expand(TangentBall(DoubleBall(h)));
+            if (middle_.find_remainders() && tangent_.find_remainders()) return true;
+            length_ = length_ * 3 / 4;
         }
         return false;
     }
     /// By how much the step may be longer, or must be shorter if it is < 1: the last coefficients, several because
     /// whole classes of them vanish at rest, are to be below rounding.
     double longer() const {
-        const auto& series = middle_.series;
+        constexpr int order = order_of<Scalar>;
         double factor = 4;
-        for (const int node : middle_.state) {
-            const double amount = std::max({1.0, series.size(node, 0), series.size(node, 1)});
-            for (int k = series.order() - 3; k <= series.order(); ++k)
-                factor =
-                    std::min(factor, std::pow(spec_.tolerance * B::roundoff * amount / series.size(node, k), 1.0 / k));
+        for (int i = 0; i < 4; ++i) {
+            const auto size = [&](int k) { return middle_.coefficient(i, k).size(); };
+            const double least = spec_.tolerance * B::roundoff * std::max({1.0, size(0), size(1)});
+            for (int k = order - 3; k <= order; ++k) factor = std::min(factor, std::pow(least / size(k), 1.0 / k));
         }
         return factor;
     }
 
-    struct Linear {
-        Matrix middle{}, spread{};  // J = middle ± spread
-    };
-    Linear jacobian(const TangentBall& tau) const {
-        Linear all;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const auto value = tangent_.series.value(tangent_.state[i], tau);
-            const auto& rest = tangent_.series.remainder(tangent_.state[i]);
-            for (std::size_t j = 0; j < 4; ++j) {
-                const auto& entry = value.tangent[static_cast<Eigen::Index>(j)];
-                all.middle[i][j] = entry.center;
-                all.spread[i][j] = spec_.counted.nonlinearity *
-                                   widened(entry.radius + rest.tangent[static_cast<Eigen::Index>(j)].value);
+    /// The set so many parts after the start of the step, where its hull is `hull`.
+    Zonotope<Scalar> image(const Box& hull, long parts) const {
+        const auto tau = number(parts) / number(length_);
+        Zonotope<Scalar> all;
+        Eigen::Matrix4d middle, spread;  // J = middle ± spread
+        Box rounding;
+        for (int i = 0; i < 4; ++i) {
+            const auto tangent = tangent_.value(i, TangentBall(DoubleBall(tau))).tangent;
+            for (int j = 0; j < 4; ++j) {
+                middle(i, j) = tangent[j].center;
+                spread(i, j) = spec_.counted.nonlinearity * tangent[j].radius;
             }
+            const B end = middle_.value(i, B(tau), spec_.counted.truncation != 0);
+            all.center[i] = end.center;
+            rounding[i] = spec_.counted.rounding * end.radius;
         }
+        // what mapping by the middle of the Jacobian leaves out, with its rounding
+        const Box missing = ((spread + 0x1p-49 * middle.cwiseAbs()) * hull.matrix()).array();
+        const Box box = (missing.unaryExpr(&widened) + rounding).unaryExpr(&widened);
+        const Eigen::Index edges = spec_.counted.earlier_boxes == 0 ? 0 : set_.edges.cols();
+        all.edges.resize(4, edges + 4);
+        all.edges << middle * set_.edges.leftCols(edges), Eigen::Matrix4d(box.matrix().asDiagonal());
         return all;
-    }
-    /// What mapping by the middle of a Jacobian leaves out, with its rounding.
-    Box missing(const Linear& j, const Box& hull) const {
-        Box all{};
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t k = 0; k < 4; ++k)
-                all[i] = widened(all[i] + (j.spread[i][k] + 0x1p-49 * std::abs(j.middle[i][k])) * hull[k]);
-        return all;
-    }
-    B moved(std::size_t i, const B& tau) const {
-        const int node = middle_.state[i];
-        return middle_.series.value(node, tau).widened_by(spec_.counted.truncation *
-                                                          middle_.series.remainder(node).value);
-    }
-    /// The set within the step, so many units after its start.
-    EnclosedState<Scalar> sample(const Box& hull, long units) const {
-        const B tau = seconds<B>(units) / seconds<B>(length_);
-        const auto j = jacobian(TangentBall(DoubleBall(tau)));
-        const Box spread = set_.hull_of(j.middle), more = missing(j, hull);
-        EnclosedState<Scalar> state;
-        for (std::size_t i = 0; i < 4; ++i) state[i] = moved(i, tau).widened_by(widened(spread[i] + more[i]));
-        return state;
-    }
-    void advance(const Box& hull) {
-        const auto j = jacobian(TangentBall(1));
-        Box box = missing(j, hull);
-        for (std::size_t i = 0; i < 4; ++i) {
-            const B end = moved(i, B(1));
-            center_[i] = end.center;
-            box[i] = widened(box[i] + spec_.counted.rounding * end.radius);
-        }
-        done_ += length_;
-        set_.map(j.middle);
-        set_.add(box);
-        if (spec_.counted.earlier_boxes == 0) set_.keep_last();
     }
 
     EnclosureSpec spec_;
-    PendulumSeries<B, B> middle_;
-    PendulumSeries<TangentBall, DoubleBall> tangent_;
-    std::array<Scalar, 4> center_;
-    Zonotope set_;
-    long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // units a sample; of the step; since the start
+    PendulumSeries<B> middle_;
+    PendulumSeries<TangentBall> tangent_;
+    Zonotope<Scalar> set_;
+    long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // of a sample; of the step; since the start
 };
 
 }  // namespace
 
 template <class Scalar>
-EnclosedState<Scalar> enclosed_start(const DecimalPendulum& system) {
-    EnclosedState<Scalar> start;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const auto& degrees = i < 2 ? system.angle_deg[i] : system.omega_deg_per_s[i - 2];
-        const auto number = ball_of_decimal<Ball<Wide>>(degrees);
-        if (number.radius > 0) start[i] = Ball<Scalar>(number * pi_ball<Ball<Wide>>() / Ball<Wide>(180));
-    }
-    return start;
+std::vector<EnclosedState<Scalar>> enclosures(const EnclosedSystem& system, const EnclosureSpec& spec,
+                                              const Watch& watch) {
+    return Enclosure<Scalar>(system, spec).samples(watch);
 }
 
-template <class Scalar>
-std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum& system, const EnclosedState<Scalar>& start,
-                                              const EnclosureSpec& spec, const std::function<void(long)>& watch) {
-    Enclosure<Scalar> enclosure(system, start, spec);
-    std::vector<EnclosedState<Scalar>> all{enclosure.here()};
-    const auto is_wide = [&](const EnclosedState<Scalar>& state) {
-        return !std::all_of(state.begin(), state.end(), [&](const auto& x) { return x.radius <= spec.largest_radius; });
-    };
-    while (static_cast<long>(all.size()) <= spec.samples) {
-        watch(static_cast<long>(all.size()));
-        const auto passed = enclosure.step();
-        if (!passed) break;
-        for (const auto& state : *passed) {
-            if (is_wide(state)) return all;
-            all.push_back(state);
-        }
-    }
-    return all;
-}
-
-#define DOPPEL_ENCLOSURES(Scalar)                                                                                \
-    template EnclosedState<Scalar> enclosed_start<Scalar>(const DecimalPendulum&);                               \
-    template std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum&, const EnclosedState<Scalar>&, \
-                                                           const EnclosureSpec&, const std::function<void(long)>&);
-DOPPEL_ENCLOSURES(double)
-DOPPEL_ENCLOSURES(Quad)
-DOPPEL_ENCLOSURES(Wide)
-#undef DOPPEL_ENCLOSURES
+template std::vector<EnclosedState<double>> enclosures(const EnclosedSystem&, const EnclosureSpec&, const Watch&);
+template std::vector<EnclosedState<Quad>> enclosures(const EnclosedSystem&, const EnclosureSpec&, const Watch&);
+template std::vector<EnclosedState<Wide>> enclosures(const EnclosedSystem&, const EnclosureSpec&, const Watch&);
 
 }  // namespace doppel

@@ -1,14 +1,22 @@
 #pragma once
 
-#include "analysis/certified_pair.hpp"
 #include "numeric/ball.hpp"
 #include "numeric/rational.hpp"
+#include "physics/force.hpp"
+#include "physics/pendulum.hpp"
 
-#include <array>
 #include <functional>
 #include <vector>
 
 namespace doppel {
+
+/// Two ideal links and attracting bodies, by balls that contain their numbers.
+struct EnclosedSystem {
+    Pendulum<Ball<Wide>> chain;
+    std::vector<Droplet<Ball<Wide>>> droplets = {};
+
+    friend bool operator==(const EnclosedSystem&, const EnclosedSystem&) = default;
+};
 
 /// Scales of what an enclosure counts; all 1 for a proof. Tests leave parts out to see that they are needed.
 struct EnclosureCount {
@@ -25,25 +33,23 @@ struct EnclosureSpec {
 
 /// θ1, θ2 (rad), ω1, ω2 (rad/s)
 template <class Scalar>
-using EnclosedState = std::array<Ball<Scalar>, 4>;
+using EnclosedState = State<Ball<Scalar>, 4>;
 
-/// The release of a system.
-template <class Scalar>
-EnclosedState<Scalar> enclosed_start(const DecimalPendulum& system);
+/// Called after each step with the number of samples done; may throw.
+using Watch = std::function<void(long samples)>;
 
-/// Sets that contain the true states at samples 0, 1 … for all starts in `start`; fewer than required where the proof
-/// ends. Calls watch(samples) after each step; it may throw.
+/// Sets that contain the true states at samples 0, 1 … for all systems and starts in the balls; fewer than required
+/// where the proof ends.
 ///
-/// The set is c + e, with e in a zonotope: a sum of boxes b_j mapped by matrices G_j. A step of length h uses
+/// The set is c + e, with e in a zonotope: the sum of edges g_j b_j, |b_j| ≤ 1. A step of length h uses
 ///     φ(c + e) ∈ p(1) + r + J e
 /// with the Taylor polynomial p(τ) of the motion from c, τ = t/h, its remainder r, and a Jacobian J of the flow over the
-/// hull of the set (Lohner's mean-value form). With the centre M of J, G_j becomes M G_j; one more box contains r, the
-/// roundings and (J − M) e. Boxes are never turned into others, so that the set grows as the tangents do.
-/// The remainders are functions τ^(order+1) r of which Picard's operator maps the set into itself.
+/// hull of the set (Lohner's mean-value form). With the centre M of J, g_j becomes M g_j; four more edges, a box, contain
+/// r, the roundings and (J − M) e. Boxes are never turned into others, so that the set grows as the tangents do.
 /// Source  Lohner 1987; Nedialkov, Jackson & Corliss 1999, Appl. Math. Comput. 105:21; for zonotopes Kühn 1998,
 ///         Computing 61:47.
 template <class Scalar>
-std::vector<EnclosedState<Scalar>> enclosures(const DecimalPendulum& system, const EnclosedState<Scalar>& start,
-                                              const EnclosureSpec& spec, const std::function<void(long)>& watch);
+std::vector<EnclosedState<Scalar>> enclosures(const EnclosedSystem& system, const EnclosureSpec& spec,
+                                              const Watch& watch);
 
 }  // namespace doppel

@@ -11,8 +11,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
-#include <utility>
 
 namespace doppel {
 namespace {
@@ -43,20 +43,19 @@ void write_rows(const Scene& scene, const CertifiedPair& pair, const std::filesy
         table.add(bounds.low);
         table.add(bounds.high);
     };
-    for (std::size_t n = 0; n < pair.samples(); ++n) {
+    for (std::size_t n = 0; n < pair.rows.size(); ++n) {
         table.add(static_cast<long>(n));
         table.add(scene.time(static_cast<long>(n)));
-        for (const auto& side : pair.sides)
-            for (const auto& bounds : side[n]) add(bounds);
-        if (!pair.distance.empty()) add(pair.distance[n]);
+        for (const auto& side : pair.rows[n].sides) std::for_each(side.begin(), side.end(), add);
+        if (pair.has_distance()) add(pair.rows[n].distance);
         table.end_row();
     }
     table.finish();
 }
 
-/// Writes what is proved, and returns the files with the sentences to print.
-std::pair<RunResult, Certificate> certify(const Scene& scene, const CertifyOptions& options,
-                                          const std::filesystem::path& out, ProgressReport& report) {
+/// Writes what is proved and reports it. Throws Error (exit 3) if that is not all.
+void certify(const Scene& scene, const CertifyOptions& options, const std::filesystem::path& out,
+             ProgressReport& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const auto& stop = watch_interrupts();
     const auto& name = scene.preset.name;
@@ -64,10 +63,10 @@ std::pair<RunResult, Certificate> certify(const Scene& scene, const CertifyOptio
     Transaction parts(out / name, "certify", "certificate", {inputs_of(options.presets, {scene}), options.force});
     parts.require(files[1]);
     const auto place = parts.file(files[0]);
-    auto proved = certificate_of(scene, options.radius, options.jobs > 0 ? options.jobs : cores(), stop,
-                                 [&](long done, long total) {
-                                     report({done, total});
-                                 });
+    const auto proved = certificate_of(scene, options.radius, options.jobs > 0 ? options.jobs : cores(), stop,
+                                       [&](long done, long total) {
+                                           report({done, total});
+                                       });
     write_rows(scene, proved.pair, place);
     parts.finished(files[0]);
     RunResult result;
@@ -83,10 +82,13 @@ std::pair<RunResult, Certificate> certify(const Scene& scene, const CertifyOptio
          {"time", {{"wall_s", result.wall_s}, {"cpu_s", seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start}}}});
     throw_if_set(stop);
     result.files = parts.publish();
-    return {std::move(result), std::move(proved)};
+    for (const auto& sentence : certificate_words(scene, proved)) report.note(sentence);
+    report.done(result);
+    if (proved.last() < scene.samples)
+        throw method_failed("{}: nothing is proved after {:.6g} s of {:g} s; the rows end there", name,
+                            scene.time(proved.last()), scene.time(scene.samples));
 }
 
-/// Throws Error (exit 3) if not all is proved, after writing the rest.
 void certify_all(const CertifyOptions& options) {
     const auto scenes = read_scenes(options);
     if (options.list_outputs) {
@@ -97,15 +99,9 @@ void certify_all(const CertifyOptions& options) {
     const auto style = progress_style(options.progress);
     ignore_sigpipe();
     for (const auto& scene : scenes) {
-        const auto& name = scene.preset.name;
-        ProgressReport report(style, name, "samples", to.streamed());
+        ProgressReport report(style, scene.preset.name, "samples", to.streamed());
         try {
-            const auto [result, proved] = certify(scene, options, to.folder(), report);
-            for (const auto& sentence : certificate_words(scene, proved)) report.note(sentence);
-            report.done(result);
-            if (proved.last() < scene.samples)
-                throw method_failed("{}: nothing is proved after {:.6g} s of {:g} s; the rows end there", name,
-                                    scene.time(proved.last()), scene.time(scene.samples));
+            certify(scene, options, to.folder(), report);
         } catch (...) {
             report.clear();
             throw;

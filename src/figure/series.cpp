@@ -56,35 +56,19 @@ double film_value(const PairState& state, double start_distance, const std::stri
     return seen.bobs[std::stoul(std::string(name.substr(digits))) - 1].*member->second;
 }
 
-/// Columns in place of a film's: the radius of the certified enclosure of side a, by the bits of its numbers.
-struct CertifiedColumn {
-    std::string_view name;
-    int bits;
-};
-constexpr std::array certified_columns{CertifiedColumn{"radius_double_rad", certified_bits[0]},
-                                       CertifiedColumn{"radius_quad_rad", certified_bits[1]},
-                                       CertifiedColumn{"radius_256_bits_rad", certified_bits[2]}};
+/// Columns in place of a film's: the radius of the certified enclosure of side a, with each of certified_bits.
+constexpr std::array<std::string_view, 3> certified_columns{"radius_double_rad", "radius_quad_rad",
+                                                            "radius_256_bits_rad"};
 
-const CertifiedColumn* find_certified(std::string_view column) {
-    const auto* found = std::ranges::find(certified_columns, column, &CertifiedColumn::name);
-    return found == certified_columns.end() ? nullptr : found;
-}
-
-/// The radii of side a at all samples, rad; NaN where nothing is proved.
-TrialNumbers certified_radii(const Scene& scene, int bits, const std::atomic<bool>& stop) {
-    auto spec = certified_spec(scene);
-    spec.sides.resize(1);
-    spec.bits = bits;
-    auto radii = certified_pair(spec, [&](long, long) { throw_if_set(stop); }).radius.front();
-    radii.resize(static_cast<std::size_t>(scene.samples) + 1, NAN);
-    return {radii.begin(), radii.end()};
+bool is_certified(std::string_view column) {
+    return std::ranges::count(certified_columns, column) > 0;
 }
 
 /// "θ₁, rad", "energy, J": the label of a column, without the side.
 std::string column_words(const std::string& column) {
     if (column == "distance") return "distance in state space, d";
     if (column == "log_ratio") return "ln(d/d₀)";
-    if (find_certified(column)) return "radius of the proved enclosure, rad";
+    if (is_certified(column)) return "radius of the proved enclosure, rad";
     using Words = std::array<std::string_view, 2>;
     constexpr std::array units{Words{"_rad_per_s", "rad/s"}, Words{"_m_per_s", "m/s"}, Words{"_rad", "rad"},
                                Words{"_J", "J"}, Words{"_m", "m"}};
@@ -127,8 +111,8 @@ public:
             const auto scene = make_scene(curve.pair);  // reports errors now
             samples_ = scene.samples;
             auto known = columns_of(scene);
-            for (const auto& column : certified_columns) known.emplace_back(column.name);
-            if (find_certified(*curve.film_column)) certified_spec(scene);
+            known.insert(known.end(), certified_columns.begin(), certified_columns.end());
+            if (is_certified(*curve.film_column)) check_provable(scene);
             if (std::ranges::count(known, *curve.film_column) == 0)
                 throw table.error("film_column", "must be one of {}; it is \"{}\"",
                                   fmt::join(known.begin() + 2, known.end(), ", "), *curve.film_column);
@@ -224,7 +208,8 @@ private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto scene = make_scene(pair_of(trial));
         const auto& shown = *curves_[trial % curves_.size()].film_column;
-        if (const auto* column = find_certified(shown)) return certified_radii(scene, column->bits, stop);
+        for (std::size_t i = 0; i < certified_columns.size(); ++i)
+            if (certified_columns[i] == shown) return certified_radii(scene, certified_bits[i], stop);
         PairRun run(scene);
         TrialNumbers values;
         double start = 0;

@@ -7,9 +7,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -20,30 +22,19 @@ using Wide = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<256, boost::multiprecision::digit_base_2, void, int>,
     boost::multiprecision::et_off>;
 
-/// The largest relative error of + − × / and √, rounded to nearest.
+/// The largest relative error of + − × / and √, rounded to nearest: 2⁻⁵³ for double.
 template <class Scalar>
-inline constexpr double unit_roundoff = 0x1p-53;
-template <>
-inline constexpr double unit_roundoff<Quad> = 0x1p-113;
-template <>
-inline constexpr double unit_roundoff<Wide> = 0x1p-256;
+inline constexpr double unit_roundoff = [] {
+    double unit = 1;
+    for (int i = 0; i < std::numeric_limits<Scalar>::digits; ++i) unit /= 2;
+    return unit;
+}();
 
 /// At least x ≥ 0 after up to six operations of doubles ≥ 0, whatever the rounding mode; also if some were lost to
 /// underflow.
 constexpr double widened(double x) {
     return x * (1 + 0x1p-50) + 0x1p-960;
 }
-
-/// A number ≥ 0 that is rounded up.
-struct UpperBound {
-    double value = 0;
-
-    UpperBound() = default;
-    UpperBound(double x) : value(x) {}
-    friend UpperBound operator+(const UpperBound& a, const UpperBound& b) { return widened(a.value + b.value); }
-    friend UpperBound operator*(const UpperBound& a, const UpperBound& b) { return widened(a.value * b.value); }
-    UpperBound& operator+=(const UpperBound& b) { return *this = *this + b; }
-};
 
 /// What a ball counts; all of it for a proof. Tests leave parts out to see that they are needed.
 struct Counted {
@@ -63,18 +54,21 @@ struct Ball {
     double radius = 0;
 
     Ball() = default;
-    Ball(int exact) : center(exact) {}
-    Ball(const Scalar& exact) requires(!std::is_same_v<Scalar, int>) : center(exact) {}
-    Ball(Scalar middle, double spread) : center(std::move(middle)), radius(spread) {}
+    Ball(int exact) : Ball(Scalar(exact), 0) {}
+    Ball(const Scalar& exact) requires(!std::is_same_v<Scalar, int>) : Ball(exact, 0) {}
+    Ball(Scalar middle, double spread) : center(std::move(middle)), radius(spread), center_size_(size_of(center)) {}
     /// In another precision.
     template <class Other>
     explicit Ball(const Ball<Other, Count>& other) requires(!std::is_same_v<Other, Scalar>)
-        : Ball(rounded(Scalar(other.center), other.radius)) {}
+        : Ball(Scalar(other.center), other.radius) {
+        const Other rest = other.center - Other(center);  // exact
+        if (rest != Other(0)) radius = widened(radius + Ball<Other, Count>(rest).center_size());
+    }
 
     /// At least |x| for every x in the ball.
-    double size() const { return widened(center_size() + radius); }
+    double size() const { return widened(center_size_ + radius); }
     /// At least the centre's size.
-    double center_size() const { return size_of(center); }
+    double center_size() const { return center_size_; }
     /// At most |x| for every x in the ball; ≤ 0 if it contains 0.
     double least() const {
         const double least = std::abs(static_cast<double>(center)) * (1 - 0x1p-50) - radius;
@@ -84,32 +78,42 @@ struct Ball {
     double low() const { return bound(-1); }
     double high() const { return bound(1); }
 
+    friend bool operator==(const Ball& a, const Ball& b) = default;
+    /// An order of balls, not of their numbers.
+    friend bool operator<(const Ball& a, const Ball& b) {
+        return std::tie(a.center, a.radius) < std::tie(b.center, b.radius);
+    }
     friend Ball operator+(const Ball& a, const Ball& b) { return rounded(a.center + b.center, a.radius + b.radius); }
     friend Ball operator-(const Ball& a, const Ball& b) { return rounded(a.center - b.center, a.radius + b.radius); }
     friend Ball operator-(const Ball& a) { return {Scalar(-a.center), a.radius}; }
     friend Ball operator*(const Ball& a, const Ball& b) {
         return rounded(a.center * b.center,
-                       a.center_size() * b.radius + b.center_size() * a.radius + a.radius * b.radius);
+                       a.center_size_ * b.radius + b.center_size_ * a.radius + a.radius * b.radius);
     }
     /// b must not contain 0; the radius is infinite or NaN otherwise.
     friend Ball operator/(const Ball& a, const Ball& b) {
         // |a/b − c| ≤ (ra + |c| rb) / (|b| − rb), with the quotient c of the centres
-        const Scalar ratio = a.center / b.center;
+        const Ball ratio(Scalar(a.center / b.center));
         const double least = b.least();
-        return rounded(ratio, least > 0 ? widened(a.radius + size_of(ratio) * b.radius) / least : INFINITY);
+        return rounded(ratio.center, least > 0 ? widened(a.radius + ratio.center_size_ * b.radius) / least : INFINITY);
     }
     Ball& operator+=(const Ball& b) { return *this = *this + b; }
     Ball& operator-=(const Ball& b) { return *this = *this - b; }
     Ball& operator*=(const Ball& b) { return *this = *this * b; }
-    /// Of a ball of numbers > 0.
+    /// Of the numbers ≥ 0 in a ball.
     friend Ball sqrt(const Ball& a) {
         using std::sqrt;
-        // |√x − r| = |x − r²| / (√x + r) ≤ |x − r²| / r
-        const Ball root(Scalar(sqrt(a.center))), error = (a - root * root) / root;
-        return {root.center, error.size()};
+        if (!(a.least() > 0)) return {Scalar(0), widened(std::sqrt(a.size()))};
+        // |√x − r| = |x − r²| / (√x + r)
+        const Ball root(Scalar(sqrt(a.center))), least(Scalar(std::sqrt(a.least()) * (1 - 0x1p-50)));
+        return {root.center, ((a - root * root) / (root + least)).size()};
     }
     /// With whatever is missing from a sum, at most `more` in size.
-    Ball widened_by(double more) const { return {center, widened(radius + more)}; }
+    Ball widened_by(double more) const {
+        Ball wider = *this;
+        wider.radius = widened(radius + more);
+        return wider;
+    }
 
 private:
     static double size_of(const Scalar& x) {
@@ -117,64 +121,50 @@ private:
         return widened(nearest < 0 ? -nearest : nearest);
     }
     static Ball rounded(Scalar center, double spread) {
-        const double rounding = Count::rounding * 2 * unit_roundoff<Scalar> * size_of(center);
-        return {std::move(center), widened(spread + rounding)};
+        Ball ball(std::move(center), 0);
+        const double rounding = Count::rounding * 2 * unit_roundoff<Scalar> * ball.center_size_;
+        ball.radius = widened(spread + rounding);
+        return ball;
     }
     double bound(int side) const {
-        const double nearest = static_cast<double>(center);
-        const Scalar rest = center - Scalar(nearest);
-        if (radius == 0 && rest == Scalar(0)) return nearest;
-        return nearest + side * widened(widened(radius + size_of(rest)) + 0x1p-52 * std::abs(nearest));
+        const Ball<double, Count> nearest(*this);
+        if (nearest.radius == 0) return nearest.center;
+        return nearest.center + side * widened(nearest.radius + 0x1p-52 * std::abs(nearest.center));
     }
+
+    double center_size_ = 0;
 };
 
 /// The ball of a decimal literal, "-90.003" or "6.674e-11". Beyond 33 digits it stands for all numbers that have the
 /// same quad.
-template <class B>
-B ball_of_decimal(std::string_view text) {
-    B digits(0), scale(1);
-    int exponent = 0, count = 0;
-    bool is_negative = false, after_point = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (c == '-') is_negative = true;
-        if (c == '.') after_point = true;
-        if (c >= '0' && c <= '9') {
-            digits = digits * B(10) + B(c - '0');
-            exponent -= after_point ? 1 : 0;
-            count += count > 0 || c != '0' ? 1 : 0;
-        }
-        if (c == 'e' || c == 'E') {
-            exponent += std::stoi(std::string(text.substr(i + 1)));
-            break;
-        }
+inline Ball<Wide> ball_of_decimal(std::string_view text) {
+    using B = Ball<Wide>;
+    const auto mantissa = text.substr(0, text.find_first_of("eE"));
+    int exponent = mantissa == text ? 0 : std::stoi(std::string(text.substr(mantissa.size() + 1))), count = 0;
+    B size(0);
+    bool is_after_point = false;
+    for (const char c : mantissa) {
+        if (c == '.') is_after_point = true;
+        if (c < '0' || c > '9') continue;
+        size = size * B(10) + B(c - '0');
+        exponent -= is_after_point ? 1 : 0;
+        count += count > 0 || c != '0' ? 1 : 0;
     }
     if (count == 0) return B(0);
+    B scale(1);
     for (int i = 0; i < std::abs(exponent); ++i) scale *= B(10);
-    const B size = exponent < 0 ? digits / scale : digits * scale;
+    size = exponent < 0 ? size / scale : size * scale;
     constexpr int exact_digits = 33;
-    const B value = count > exact_digits ? size.widened_by(size.size() * 4 * unit_roundoff<Quad>) : size;
-    return is_negative ? -value : value;
+    if (count > exact_digits) size = size.widened_by(size.size() * 4 * unit_roundoff<Quad>);
+    return text.front() == '-' ? -size : size;
 }
 
-/// π = 16 atan(1/5) − 4 atan(1/239), Machin 1706
-template <class Target>
-const Target& pi_ball() {
-    static const Target pi = [] {
-        using B = typename Target::InWide;
-        const auto atan_of_inverse = [](int n) {
-            // Σ ±1 / ((2k + 1) n^(2k+1)); alternating, so the rest is below its first term
-            B power = B(1) / B(n), sum(0);
-            for (int k = 0;; ++k) {
-                const B term = power / B(2 * k + 1);
-                if (term.size() < 1e-3 * B::roundoff) return sum.widened_by(term.size());
-                sum += k % 2 == 0 ? term : -term;
-                power = power / B(n * n);
-            }
-        };
-        return Target(B(16) * atan_of_inverse(5) - B(4) * atan_of_inverse(239));
-    }();
-    return pi;
+/// π, from its first 80 digits.
+template <class B>
+B pi_ball() {
+    static const typename B::InWide pi(
+        Wide("3.1415926535897932384626433832795028841971693993751058209749445923078164062862089"), 1e-76);
+    return B(pi);
 }
 
 template <class Scalar, class Count>
@@ -203,16 +193,3 @@ struct SinCos<Ball<Scalar, Count>> {
 };
 
 }  // namespace doppel
-
-template <class Scalar, class Count>
-struct Eigen::NumTraits<doppel::Ball<Scalar, Count>> : Eigen::GenericNumTraits<doppel::Ball<Scalar, Count>> {
-    enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 1,
-        RequireInitialization = 1,
-        ReadCost = 2,
-        AddCost = 10,
-        MulCost = 20
-    };
-};

@@ -17,6 +17,17 @@
 
 namespace doppel {
 
+/// Σ a b
+template <class Scalar>
+class SumOfProducts {
+public:
+    void add(const Scalar& a, const Scalar& b) { sum_ += a * b; }
+    const Scalar& value() const { return sum_; }
+
+private:
+    Scalar sum_ = Scalar(0);
+};
+
 /// The operations that computed a function at one point, in order and without repetitions. They give the Taylor series
 /// of its results from those of its arguments, order by order. Comparisons are recorded as well: the recording is valid
 /// until the difference of the compared numbers changes its sign.
@@ -80,6 +91,7 @@ public:
         Scalar constant = Scalar(0);
     };
 
+    const std::vector<Node>& nodes() const { return nodes_; }
     /// Adds the node of an operation, or finds an earlier equal one.
     int add(Operation operation, int a = -1, int b = -1, const Scalar& constant = Scalar(0)) {
         const auto next = static_cast<int>(nodes_.size());
@@ -135,9 +147,9 @@ private:
     /// Σ_{j=first}^{last} a_j b_{k−j}
     Scalar convolution(int a, int b, int k, int first, int last) const {
         const Scalar *x = series(a), *y = series(b);
-        Scalar sum(0);
-        for (int j = first; j <= last; ++j) sum += x[j] * y[k - j];
-        return sum;
+        SumOfProducts<Scalar> sum;
+        for (int j = first; j <= last; ++j) sum.add(x[j], y[k - j]);
+        return sum.value();
     }
     /// Σ_{j=first}^{k−first} a_j a_{k−j}
     Scalar square(int a, int k, int first) const {

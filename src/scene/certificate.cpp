@@ -1,8 +1,8 @@
 #include "scene/certificate.hpp"
 
 #include "analysis/difference.hpp"
+#include "analysis/enclosure.hpp"
 #include "base/error.hpp"
-#include "numeric/ball.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,78 +13,71 @@
 namespace doppel {
 namespace {
 
-std::array<std::string, 2> decimals(const std::vector<Quad>& numbers) {
-    return {text_of(numbers[0]), text_of(numbers[1])};
+Ball<Wide> decimal(const Quad& number) {
+    return ball_of_decimal(text_of(number));
 }
-
-DecimalPendulum decimals_of(const SideSpec& spec) {
-    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
-    if (!spec.particles.empty() || spec.links() != 2 || !spec.physical.is_none() || !spec.track.is_none() ||
-        !spec.constraints.empty() || !std::all_of(spec.forces.begin(), spec.forces.end(), is_droplet))
-        throw bad_input(
-            "a proof needs two ideal links: no friction, drive, track or further constraint, and no force "
-            "but gravity and droplets");
-    DecimalPendulum all{decimals(spec.mass_kg), decimals(spec.length_m), decimals(spec.angle_deg),
-                        decimals(spec.omega_deg_per_s), text_of(spec.gravity_m_per_s2)};
-    for (const auto& force : spec.forces)
-        all.droplets.push_back({text_of(force.constant_m3_per_kg_s2.value_or(newton_constant<Quad>())),
-                                text_of(force.mass_kg),
-                                {text_of((*force.position_m)[0]), text_of((*force.position_m)[1])}});
+std::vector<Ball<Wide>> decimals(const std::vector<Quad>& numbers, const Ball<Wide>& unit = 1) {
+    std::vector<Ball<Wide>> all;
+    for (const auto& x : numbers) all.push_back(x == 0 ? Ball<Wide>(0) : decimal(x) * unit);
     return all;
 }
 
-/// Follows the run of a side by its own method.
-class RunFollower {
-public:
-    explicit RunFollower(double radius) : radius_(radius) {}
+EnclosedSystem system_of(const SideSpec& spec) {
+    const auto degree = pi_ball<Ball<Wide>>() / Ball<Wide>(180);
+    EnclosedSystem all{{decimals(spec.mass_kg), decimals(spec.length_m), decimals(spec.angle_deg, degree),
+                        decimals(spec.omega_deg_per_s, degree), decimal(spec.gravity_m_per_s2)}};
+    for (const auto& force : spec.forces)
+        all.droplets.push_back({{decimal((*force.position_m)[0]), decimal((*force.position_m)[1])},
+                                decimal(force.mass_kg),
+                                decimal(force.constant_m3_per_kg_s2.value_or(newton_constant<Quad>()))});
+    return all;
+}
 
-    void add(double time, const Observation& seen, const std::array<Interval, 4>& proved) {
-        Interval error;  // of the angle with the largest one
-        for (std::size_t i = 0; i < 2; ++i) {
-            const double angle = seen.bobs[i].theta, rounding = 0x1p-52 * std::abs(angle);
-            const auto [low, high] = proved[i];
-            error.low = std::max({error.low, low - angle - rounding, angle - high - rounding});
-            error.high = std::max({error.high, high - angle + rounding, angle - low + rounding});
-        }
-        if (is_within_ && widened(error.high) <= radius_)
-            result_.until_s = time;
-        else
-            is_within_ = false;
-        if (!result_.beyond_s && error.low * (1 - 0x1p-50) > radius_) result_.beyond_s = time;
+std::vector<EnclosedSystem> systems_of(const Scene& scene) {
+    check_provable(scene);
+    std::vector<EnclosedSystem> all{system_of(scene.preset.a)};
+    if (!scene.is_single()) all.push_back(system_of(scene.preset.b));
+    return all;
+}
+
+/// Bounds of the error of a run, of the angle with the largest one.
+Interval error_of(const Observation& seen, const std::array<Interval, 4>& proved) {
+    Interval error;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const double angle = seen.bobs[i].theta, rounding = 0x1p-52 * std::abs(angle);
+        const auto [low, high] = proved[i];
+        error.low = std::max({error.low, low - angle - rounding, angle - high - rounding});
+        error.high = std::max({error.high, high - angle + rounding, angle - low + rounding});
     }
-    const Certificate::OfRun& result() const { return result_; }
+    return {error.low * (1 - 0x1p-50), widened(error.high)};
+}
 
-private:
-    double radius_;
-    bool is_within_ = true;
-    Certificate::OfRun result_;
-};
-
-std::vector<Certificate::OfRun> followed_runs(const Scene& scene, const CertifiedPair& pair, double radius,
-                                              const std::atomic<bool>& stop) {
-    std::vector<RunFollower> sides(pair.sides.size(), RunFollower(radius));
+void follow_runs(const Scene& scene, Certificate& proved, const std::atomic<bool>& stop) {
+    proved.runs.resize(scene.letters().size());
+    std::vector<bool> has_left(proved.runs.size());
     PairRun run(scene);
     try {
-        for (std::size_t n = 0; n < pair.samples(); ++n) {
+        for (const auto& row : proved.pair.rows) {
             const auto state = run.next(stop);
-            const double time = scene.time(state.sample);
-            for (std::size_t i = 0; i < sides.size(); ++i)
-                sides[i].add(time, i == 0 ? state.a : state.b, pair.sides[i][n]);
+            for (std::size_t i = 0; i < proved.runs.size(); ++i) {
+                const auto error = error_of(i == 0 ? state.a : state.b, row.sides[i]);
+                auto& [until, beyond] = proved.runs[i];
+                has_left[i] = has_left[i] || !(error.high <= proved.radius);
+                if (!has_left[i]) until = scene.time(state.sample);
+                if (!beyond && error.low > proved.radius) beyond = scene.time(state.sample);
+            }
         }
     } catch (const RunFailure&) {  // the run ends there
     }
-    std::vector<Certificate::OfRun> all;
-    for (const auto& side : sides) all.push_back(side.result());
-    return all;
 }
 
 /// A pair of larger distances diverges no later.
-std::optional<Interval> divergence_of(const Scene& scene, const std::vector<Interval>& distance) {
+std::optional<Interval> divergence_of(const Scene& scene, const CertifiedPair& pair) {
     Divergence earliest, latest;
-    for (std::size_t n = 0; n < distance.size(); ++n) {
+    for (std::size_t n = 0; n < pair.rows.size(); ++n) {
         const double time = scene.time(static_cast<long>(n));
-        earliest.add(time, distance[n].high);
-        latest.add(time, distance[n].low);
+        earliest.add(time, pair.rows[n].distance.high);
+        latest.add(time, pair.rows[n].distance.low);
     }
     if (!earliest.since() || !latest.since()) return std::nullopt;
     return Interval{*earliest.since(), *latest.since()};
@@ -94,38 +87,37 @@ std::string bits_words(int bits) {
     return bits == certified_bits[0] ? "double" : bits == certified_bits[1] ? "quad" : fmt::format("{} bits", bits);
 }
 
-double largest_radius(const CertifiedPair& pair) {
-    double largest = 0;
-    for (const auto& side : pair.radius) largest = std::max(largest, side.back());
-    return largest;
-}
-
 }  // namespace
 
-CertifiedPairSpec certified_spec(const Scene& scene) {
-    CertifiedPairSpec spec;
+void check_provable(const Scene& scene) {
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
     for (const char letter : scene.letters())
-        spec.sides.push_back(for_side(scene.preset, letter,
-                                      [&] { return decimals_of(letter == 'a' ? scene.preset.a : scene.preset.b); }));
-    spec.interval = scene.a.motion.sample_interval;
-    spec.samples = scene.samples;
-    return spec;
+        for_side(scene.preset, letter, [&] {
+            const auto& side = letter == 'a' ? scene.preset.a : scene.preset.b;
+            if (!side.particles.empty() || side.links() != 2 || !side.physical.is_none() || !side.track.is_none() ||
+                !side.constraints.empty() || !std::all_of(side.forces.begin(), side.forces.end(), is_droplet))
+                throw bad_input(
+                    "a proof needs two ideal links: no friction, drive, track or further constraint, and no force "
+                    "but gravity and droplets");
+        });
 }
 
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
-                           const CertifiedReport& report) {
-    auto spec = certified_spec(scene);
-    spec.jobs = jobs;
-    Certificate all{certified_pair(spec,
-                                   [&](long done, long total) {
-                                       throw_if_set(stop);
-                                       if (report) report(done, total);
-                                   }),
-                    radius,
-                    {}};
-    all.runs = followed_runs(scene, all.pair, radius, stop);
-    all.diverged_s = divergence_of(scene, all.pair.distance);
+                           const std::function<void(long, long)>& report) {
+    const CertifiedPairSpec spec{
+        .interval = scene.a.motion.sample_interval, .samples = scene.samples, .jobs = jobs, .report = report};
+    Certificate all{certified_pair(systems_of(scene), spec, stop), radius};
+    follow_runs(scene, all, stop);
+    all.diverged_s = divergence_of(scene, all.pair);
     return all;
+}
+
+std::vector<double> certified_radii(const Scene& scene, int bits, const std::atomic<bool>& stop) {
+    const CertifiedPairSpec spec{.interval = scene.a.motion.sample_interval, .samples = scene.samples, .bits = bits};
+    std::vector<double> radii;
+    for (const auto& row : certified_pair({systems_of(scene).front()}, spec, stop).rows) radii.push_back(row.radius);
+    radii.resize(static_cast<std::size_t>(scene.samples) + 1, NAN);
+    return radii;
 }
 
 double Certificate::run_until_s() const {
@@ -137,7 +129,7 @@ double Certificate::run_until_s() const {
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved) {
     std::vector<std::string> all{fmt::format("the true motion is proved until {:.6g} s in {}: angles within {:.1e} rad",
                                              scene.time(proved.last()), bits_words(proved.pair.bits),
-                                             largest_radius(proved.pair))};
+                                             proved.pair.rows.back().radius)};
     for (std::size_t i = 0; i < proved.runs.size(); ++i) {
         const auto& run = proved.runs[i];
         auto words = run.until_s ? fmt::format("proved within {:g} rad of the true motion until {:.6g} s",
@@ -146,10 +138,10 @@ std::vector<std::string> certificate_words(const Scene& scene, const Certificate
         if (run.beyond_s) words += fmt::format(", and farther from it at {:.6g} s", *run.beyond_s);
         all.push_back(fmt::format("side {}: its run is {}", scene.letters()[i], words));
     }
-    if (!proved.pair.distance.empty())
+    if (proved.pair.has_distance())
         all.push_back(fmt::format("the true distance at {:.6g} s is between {:.10g} and {:.10g}",
-                                  scene.time(proved.last()), proved.pair.distance.back().low,
-                                  proved.pair.distance.back().high));
+                                  scene.time(proved.last()), proved.pair.rows.back().distance.low,
+                                  proved.pair.rows.back().distance.high));
     if (const auto& time = proved.diverged_s)
         all.push_back(fmt::format("the true motions diverge at {:.6g} s{}", time->low,
                                   time->low == time->high ? "" : fmt::format(" to {:.6g} s", time->high)));
@@ -162,12 +154,12 @@ Json certificate_json(const Scene& scene, const Certificate& proved) {
     Json json{{"bits", proved.pair.bits},
               {"until_s", scene.time(proved.last())},
               {"to_the_end", proved.last() == scene.samples},
-              {"largest_radius_rad", largest_radius(proved.pair)},
+              {"largest_radius_rad", proved.pair.rows.back().radius},
               {"run_radius_rad", proved.radius}};
     for (std::size_t i = 0; i < proved.runs.size(); ++i)
         json[std::string(1, scene.letters()[i])] = {{"run_proved_until_s", number(proved.runs[i].until_s)},
                                                     {"run_proved_beyond_s", number(proved.runs[i].beyond_s)}};
-    json["distance"] = proved.pair.distance.empty() ? Json(nullptr) : interval(proved.pair.distance.back());
+    json["distance"] = proved.pair.has_distance() ? interval(proved.pair.rows.back().distance) : Json(nullptr);
     json["diverged_s"] = proved.diverged_s ? interval(*proved.diverged_s) : Json(nullptr);
     return json;
 }

@@ -5,6 +5,7 @@
 #include "scene/scene.hpp"
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,11 +22,11 @@ struct Certificate {
 
     CertifiedPair pair;
     double radius;                         // rad
-    std::vector<OfRun> runs;               // of each side
+    std::vector<OfRun> runs{};             // of each side
     std::optional<Interval> diverged_s{};  // bounds of the true time of divergence (analysis/difference.hpp), s
 
     /// The last sample that is proved.
-    long last() const { return static_cast<long>(pair.samples()) - 1; }
+    long last() const { return static_cast<long>(pair.rows.size()) - 1; }
     /// The time until which the runs of all sides are, s.
     double run_until_s() const;
 };
@@ -33,12 +34,15 @@ struct Certificate {
 /// By which a run has left the true motion, rad.
 inline constexpr double usual_run_radius = 0.5;
 
-/// What to enclose. Throws Error (exit 2) unless the sides are two ideal links, with or without droplets.
-CertifiedPairSpec certified_spec(const Scene& scene);
+/// Throws Error (exit 2) unless the sides are two ideal links, with or without droplets.
+void check_provable(const Scene& scene);
 
-/// Throws Error: as certified_spec(); exit 130 soon after `stop` is set.
+/// Throws Error: as check_provable(); exit 130 soon after `stop` is set. `report`: samples done and to do.
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
-                           const CertifiedReport& report = {});
+                           const std::function<void(long, long)>& report = {});
+
+/// The radii of side a at all samples with so many bits, rad; NaN where nothing is proved.
+std::vector<double> certified_radii(const Scene& scene, int bits, const std::atomic<bool>& stop);
 
 /// The results in sentences.
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved);

@@ -15,22 +15,33 @@ namespace enclosure_test {
 const std::atomic<bool> never = false;
 const auto unwatched = [](long) {};
 
-const DecimalPendulum right_angles{{"1", "1"}, {"1", "1"}, {"90", "90"}, {"0", "0"}, "9.8"};
-const DecimalPendulum uneven{{"0.7", "1.3"}, {"1.1", "0.6"}, {"120", "-35"}, {"40", "-90"}, "9.81"};
-
-MotionSpec motion_of(const DecimalPendulum& p) {
-    const Quad degree = pi_of<Quad>() / 180;
-    Pendulum<Quad> chain;
-    chain.mass = chain.length = chain.angle = chain.rate = {};
-    chain.gravity = parse_quad(p.gravity);
-    for (std::size_t i = 0; i < 2; ++i) {
-        chain.mass.push_back(parse_quad(p.mass[i]));
-        chain.length.push_back(parse_quad(p.length[i]));
-        chain.angle.push_back(parse_quad(p.angle_deg[i]) * degree);
-        chain.rate.push_back(parse_quad(p.omega_deg_per_s[i]) * degree);
+/// Two links by their decimals; angles in degrees.
+EnclosedSystem system_of(const std::array<const char*, 8>& links, const char* gravity) {
+    const auto degree = pi_ball<Ball<Wide>>() / Ball<Wide>(180);
+    std::array<Ball<Wide>, 8> x;
+    for (std::size_t i = 0; i < 8; ++i) {
+        x[i] = ball_of_decimal(links[i]);
+        if (i >= 4 && x[i].radius > 0) x[i] *= degree;
     }
+    return {{{x[0], x[1]}, {x[2], x[3]}, {x[4], x[5]}, {x[6], x[7]}, ball_of_decimal(gravity)}};
+}
+const auto right_angles = system_of({"1", "1", "1", "1", "90", "90", "0", "0"}, "9.8");
+const auto uneven = system_of({"0.7", "1.3", "1.1", "0.6", "120", "-35", "40", "-90"}, "9.81");
+
+/// The start: θ1, θ2, ω1, ω2.
+std::array<Ball<Wide>*, 4> start_of(EnclosedSystem& p) {
+    return {&p.chain.angle[0], &p.chain.angle[1], &p.chain.rate[0], &p.chain.rate[1]};
+}
+
+MotionSpec motion_of(const EnclosedSystem& p) {
+    const auto quads = [](const std::vector<Ball<Wide>>& numbers) {
+        std::vector<Quad> all;
+        for (const auto& x : numbers) all.push_back(Quad(x.center));
+        return all;
+    };
     MotionSpec spec;
-    spec.chain = chain;
+    spec.chain = Pendulum<Quad>{quads(p.chain.mass), quads(p.chain.length), quads(p.chain.angle), quads(p.chain.rate),
+                                Quad(p.chain.gravity.center)};
     spec.method = "taylor";
     spec.precision = Precision::in_quad;
     spec.tolerance = parse_quad("1e-30");
@@ -46,7 +57,7 @@ Numbers numbers_of(const Motion& motion) {
 }
 
 /// The states of a motion in quad by the reference's method at samples 0, 1 … from a start moved by `shift`.
-std::vector<Numbers> reference(const DecimalPendulum& p, long samples, const std::array<double, 4>& shift = {}) {
+std::vector<Numbers> reference(const EnclosedSystem& p, long samples, const std::array<double, 4>& shift = {}) {
     auto spec = motion_of(p);
     for (std::size_t i = 0; i < 2; ++i) {
         spec.chain->angle[i] += shift[i];
@@ -73,13 +84,13 @@ bool all_inside(const std::vector<EnclosedState<Scalar>>& sets, const std::vecto
 }
 
 template <class Scalar>
-std::vector<EnclosedState<Scalar>> enclosed(const DecimalPendulum& p, long samples, double radius = 0,
+std::vector<EnclosedState<Scalar>> enclosed(const EnclosedSystem& p, long samples, double radius = 0,
                                             const EnclosureSpec& other = {}) {
     auto spec = other;
     spec.samples = samples;
-    auto start = enclosed_start<Scalar>(p);
-    for (auto& x : start) x.radius += radius;
-    return enclosures<Scalar>(p, start, spec, unwatched);
+    auto wide = p;
+    for (auto* x : start_of(wide)) x->radius += radius;
+    return enclosures<Scalar>(wide, spec, unwatched);
 }
 
 template <class Scalar>
@@ -147,7 +158,7 @@ TEST(Enclosure, ContainsAThousandRandomStartsOfAnInterval) {
 
 TEST(Enclosure, ContainsClosedForms) {
     // without gravity and at the same angle and rate, both links turn as one rod
-    const DecimalPendulum rod{{"1", "2"}, {"1", "0.5"}, {"30", "30"}, {"120", "120"}, "0"};
+    const auto rod = system_of({"1", "2", "1", "0.5", "30", "30", "120", "120"}, "0");
     const auto turning = enclosed<Quad>(rod, 120);
     ASSERT_EQ(turning.size(), 121u);
     const Quad degree = pi_of<Quad>() / 180;
@@ -157,8 +168,8 @@ TEST(Enclosure, ContainsClosedForms) {
             EXPECT_LE(abs(Quad(turning[n][i].center - angle)), Quad(turning[n][i].radius) + Quad(1e-32));
     }
     // a normal mode of 1e-12 degrees: the terms of third order are below 1e-40
-    const DecimalPendulum mode{
-        {"1", "1"}, {"1", "1"}, {"1e-12", "1.41421356237309504880168872420969808e-12"}, {"0", "0"}, "9.8"};
+    const auto mode =
+        system_of({"1", "1", "1", "1", "1e-12", "1.41421356237309504880168872420969808e-12", "0", "0"}, "9.8");
     const auto swinging = enclosed<Quad>(mode, 120);
     ASSERT_EQ(swinging.size(), 121u);
     const Quad rate = sqrt(Quad(parse_quad("9.8") * (2 - sqrt(Quad(2)))));
@@ -170,23 +181,22 @@ TEST(Enclosure, ContainsClosedForms) {
 }
 
 TEST(Enclosure, AnEquilibriumStaysWhereItIs) {
-    DecimalPendulum hanging = right_angles;
-    hanging.angle_deg = {"0", "0"};
+    auto hanging = right_angles;
+    hanging.chain.angle = {0, 0};
     for (const auto& state : enclosed<double>(hanging, 120))
         for (const auto& x : state) EXPECT_LT(std::abs(x.center) + x.radius, 1e-200);
 }
 
 TEST(Enclosure, ReversedTimeReturnsToASetThatContainsTheStart) {
-    const auto sets = enclosed<Quad>(uneven, 240);
-    auto back = sets.back();
-    for (const std::size_t i : {2u, 3u}) back[i].center = -back[i].center;
-    EnclosureSpec spec;
-    spec.samples = 240;
-    const auto end = enclosures<Quad>(uneven, back, spec, unwatched).back();
-    const auto start = enclosed_start<Quad>(uneven);
+    auto system = uneven;
+    const auto sets = enclosed<Quad>(system, 240);
+    auto back = uneven;
+    const auto there = start_of(back), start = start_of(system);
+    for (std::size_t i = 0; i < 4; ++i) *there[i] = Ball<Wide>(i < 2 ? sets.back()[i] : -sets.back()[i]);
+    const auto end = enclosed<Quad>(back, 240).back();
     for (std::size_t i = 0; i < 4; ++i) {
-        const Quad sign = i < 2 ? 1 : -1;
-        EXPECT_LE(abs(Quad(sign * end[i].center - start[i].center)), Quad(end[i].radius));
+        const Wide sign = i < 2 ? 1 : -1;
+        EXPECT_LE(abs(Wide(sign * Wide(end[i].center) - start[i]->center)), Wide(end[i].radius));
         EXPECT_LT(end[i].radius, 1e-26);
     }
 }
@@ -236,7 +246,8 @@ TEST(Enclosure, SamplesFarApartAndCloseTogetherAreTheSameMotion) {
 TEST(Enclosure, ADropletAttracts) {
     // near and heavy, against the same as a mechanism in quad
     auto p = uneven;
-    p.droplets = {{"1", "3", {"2.5", "0.5"}}, {"6.674e-11", "0.000034", {"1609", "0"}}};
+    p.droplets = {{{ball_of_decimal("2.5"), ball_of_decimal("0.5")}, 3, 1},
+                  {{1609, 0}, ball_of_decimal("0.000034"), ball_of_decimal("6.674e-11")}};
     auto spec = motion_of(p);
     spec.model = Model::mechanism;
     spec.parts = parts_of(*spec.chain);
@@ -269,17 +280,11 @@ bool corners_inside(const EnclosureCount& counted, double radius) {
 /// Whether the motion from doubles, which are no interval, stays inside.
 bool exact_start_inside(const EnclosureCount& counted, double tolerance) {
     EnclosureSpec spec;
-    spec.samples = 240;
     spec.counted = counted;
     spec.tolerance = tolerance;
-    auto start = enclosed_start<double>(uneven);
-    const auto decimals = reference(uneven, 0).front();
-    std::array<double, 4> shift{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        start[i].radius = 0;
-        shift[i] = static_cast<double>(Quad(start[i].center - decimals[i]));
-    }
-    return all_inside(enclosures<double>(uneven, start, spec, unwatched), reference(uneven, spec.samples, shift));
+    auto system = uneven;
+    for (auto* x : start_of(system)) *x = Ball<Wide>(Wide(static_cast<double>(x->center)));
+    return all_inside(enclosed<double>(system, 240, 0, spec), reference(system, 240));
 }
 
 TEST(Enclosure, EveryPartThatIsCountedIsNeeded) {

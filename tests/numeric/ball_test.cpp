@@ -42,6 +42,7 @@ int misses(int count) {
         all += contains(a * b, u * v) ? 0 : 1;
         all += contains(a / b, u / v) ? 0 : 1;
         all += contains(sqrt(a), Wide(sqrt(u))) ? 0 : 1;
+        all += contains(sqrt(a - a), Wide(sqrt(Wide(abs(u - Wide(x)))))) ? 0 : 1;
         all += contains(a / (a * b + b) - sqrt(b), Wide(u / (u * v + v) - sqrt(v))) ? 0 : 1;
     }
     return all;
@@ -70,7 +71,7 @@ TEST(Ball, DivisionByABallWithZeroIsUnbounded) {
 
 TEST(Ball, BoundsAreDoublesOnBothSides) {
     for (const char* text : {"0.1", "-0.1", "90.003", "1e-30", "-12345.678901234567890123"}) {
-        const auto ball = ball_of_decimal<Ball<Wide>>(text);
+        const auto ball = ball_of_decimal(text);
         const Wide exact(text);
         EXPECT_LE(Wide(ball.low()), exact) << text;
         EXPECT_GE(Wide(ball.high()), exact) << text;
@@ -82,24 +83,44 @@ TEST(Ball, BoundsAreDoublesOnBothSides) {
 }
 
 TEST(Ball, ADecimalIsItsFractionNotTheNearestDouble) {
-    const auto g = ball_of_decimal<Ball<Wide>>("9.8");
+    const auto g = ball_of_decimal("9.8");
     EXPECT_TRUE(contains(g, Wide(49) / 5));
     EXPECT_FALSE(contains(g, Wide(9.8)));
-    EXPECT_TRUE(contains(ball_of_decimal<Ball<double>>("9.8"), Wide(49) / 5));
-    EXPECT_TRUE(contains(ball_of_decimal<Ball<Wide>>("6.674e-11"), Wide("6.674e-11")));
-    EXPECT_TRUE(contains(ball_of_decimal<Ball<Wide>>("-2.5e2"), Wide(-250)));
+    EXPECT_TRUE(contains(Ball<double>(ball_of_decimal("9.8")), Wide(49) / 5));
+    EXPECT_TRUE(contains(ball_of_decimal("6.674e-11"), Wide("6.674e-11")));
+    EXPECT_TRUE(contains(ball_of_decimal("-2.5e2"), Wide(-250)));
+    // in doubles, the ball of an exact number is that number
+    EXPECT_EQ(Ball<double>(Ball<Wide>(Wide(1.5))).radius, 0);
+    EXPECT_FALSE(contains(Ball<double>(ball_of_decimal("9.8")), Wide(9.8) + Wide(2e-15)));
     // of more digits than quad has, all numbers that are the same quad
-    EXPECT_GT(ball_of_decimal<Ball<Wide>>("0.33333333333333333333333333333333333").radius, 1e-35);
+    EXPECT_GT(ball_of_decimal("0.33333333333333333333333333333333333").radius, 1e-35);
 }
 
-TEST(Ball, PiAndTheSineAreThoseOfOthers) {
-    // 100 digits of π, which every table has
-    const Wide pi(
-        "3.1415926535897932384626433832795028841971693993751058209749445923078164062862089986280348253421170680");
-    EXPECT_TRUE(contains(pi_ball<Ball<double>>(), pi));
-    EXPECT_TRUE(contains(pi_ball<Ball<Quad>>(), pi));
-    EXPECT_TRUE(contains(pi_ball<Ball<Wide>>(), pi));
-    EXPECT_LT(pi_ball<Ball<Wide>>().radius, 1e-73);
+namespace mp = boost::multiprecision;
+using Wider = Ball<mp::number<mp::cpp_bin_float<320, mp::digit_base_2, void, int>, mp::et_off>>;
+
+/// Σ ±1 / ((2k + 1) n^(2k + 1)); alternating, so the rest is below its first term.
+Wider atan_of_inverse(int n) {
+    Wider power = Wider(1) / Wider(n), sum(0);
+    for (int k = 0;; ++k) {
+        const Wider term = power / Wider(2 * k + 1);
+        if (term.size() < 1e-3 * Wider::roundoff) return sum.widened_by(term.size());
+        sum += k % 2 == 0 ? term : -term;
+        power = power / Wider(n * n);
+    }
+}
+
+TEST(Ball, PiIsThatOfMachin) {
+    // π = 16 atan(1/5) − 4 atan(1/239), Machin 1706
+    const auto pi = Wider(16) * atan_of_inverse(5) - Wider(4) * atan_of_inverse(239);
+    const auto is_inside = [&](const auto& ball) {
+        const Wider center(decltype(Wider::center)(ball.center));
+        return (pi - center).size() <= ball.radius;
+    };
+    EXPECT_TRUE(is_inside(pi_ball<Ball<double>>()));
+    EXPECT_TRUE(is_inside(pi_ball<Ball<Quad>>()));
+    EXPECT_TRUE(is_inside(pi_ball<Ball<Wide>>()));
+    EXPECT_LT(pi_ball<Ball<Wide>>().radius, 1e-75);
 }
 
 /// The number of wrong sines and cosines, of 2 · 600.
