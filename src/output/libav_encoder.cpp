@@ -23,8 +23,6 @@ extern "C" {
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
-#include <map>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -80,28 +78,38 @@ bool has_chroma(AVPixelFormat pixels) {
     return !(about.flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL));
 }
 
-FilmPacket packet_of(const AVPacket& packet) {
-    const auto text = [](const std::uint8_t* bytes, std::size_t size) {
-        return std::string(reinterpret_cast<const char*>(bytes), size);
-    };
-    FilmPacket part{packet.pts, packet.dts, packet.flags, text(packet.data, static_cast<std::size_t>(packet.size))};
-    for (int i = 0; i < packet.side_data_elems; ++i) {
-        const auto& side = packet.side_data[i];
-        part.side_data.emplace_back(static_cast<int>(side.type), text(side.data, side.size));
-    }
-    return part;
+void set_side_data(AVPacket& packet, AVPacketSideDataType type, std::string_view bytes) {
+    auto* place = av_packet_new_side_data(&packet, type, bytes.size());
+    if (!place) throw std::bad_alloc();
+    std::memcpy(place, bytes.data(), bytes.size());
 }
 
-void fill(AVPacket& packet, const FilmPacket& part) {
-    if (av_new_packet(&packet, static_cast<int>(part.bytes.size())) < 0) throw std::bad_alloc();
-    std::memcpy(packet.data, part.bytes.data(), part.bytes.size());
-    packet.pts = part.pts;
-    packet.dts = part.dts;
-    packet.flags = part.flags;
-    for (const auto& [type, bytes] : part.side_data) {
-        auto* place = av_packet_new_side_data(&packet, static_cast<AVPacketSideDataType>(type), bytes.size());
-        if (!place) throw std::bad_alloc();
-        std::memcpy(place, bytes.data(), bytes.size());
+/// Writes a packet with all that the muxer needs.
+void write_block(const AVPacket& packet, BlockWriter& part) {
+    const auto text = [](const std::uint8_t* bytes, std::size_t size) {
+        return std::string_view(reinterpret_cast<const char*>(bytes), size);
+    };
+    part(packet.pts, packet.dts, packet.flags, text(packet.data, static_cast<std::size_t>(packet.size)));
+    part(packet.side_data_elems);
+    for (int i = 0; i < packet.side_data_elems; ++i)
+        part(packet.side_data[i].type, text(packet.side_data[i].data, packet.side_data[i].size));
+    part.end_block();
+}
+
+void read_block(BlockReader& part, AVPacket& packet) {
+    std::int64_t pts = 0, dts = 0;
+    int flags = 0, side_data = 0;
+    std::string bytes;
+    part(pts, dts, flags, bytes, side_data);
+    if (av_new_packet(&packet, static_cast<int>(bytes.size())) < 0) throw std::bad_alloc();
+    std::memcpy(packet.data, bytes.data(), bytes.size());
+    packet.pts = pts;
+    packet.dts = dts;
+    packet.flags = flags;
+    for (int i = 0; i < side_data; ++i) {
+        AVPacketSideDataType type{};
+        part(type, bytes);
+        set_side_data(packet, type, bytes);
     }
 }
 
@@ -271,7 +279,7 @@ void Encoder::write_packets() {
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "cannot be encoded");
         if (part_)
-            part_->add(packet_of(*packet_));
+            write_block(*packet_, *part_);
         else
             write_packet();
         av_packet_unref(packet_.get());
@@ -288,20 +296,24 @@ void Encoder::write_packet() {
 }
 
 /// The header needs an open encoder. It gets a frame, as some encoders need one, and is closed.
-void Encoder::add(const FilmPacket& packet) {
-    if (!stream_) {
-        codec_ = open_encoder(encoding_, path_);
-        frame_->pts = 0;
-        check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
-        write_header();
-        check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
-        while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) av_packet_unref(packet_.get());
-        codec_.reset();
+void Encoder::open_without_frames() {
+    codec_ = open_encoder(encoding_, path_);
+    frame_->pts = 0;
+    check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
+    write_header();
+    check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
+    while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) av_packet_unref(packet_.get());
+    codec_.reset();
+}
+
+void Encoder::add(BlockReader& part) {
+    if (!stream_) open_without_frames();
+    while (part.next()) {
+        throw_if_set(stop_);
+        read_block(part, *packet_);
+        write_packet();
+        av_packet_unref(packet_.get());
     }
-    throw_if_set(stop_);
-    fill(*packet_, packet);
-    write_packet();
-    av_packet_unref(packet_.get());
 }
 
 /// The header of an APNG is part of the first packet.
@@ -309,30 +321,25 @@ void Encoder::insert_png_chunks() {
     std::size_t size = 0;
     const auto* header = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, &size);
     if (!header) return;
-    const std::string longer = std::string(reinterpret_cast<const char*>(header), size) + encoding_.png_chunks;
-    auto* place = av_packet_new_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, longer.size());
-    if (!place) throw std::bad_alloc();
-    std::memcpy(place, longer.data(), longer.size());
+    set_side_data(*packet_, AV_PKT_DATA_NEW_EXTRADATA,
+                  std::string(reinterpret_cast<const char*>(header), size) + encoding_.png_chunks);
     encoding_.png_chunks.clear();
 }
 
-/// Chapters in the order of time; of those that begin together the last one.
 void Encoder::write_chapters() {
-    std::map<std::int64_t, std::string> titles;
-    for (const auto& [time, title] : chapters_) titles[time] = title;
-    const auto count = static_cast<unsigned>(titles.size());
-    if (count == 0) return;
-    format_->chapters = static_cast<AVChapter**>(av_calloc(count, sizeof(AVChapter*)));
+    if (chapters_.empty()) return;
+    format_->chapters = static_cast<AVChapter**>(av_calloc(chapters_.size(), sizeof(AVChapter*)));
     if (!format_->chapters) throw std::bad_alloc();
-    for (auto at = titles.begin(); at != titles.end(); ++at) {
+    for (const auto& [time, title] : chapters_) {
         auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
         if (!chapter) throw std::bad_alloc();
         format_->chapters[format_->nb_chapters++] = chapter;
         chapter->id = static_cast<int>(format_->nb_chapters);
         chapter->time_base = encoding_.tick;
-        chapter->start = at->first;
-        chapter->end = std::next(at) == titles.end() ? end_ : std::next(at)->first;
-        check(av_dict_set(&chapter->metadata, "title", at->second.c_str(), 0), "no memory for chapters");
+        chapter->start = time;
+        const bool is_last = format_->nb_chapters == chapters_.size();
+        chapter->end = is_last ? end_ : chapters_[format_->nb_chapters].first;
+        check(av_dict_set(&chapter->metadata, "title", title.c_str(), 0), "no memory for chapters");
     }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/film_part.hpp"
+#include "output/blocks.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
 
@@ -88,8 +88,8 @@ public:
     AVFrame& frame();
     /// Encodes frame() with this start and duration, in ticks.
     void send_frame(std::int64_t time, std::int64_t duration);
-    /// Adds a packet of a part, in place of frames. All packets are required, in order.
-    void add(const FilmPacket& packet);
+    /// Adds the packets of a part, in place of frames. All parts are required, in order.
+    void add(BlockReader& part);
     /// A chapter that begins at this tick, and ends where the next one begins.
     void add_chapter(std::int64_t time, const std::string& title) { chapters_.emplace_back(time, title); }
     /// Sets an option of the container; it takes effect at the next write.
@@ -99,6 +99,7 @@ public:
     void finish(std::string_view ending = {}, int replaced = 0);
 
 private:
+    void open_without_frames();
     void write_header();
     void write_chapters();
     void end_segment();
@@ -111,7 +112,7 @@ private:
     Encoding encoding_;
     const std::atomic<bool>& stop_;
     Stream file_;
-    std::optional<FilmPartWriter> part_;
+    std::optional<BlockWriter> part_;
     Libav<AVFormatContext> format_;  // writes the file, unless it is a part
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;
