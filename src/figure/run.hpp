@@ -20,8 +20,8 @@ struct FigureOptions {
 /// Reports progress of the figures, numbered as given. Called by any thread, by one at a time for one figure.
 struct FigureReport {
     std::function<void(std::size_t figure, const FigureProgress&)> progress;
-    std::function<void(std::size_t figure, const std::string& sentence)> note;
-    std::function<void(std::size_t figure, const RunResult&)> done;
+    std::function<void(std::size_t figure, const std::string& sentence)> note = [](auto, const auto&) {};
+    std::function<void(std::size_t figure, const RunResult&)> done = [](auto, const auto&) {};
 };
 
 /// Makes figures. Threads compute the trials, figure after figure, while the calling thread draws and writes complete

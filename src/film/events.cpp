@@ -11,7 +11,7 @@ namespace {
 /// The frame of the whole film that first shows this time.
 long film_frame(const Scene& scene, const Schedule& schedule, double time_s) {
     const long frame = scene.frames.first_from(moment_at(time_s * scene.preset.sample_hz.value()));
-    return frame == 0 ? schedule.title : schedule.before() + std::min(frame, schedule.motion - 1);
+    return schedule.at(std::min(frame, schedule.motion - 1));
 }
 
 }  // namespace

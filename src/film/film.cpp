@@ -112,7 +112,10 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     if (options.merge) joined_ = parts_in(scene, parts.folder());
-    if (video.poster_s && !options.is_part()) parts.require(scene.preset.name + ".poster.png");
+    if (video.poster_s && !options.is_part()) {
+        parts.require(scene.preset.name + ".poster.png");
+        poster_at_ = schedule_.at(*poster_frame(scene));
+    }
     if (video.contact_sheet && !options.is_part()) parts.require(scene.preset.name + ".contact.png");
     if (!joined_ || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
     record.gl = joined_ ? joined_->gl : canvas_->description();
@@ -145,9 +148,19 @@ void Film::begin_video() {
     record_.libav = libav_description();
 }
 
-/// Draws the list if its frame belongs to the part; nothing otherwise.
-const Picture* Film::take(const DisplayList& list) {
-    if (const long frame = next_++; !drawn_.meets(frame, frame + 1)) return nullptr;
+/// The picture of the last snapshot as frame `number`, with a card that fades out or in over it.
+DisplayList Film::list_of(long number) const {
+    auto list = composer_.frame();
+    const double fps = scene_.fps.value();
+    const long end = schedule_.frames() - schedule_.end;
+    DisplayList card;
+    if (number < schedule_.title) card = composer_.title_card(card_opacity(number, schedule_.title, fps, false));
+    if (number >= end) card = composer_.end_card(card_opacity(number - end, schedule_.end, fps, true));
+    list.insert(list.end(), card.begin(), card.end());
+    return list;
+}
+
+const Picture& Film::take(const DisplayList& list) {
     const Picture* picture = nullptr;
     {
         Stopwatch watch(record_.draw_cpu_s);
@@ -156,31 +169,17 @@ const Picture* Film::take(const DisplayList& list) {
     Stopwatch watch(record_.write_cpu_s);
     sink_->take(*picture, canvas_->changed());
     ++record_.frames;
-    return picture;
-}
-
-/// Draws the first or last frame with a card fading out or in over it.
-void Film::take_card(long frames, bool fades_in) {
-    for (long k = 0; k < frames; ++k) {
-        const double opacity = card_opacity(k, frames, scene_.fps.value(), fades_in);
-        auto list = composer_.frame();
-        const auto card = fades_in ? composer_.end_card(opacity) : composer_.title_card(opacity);
-        list.insert(list.end(), card.begin(), card.end());
-        take(list);
-    }
+    return *picture;
 }
 
 void Film::write_frame(long number) {
-    const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
-    if (is_first) take_card(schedule_.title, false);
-    const long times = 1 + (is_first ? schedule_.hold_start : 0) + (is_last ? schedule_.hold_end : 0);
-    const bool is_poster = number == poster_frame(scene_) && !options_.is_part();
-    const auto list = is_poster || drawn_.meets(next_, next_ + times) ? composer_.frame() : DisplayList();
-    for (long k = 0; k < times; ++k) {
-        const auto* picture = take(list);
-        if (k == 0 && is_poster) poster_ = picture ? *picture : canvas_->draw(list);
+    for (const long end = schedule_.range(number, number + 1).last; next_ < end; ++next_) {
+        const bool is_drawn = drawn_.contains(next_), is_poster = next_ == poster_at_;
+        if (!is_drawn && !is_poster) continue;
+        const auto list = list_of(next_);
+        const auto& picture = is_drawn ? take(list) : canvas_->draw(list);
+        if (is_poster) poster_ = picture;
     }
-    if (is_last) take_card(schedule_.end, true);
 }
 
 void Film::finish(const std::vector<FilmEvent>& events) {

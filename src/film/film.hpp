@@ -55,6 +55,8 @@ struct Schedule {
     long before() const { return title + hold_start; }
     /// The frame of the motion that frame `number` of the film shows.
     long motion_frame(long number) const { return std::clamp(number - before(), 0L, motion - 1); }
+    /// The first frame of the film that shows a frame of the motion without a card.
+    long at(long frame) const { return frame == 0 ? title : before() + frame; }
     /// The frames of the film that belong to the frames first … last − 1 of the motion.
     FrameRange range(long first, long last) const {
         return {first == 0 ? 0 : before() + first, last == motion ? frames() : before() + last};
@@ -115,8 +117,8 @@ private:
     void begin_pictures();
     void begin_video();
     void pack_pictures();
-    const Picture* take(const DisplayList& list);
-    void take_card(long frames, bool fades_in);
+    DisplayList list_of(long number) const;
+    const Picture& take(const DisplayList& list);
 
     const Scene& scene_;
     const RunOptions& options_;
@@ -127,6 +129,7 @@ private:
     const FrameRange drawn_;  // frames are counted in the whole film
     const long begin_;        // the first frame of the file
     long next_;
+    long poster_at_ = -1;
     std::optional<FilmParts> joined_;
     Composer composer_;
     std::string film_name_;         // name of the video, or of the folder of pictures

@@ -9,7 +9,6 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <set>
 
 namespace doppel {
@@ -42,12 +41,6 @@ Shard shard_in(const BlockReader& part, const fs::path& path, const Scene& scene
 
 long max_shards(const Scene& scene) {
     return scene.preset.video.format_row().has_parts() ? video_options(scene).segments() : 1;
-}
-
-bool FrameRange::meets(long begin, long end) const {
-    if (only.empty()) return begin < last && end > first;
-    const auto next = std::ranges::lower_bound(only, begin);
-    return next != only.end() && *next < end;
 }
 
 FrameRange frames_of(const Scene& scene, const Shard& shard) {

@@ -3,6 +3,7 @@
 #include "film/shards.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@ struct FrameRange {
     long first, last;
     std::vector<long> only = {};
 
-    /// Whether it contains some of the frames begin … end − 1.
-    bool meets(long begin, long end) const;
+    bool contains(long frame) const {
+        return only.empty() ? first <= frame && frame < last : std::ranges::binary_search(only, frame);
+    }
     long count() const { return only.empty() ? last - first : static_cast<long>(only.size()); }
     /// The number of its frame k.
     long at(long k) const { return only.empty() ? first + k : only[static_cast<std::size_t>(k)]; }

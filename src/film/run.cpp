@@ -176,7 +176,7 @@ RunResult run_part(const Scene& scene, const RunOptions& options, const std::ato
     const auto drawn = drawn_frames(scene, options, 0);
     const long last = schedule.motion_frame(drawn.last - 1) + 1;
     const Moment end = last == schedule.motion ? Moment{scene.samples + 1} : scene.frames.at(last);
-    Recording recording(scene, end, true, stop, {}, Recording::usual_bytes, options.recording);
+    Recording recording(scene, end, true, stop, options.recording);
     std::optional<Film> film;
     if (!recording.fails()) film.emplace(scene, recording.bounds(), options, 0, parts, record, stop);
     long frame = 0;
@@ -215,8 +215,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     parts.require(scene.preset.name + ".json");
     if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
     const bool is_recorded = !options.record_to.empty();
-    Recording recording(scene, part.end, options.pictures || is_recorded, stop, {}, Recording::usual_bytes,
-                        options.recording);
+    Recording recording(scene, part.end, options.pictures || is_recorded, stop, options.recording);
     std::optional<RecordingWriter> recorder;
     if (is_recorded) recorder.emplace(options.record_to, scene);
     std::optional<Film> film;

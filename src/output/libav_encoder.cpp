@@ -56,7 +56,8 @@ Libav<T> owned(T* thing) {
 /// used. (It opens an MP4 again, to put the index at the front.)
 Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, const Encoding& encoding) {
     capture_libav_log();
-    const auto address = fmt::format("{}{}", encoding.is_stream ? "pipe:" : "file:/proc/self/fd/", fileno(file));
+    const auto address =
+        fmt::format("{}{}", encoding.options.is_stream ? "pipe:" : "file:/proc/self/fd/", fileno(file));
     AVFormatContext* format = nullptr;
     avformat_alloc_output_context2(&format, nullptr, encoding.container, address.c_str());
     auto muxer = owned(format);
@@ -194,10 +195,11 @@ Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& 
     // if threads cannot be started, SVT-AV1 (some 110 threads) hangs and libaom aborts
     if (has_chroma(encoding.pixels)) need_threads(encoder == "libsvtav1" ? 200 : 3 * encoding.threads);
     auto codec = owned(avcodec_alloc_context3(encoding.encoder));
-    codec->width = encoding.size.width;
-    codec->height = encoding.size.height;
+    codec->width = encoding.options.size.width;
+    codec->height = encoding.options.size.height;
     codec->sample_aspect_ratio = {1, 1};
-    codec->framerate = encoding.frame_rate;
+    codec->framerate = {static_cast<int>(encoding.options.fps_numerator),
+                        static_cast<int>(encoding.options.fps_denominator)};
     codec->time_base = encoding.tick;
     codec->pix_fmt = encoding.pixels;
     if (has_chroma(encoding.pixels)) tag_bt709(*codec);
@@ -216,9 +218,9 @@ Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const st
       encoding_(std::move(encoding)),
       stop_(stop),
       packet_(owned(av_packet_alloc())) {
-    frame_ = make_frame(encoding_.size, encoding_.pixels);
-    if (!encoding_.part_header.empty()) {
-        part_.emplace(place, encoding_.part_header);
+    frame_ = make_frame(encoding_.options.size, encoding_.pixels);
+    if (!encoding_.options.part_header.empty()) {
+        part_.emplace(place, encoding_.options.part_header);
         return;
     }
     file_ = output_file(place);
@@ -238,7 +240,7 @@ void Encoder::write_header() {
     check(avformat_init_output(format_.get(), nullptr), "the header cannot be made");
     format_->flags &= ~AVFMT_FLAG_BITEXACT;
     // set only here, because avformat_init_output() sets or clears the encoder's name
-    for (const auto& [key, text] : encoding_.metadata)
+    for (const auto& [key, text] : encoding_.options.metadata)
         check(av_dict_set(&format_->metadata, key.c_str(), text.c_str(), 0), "no memory for metadata");
     check(avformat_write_header(format_.get(), nullptr), "the header cannot be written");
 }
@@ -347,7 +349,7 @@ void Encoder::finish(std::string_view ending, int replaced) {
     if (codec_) end_segment();
     if (part_) return part_->finish();
     if (!stream_) throw std::logic_error("a video without frames");
-    if (!encoding_.is_stream) write_chapters();
+    if (!encoding_.options.is_stream) write_chapters();
     check(av_write_trailer(format_.get()), "the end cannot be written");
     if (!ending.empty()) {
         check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");

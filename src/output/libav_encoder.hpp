@@ -42,19 +42,15 @@ using Libav = std::unique_ptr<T, LibavFree>;
 const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec);
 
 struct Encoding {
-    const char* container;   // libav's name
-    const AVCodec* encoder;  // from find_encoder()
-    AVPixelFormat pixels;    // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
-    Size size;
-    AVRational frame_rate;
+    VideoOptions options;
+    const char* container;           // libav's name
+    const AVCodec* encoder;          // from find_encoder()
+    AVPixelFormat pixels;            // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     AVRational tick;                 // time base, s
     long segment = 1, segments = 1;  // frames after which the encoder starts anew, and the number of such segments
-    bool is_stream = false;          // the file cannot seek
-    std::string part_header{};       // writes a part with this header instead of a video
-    std::size_t threads = 1;
+    std::size_t threads = encoder_threads;
     Metadata encoder_options = {}, container_options = {};  // with libav's names
-    Metadata metadata = {};
-    std::string png_chunks = {};  // inserted after the header of an APNG
+    std::string png_chunks = {};                            // inserted after the header of an APNG
 };
 
 /// Throws as check_video(), except for a missing encoder.
