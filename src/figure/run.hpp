@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace doppel {
 
@@ -33,6 +35,9 @@ struct FigureReport {
 /// set.
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report);
+
+/// The files that run_figures() writes in OUT/NAME/; names of folders end with "/".
+std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options);
 
 /// Lays out the picture of a figure without writing it.
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials);

@@ -5,8 +5,11 @@
 #include "output/png.hpp"
 #include "output/sink.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace doppel {
 
@@ -112,13 +115,9 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     if (options.merge) joined_ = parts_in(scene, parts.folder());
-    if (video.poster_s && !options.is_part()) {
-        parts.require(scene.preset.name + ".poster.png");
-        poster_at_ = schedule_.at(*poster_frame(scene));
-    }
-    if (video.contact_sheet && !options.is_part()) parts.require(scene.preset.name + ".contact.png");
-    if (!joined_ || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
-    record.gl = joined_ ? joined_->gl : canvas_->description();
+    if (video.poster_s && !options.is_part()) poster_at_ = schedule_.at(*poster_frame(scene));
+    if (!options.merge || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
+    if (!options.merge) record.gl = canvas_->description();
     if (video.format == FilmFormat::png)
         begin_pictures();
     else
@@ -185,27 +184,33 @@ void Film::write_frame(long number) {
 void Film::finish(const std::vector<FilmEvent>& events) {
     for (const auto& [frame, title] : chapters_of(scene_, events))
         if (frame >= begin_ && frame < next_) sink_->add_chapter(frame - begin_, title);
-    if (joined_) {
-        for (const auto& path : joined_->files) {
-            BlockReader part(path, film_part);
-            sink_->add(part);
-        }
-        record_.frames = schedule_.frames();
-    }
+    if (options_.merge) join_parts();
     sink_->finish();
     if (options_.shard && !folder_.empty()) pack_pictures();
     parts_.finished(film_name_);
     if (poster_) write(".poster.png", *poster_);
 }
 
+void Film::join_parts() {
+    std::set<std::string> libraries;
+    for (const auto& path : joined_) {
+        BlockFile part(path, film_part);
+        libraries.insert(Json::parse(part.header()).value("gl", ""));
+        sink_->add(part);
+    }
+    record_.gl = fmt::format("{}", fmt::join(libraries, "; "));
+    record_.frames = schedule_.frames();
+}
+
 /// Puts the pictures of a part into one file.
 void Film::pack_pictures() {
     const auto name = part_name(scene_, *options_.shard);
-    BlockWriter part(parts_.file(name), part_header(scene_, *options_.shard, record_.gl));
+    BlockFile part(parts_.file(name), part_header(scene_, *options_.shard, record_.gl));
     for (long frame = drawn_.first; frame < drawn_.last; ++frame) {
         throw_if_set(stop_);
         const auto path = folder_ / fmt::format("{:06}.png", frame);
-        part(start_of_file(path, std::filesystem::file_size(path)));
+        auto picture = start_of_file(path, std::filesystem::file_size(path));
+        part(picture);
         part.end_block();
     }
     part.finish();

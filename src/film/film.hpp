@@ -116,6 +116,7 @@ public:
 private:
     void begin_pictures();
     void begin_video();
+    void join_parts();
     void pack_pictures();
     DisplayList list_of(long number) const;
     const Picture& take(const DisplayList& list);
@@ -130,7 +131,7 @@ private:
     const long begin_;        // the first frame of the file
     long next_;
     long poster_at_ = -1;
-    std::optional<FilmParts> joined_;
+    std::vector<std::filesystem::path> joined_;  // parts, for a merge
     Composer composer_;
     std::string film_name_;         // name of the video, or of the folder of pictures
     std::filesystem::path folder_;  // of the pictures

@@ -7,10 +7,6 @@
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
 
-#include <fmt/ranges.h>
-
-#include <set>
-
 namespace doppel {
 namespace {
 
@@ -26,7 +22,7 @@ Json identity(const Scene& scene) {
 }
 
 /// Reads the header of a part. Throws if it does not belong to the film.
-Shard shard_in(const BlockReader& part, const fs::path& path, const Scene& scene) {
+Shard shard_in(const BlockFile& part, const fs::path& path, const Scene& scene) {
     const auto header = Json::parse(part.header(), nullptr, false);
     const auto number = [&](const char* key) { return header.is_object() ? header.value(key, Json()) : Json(); };
     const auto shard = number("shard"), of = number("of");
@@ -73,7 +69,7 @@ bool is_part_complete(const Scene& scene, const Shard& shard, const fs::path& fo
     const auto path = folder / part_name(scene, shard);
     if (type_of(path) != fs::file_type::regular) return false;
     try {
-        BlockReader part(path, film_part);
+        BlockFile part(path, film_part);
         shard_in(part, path, scene);
         while (part.next()) continue;
         return true;
@@ -82,16 +78,12 @@ bool is_part_complete(const Scene& scene, const Shard& shard, const fs::path& fo
     }
 }
 
-FilmParts parts_in(const Scene& scene, const fs::path& folder) {
-    std::set<std::string> libraries;
-    auto files = all_parts(folder, scene.preset.name, [&](const fs::path& path) {
-        const BlockReader part(path, film_part);
-        const auto shard = shard_in(part, path, scene);
+std::vector<fs::path> parts_in(const Scene& scene, const fs::path& folder) {
+    return all_parts(folder, scene.preset.name, [&](const fs::path& path) {
+        const auto shard = shard_in(BlockFile(path, film_part), path, scene);
         frames_of(scene, shard);
-        libraries.insert(Json::parse(part.header()).value("gl", ""));
         return shard;
     });
-    return {std::move(files), fmt::format("{}", fmt::join(libraries, "; "))};
 }
 
 }  // namespace doppel

@@ -39,12 +39,7 @@ std::string part_header(const Scene& scene, const Shard& shard, const std::strin
 /// Whether the folder contains this part, complete.
 bool is_part_complete(const Scene& scene, const Shard& shard, const std::filesystem::path& folder);
 
-/// The parts of a film in a folder, in order.
-struct FilmParts {
-    std::vector<std::filesystem::path> files;
-    std::string gl;  // the libraries that drew them
-};
-/// Throws Error as all_parts(), and exit 4 if one cannot be read.
-FilmParts parts_in(const Scene& scene, const std::filesystem::path& folder);
+/// The parts of a film in a folder, in order. Throws Error as all_parts(), and exit 4 if one cannot be read.
+std::vector<std::filesystem::path> parts_in(const Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace doppel

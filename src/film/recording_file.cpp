@@ -27,9 +27,8 @@ std::string header_of(const Scene& scene) {
                        Json(scene.preset.name).dump(), version(), revision(), key_of(scene));
 }
 
-/// Calls all(numbers…) for all numbers, in the same order for writing and reading.
-template <class Archive, class AnySnapshot, class Record>
-void archive(Archive& all, AnySnapshot& snapshot, Record& record) {
+/// Writes or reads all numbers.
+void pass_all(BlockFile& all, Snapshot& snapshot, MotionRecord& record) {
     auto& pair = snapshot.pair;
     all(pair.sample, pair.share, pair.distance, record.a.effort, record.b.effort, snapshot.members);
     all(pair.energy_error_a, pair.energy_error_b, pair.mean_energy_a, pair.mean_energy_b);
@@ -42,15 +41,15 @@ void archive(Archive& all, AnySnapshot& snapshot, Record& record) {
 }  // namespace
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Scene& scene)
-    : BlockWriter(path, header_of(scene)) {}
+    : BlockFile(path, header_of(scene)) {}
 
-void RecordingWriter::add(const Snapshot& snapshot, const MotionRecord& record) {
-    archive(static_cast<BlockWriter&>(*this), snapshot, record);
+void RecordingWriter::add(Snapshot snapshot, MotionRecord record) {
+    pass_all(*this, snapshot, record);
     end_block();
 }
 
 RecordingReader::RecordingReader(const std::filesystem::path& path, const Scene& scene)
-    : BlockReader(path, recording_file) {
+    : BlockFile(path, recording_file) {
     if (header() != header_of(scene))
         throw bad_input(
             "{} is a recording of another motion, frame rate or version of Doppel; make it again: doppel simulate {} "
@@ -61,7 +60,7 @@ RecordingReader::RecordingReader(const std::filesystem::path& path, const Scene&
 Snapshot RecordingReader::at(const Moment& moment, MotionRecord& record) {
     Snapshot snapshot;
     while (next()) {
-        archive(static_cast<BlockReader&>(*this), snapshot, record);
+        pass_all(*this, snapshot, record);
         if (snapshot.pair.moment() == moment) return snapshot;
         if (moment < snapshot.pair.moment()) break;
     }

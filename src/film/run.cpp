@@ -212,7 +212,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const bool is_film = options.pictures && !is_page;
     const long total = is_film ? part.last - part.first : record.samples;
     Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
-    parts.require(scene.preset.name + ".json");
+    for (const auto& name : run_files(scene, options))
+        if (!name.ends_with('/')) parts.require(name);
     if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
     const bool is_recorded = !options.record_to.empty();
     Recording recording(scene, part.end, options.pictures || is_recorded, stop, options.recording);

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -24,83 +24,55 @@ inline constexpr BlockKind film_part{R"({"file":"doppel film shard")",
                                      "is no part of a film; remove it, and render this part again",
                                      "is damaged or incomplete; remove it, and render this part again"};
 
-/// Writes such a file: the header, a line of JSON; then blocks with checksums; then an empty block, the end. Throws
-/// Error (exit 4).
-class BlockWriter {
+/// Such a file, written or read: the header, a line of JSON; then blocks with checksums; then an empty block, the end.
+/// All functions throw Error (exit 4): if the file cannot be written or read, is damaged, or is something else.
+class BlockFile {
 public:
-    BlockWriter(const std::filesystem::path& path, const std::string& header) : file_(path) {
-        file_.write(header + "\n");
-    }
-    /// Appends numbers, and vectors and strings of them, to the block.
+    /// Begins a file.
+    BlockFile(const std::filesystem::path& path, const std::string& header);
+    /// Opens a file.
+    BlockFile(std::filesystem::path path, const BlockKind& kind);
+
+    /// Without the end of the line.
+    const std::string& header() const { return header_; }
+    /// Appends numbers, and vectors and strings of them, to the block, or takes them from the block in the same order.
     template <class... T>
-    void operator()(const T&... values) {
-        (write(values), ...);
+    void operator()(T&... values) {
+        (pass(values), ...);
     }
     void end_block();
     void finish();
-
-private:
-    template <class T>
-    void write(const T& value) {
-        static_assert(std::is_trivially_destructible_v<T>);
-        block_.append(reinterpret_cast<const char*>(&value), sizeof(T));
-    }
-    template <class T>
-    void write(const std::vector<T>& values) {
-        write(values.size());
-        for (const auto& value : values) write(value);
-    }
-    void write(std::string_view bytes) {
-        write(bytes.size());
-        block_.append(bytes);
-    }
-    void write(const std::string& bytes) { write(std::string_view(bytes)); }
-
-    OutputFile file_;
-    std::string block_;
-};
-
-/// Reads such a file. Throws Error (exit 4) if it cannot be read, is damaged, or is something else.
-class BlockReader {
-public:
-    BlockReader(std::filesystem::path path, const BlockKind& kind);
-    /// Without the end of the line.
-    const std::string& header() const { return header_; }
     /// Reads the next block. False at the end.
     bool next();
-    /// Takes from the block what was written to it.
-    template <class... T>
-    void operator()(T&... values) {
-        (read(values), ...);
-    }
     /// "PATH is damaged …"
     Error damaged() const;
 
 private:
     template <class T>
-    void read(T& value) {
+    void pass(T& value) {
         static_assert(std::is_trivially_destructible_v<T>);
-        std::memcpy(static_cast<void*>(&value), take(sizeof(T)), sizeof(T));
+        pass_bytes(&value, sizeof(T));
     }
     template <class T>
-    void read(std::vector<T>& values) {
-        values.resize(size());
-        for (auto& value : values) read(value);
+    void pass(std::vector<T>& values) {
+        values.resize(pass_size(values.size()));
+        for (auto& value : values) pass(value);
     }
-    void read(std::string& bytes) {
-        const auto length = size();
-        bytes.assign(take(length), length);
+    void pass(std::string& bytes) {
+        bytes.resize(pass_size(bytes.size()));
+        pass_bytes(bytes.data(), bytes.size());
     }
-    std::size_t size();
-    const char* take(std::size_t bytes);
+    std::size_t pass_size(std::size_t size);
+    void pass_bytes(void* bytes, std::size_t size);
     void read_block(std::uint64_t bytes);
 
     std::filesystem::path path_;
-    BlockKind kind_;
-    Stream file_;
+    BlockKind kind_ = {};
+    std::optional<OutputFile> written_;
+    Stream read_;
     std::string header_, block_;
     std::size_t at_ = 0;       // in the block
-    std::uintmax_t left_ = 0;  // bytes of the file
+    std::uintmax_t left_ = 0;  // bytes to read
 };
 
 }  // namespace doppel

@@ -85,23 +85,26 @@ void set_side_data(AVPacket& packet, AVPacketSideDataType type, std::string_view
     std::memcpy(place, bytes.data(), bytes.size());
 }
 
+std::string text(const std::uint8_t* bytes, std::size_t size) {
+    return {reinterpret_cast<const char*>(bytes), size};
+}
+
 /// Writes a packet with all that the muxer needs.
-void write_block(const AVPacket& packet, BlockWriter& part) {
-    const auto text = [](const std::uint8_t* bytes, std::size_t size) {
-        return std::string_view(reinterpret_cast<const char*>(bytes), size);
-    };
-    part(packet.pts, packet.dts, packet.flags, text(packet.data, static_cast<std::size_t>(packet.size)));
-    part(packet.side_data_elems);
-    for (int i = 0; i < packet.side_data_elems; ++i)
-        part(packet.side_data[i].type, text(packet.side_data[i].data, packet.side_data[i].size));
+void write_block(AVPacket& packet, BlockFile& part) {
+    auto bytes = text(packet.data, static_cast<std::size_t>(packet.size));
+    part(packet.pts, packet.dts, packet.flags, packet.side_data_elems, bytes);
+    for (int i = 0; i < packet.side_data_elems; ++i) {
+        bytes = text(packet.side_data[i].data, packet.side_data[i].size);
+        part(packet.side_data[i].type, bytes);
+    }
     part.end_block();
 }
 
-void read_block(BlockReader& part, AVPacket& packet) {
+void read_block(BlockFile& part, AVPacket& packet) {
     std::int64_t pts = 0, dts = 0;
     int flags = 0, side_data = 0;
     std::string bytes;
-    part(pts, dts, flags, bytes, side_data);
+    part(pts, dts, flags, side_data, bytes);
     if (av_new_packet(&packet, static_cast<int>(bytes.size())) < 0) throw std::bad_alloc();
     std::memcpy(packet.data, bytes.data(), bytes.size());
     packet.pts = pts;
@@ -308,7 +311,7 @@ void Encoder::open_without_frames() {
     codec_.reset();
 }
 
-void Encoder::add(BlockReader& part) {
+void Encoder::add(BlockFile& part) {
     if (!stream_) open_without_frames();
     while (part.next()) {
         throw_if_set(stop_);
@@ -323,8 +326,7 @@ void Encoder::insert_png_chunks() {
     std::size_t size = 0;
     const auto* header = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, &size);
     if (!header) return;
-    set_side_data(*packet_, AV_PKT_DATA_NEW_EXTRADATA,
-                  std::string(reinterpret_cast<const char*>(header), size) + encoding_.png_chunks);
+    set_side_data(*packet_, AV_PKT_DATA_NEW_EXTRADATA, text(header, size) + encoding_.png_chunks);
     encoding_.png_chunks.clear();
 }
 

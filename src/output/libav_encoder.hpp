@@ -85,7 +85,7 @@ public:
     /// Encodes frame() with this start and duration, in ticks.
     void send_frame(std::int64_t time, std::int64_t duration);
     /// Adds the packets of a part, in place of frames. All parts are required, in order.
-    void add(BlockReader& part);
+    void add(BlockFile& part);
     /// A chapter that begins at this tick, and ends where the next one begins.
     void add_chapter(std::int64_t time, const std::string& title) { chapters_.emplace_back(time, title); }
     /// Sets an option of the container; it takes effect at the next write.
@@ -108,7 +108,7 @@ private:
     Encoding encoding_;
     const std::atomic<bool>& stop_;
     Stream file_;
-    std::optional<BlockWriter> part_;
+    std::optional<BlockFile> part_;
     Libav<AVFormatContext> format_;  // writes the file, unless it is a part
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;

@@ -165,7 +165,7 @@ public:
         writers_.give(std::move(job));
     }
 
-    void add(BlockReader& part) override {
+    void add(BlockFile& part) override {
         for (std::string bytes; part.next();) {
             throw_if_set(stop_);
             part(bytes);

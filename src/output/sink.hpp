@@ -25,7 +25,7 @@ public:
 
     /// Adds the pictures of a part of the film (film_part) as they are, in place of take(). All parts are required, in
     /// order. Only for formats with parts.
-    virtual void add(BlockReader& /*part*/) { throw std::logic_error("this format has no parts"); }
+    virtual void add(BlockFile& /*part*/) { throw std::logic_error("this format has no parts"); }
 
     /// A chapter of the film that begins with this frame, after the chapter before; where the file can contain none, it is left out.
     virtual void add_chapter(long /*frame*/, const std::string& /*title*/) {}

@@ -23,7 +23,7 @@ public:
         encoding_.give(std::move(changes));
     }
 
-    void add(BlockReader& part) override { encoder_.add(part); }
+    void add(BlockFile& part) override { encoder_.add(part); }
     void add_chapter(long frame, const std::string& title) override { encoder_.add_chapter(frame, title); }
 
     void finish() override {
