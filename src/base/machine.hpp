@@ -22,10 +22,12 @@ Machine within_control_groups(Machine machine, const std::filesystem::path& root
 
 /// What a run takes from a machine, estimated.
 struct Needs {
+    double seconds = 0;         // on this machine
     double cpu_s = 0;           // of all threads
     double repeated_cpu_s = 0;  // of it: what each shard of the run does again
     double memory_bytes = 0, disk_bytes = 0;
-    long most_shards = 0;  // 0: it cannot be split
+    long most_shards = 0;   // 0: it cannot be split
+    bool at_least = false;  // the trial was too short for an estimate: a lower bound
 };
 
 /// The largest memory that this process has had since reset_peak_memory(), bytes; 0 if /proc does not tell.

@@ -140,8 +140,8 @@ Split split(const Needs& needs) {
     return split;
 }
 
-void print_needs(const Needs& needs, bool at_least) {
-    print_line("  needs  {} {} of CPU time, {} of memory{}", at_least ? "more than" : "about",
+void print_needs(const Needs& needs) {
+    print_line("  needs  {} {} of CPU time, {} of memory{}", needs.at_least ? "more than" : "about",
                duration_text(needs.cpu_s), bytes_text(needs.memory_bytes),
                std::isnan(needs.disk_bytes) ? "" : fmt::format(", {} of disk", bytes_text(needs.disk_bytes)));
     const auto [shards, shard_s, repeated_share] = split(needs);
@@ -178,7 +178,7 @@ struct SceneCheck {
     };
     const Scene& scene;
     SimulationEstimate simulation;
-    std::optional<RenderEstimate> render;
+    std::optional<Needs> render;
     std::string why_not;  // if `render` is unknown
     std::array<OfSide, 2> sides;
 };
@@ -234,7 +234,7 @@ void print(const SceneCheck& check) {
     print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
                check.render ? fmt::format("{:.2g} s to render", check.render->seconds)
                             : "time to render unknown: " + check.why_not);
-    if (check.render) print_needs(*check.render, estimate.at_least);
+    if (check.render) print_needs(*check.render);
 }
 
 Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
@@ -313,7 +313,7 @@ struct FigureCheck {
     const FigurePreset& figure;
     double units = 0;
     int threads = 1;
-    ComputationEstimate estimate;
+    Needs estimate;
 };
 
 FigureCheck checked(const FigurePreset& figure, const std::atomic<bool>& stop) {
@@ -342,7 +342,7 @@ void print(const FigureCheck& check) {
     print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
                estimate.seconds, threads, threads == 1 ? "" : "s", two_digits(units / estimate.seconds),
                figure.experiment->unit());
-    print_needs(estimate, estimate.at_least);
+    print_needs(estimate);
 }
 
 Json json_of(const PresetText& preset, const FigureCheck& check, Json warnings) {

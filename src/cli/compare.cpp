@@ -168,27 +168,32 @@ void compare_pair(ComparedPicture& pair, const Task& task) {
                                             expected.size.width, expected.size.height);
 }
 
-/// Like compare_pair(), with the time. Stores the error of an unreadable picture in `first_fault` if it
-/// is the first.
-ComparedPicture compared(ComparedPicture pair, const Task& task, std::optional<Error>& first_fault) {
-    const double start = seconds_of(CLOCK_MONOTONIC);
-    throw_if_set(task.stop);
-    try {
-        compare_pair(pair, task);
-    } catch (const Error& fault) {
-        pair.match = Match::unreadable;
-        pair.message = fault.what();
-        if (!first_fault) first_fault = fault;
+/// Compares the pictures and prints what is found. An unreadable picture does not stop this; the error of the first one
+/// is returned.
+std::optional<Error> compare_all(Comparison& comparison, const Task& task, bool are_folders) {
+    std::optional<Error> first_fault;
+    for (auto& pair : comparison.pictures) {
+        throw_if_set(task.stop);
+        const double start = seconds_of(CLOCK_MONOTONIC);
+        try {
+            if (pair.match != Match::missing) compare_pair(pair, task);
+        } catch (const Error& fault) {
+            pair.match = Match::unreadable;
+            pair.message = fault.what();
+            if (!first_fault) first_fault = fault;
+        }
+        pair.seconds = seconds_of(CLOCK_MONOTONIC) - start;
+        const bool is_thrown = pair.match == Match::unreadable && !are_folders;
+        if (!pair.message.empty() && !is_thrown) print_line("{}", pair.message);
     }
-    pair.seconds = seconds_of(CLOCK_MONOTONIC) - start;
-    return pair;
+    if (are_folders) print_line("{}", comparison.summary());
+    return first_fault;
 }
 
-/// Compares every picture in either folder. An unreadable picture does not stop the comparison.
-void compare_folders(Comparison& comparison, const fs::path& expected, const fs::path& actual, const Task& task,
-                     std::optional<Error>& first_fault) {
+/// Every picture in either folder; those that cannot be compared are missing.
+std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& actual, bool is_drawn) {
     const auto wanted = png_names(expected), found = png_names(actual);
-    if (wanted.empty() && !task.is_drawn) throw bad_input("{}: there is no PNG to compare with", expected.string());
+    if (wanted.empty() && !is_drawn) throw bad_input("{}: there is no PNG to compare with", expected.string());
     std::map<std::string, std::vector<fs::path>> goldens;
     for (const auto& name : found) goldens[name];
     for (const auto& name : wanted) {
@@ -197,58 +202,28 @@ void compare_folders(Comparison& comparison, const fs::path& expected, const fs:
         auto& all = goldens[is_variant ? base : name];
         all.insert(is_variant ? all.end() : all.begin(), expected / name);
     }
+    std::vector<ComparedPicture> pairs;
     for (const auto& [name, all] : goldens) {
-        ComparedPicture pair{.name = name, .expected = expected / name, .actual = actual / name, .goldens = all};
-        if (found.contains(name) && (task.is_drawn || !all.empty())) {
-            pair = compared(std::move(pair), task, first_fault);
-        } else {
-            pair.match = Match::missing;
-            pair.message = task.is_drawn
-                               ? fmt::format("{}: there is no such frame", pair.expected.string())
-                               : fmt::format("{}: missing", (all.empty() ? pair.expected : pair.actual).string());
-        }
-        if (!pair.message.empty()) print_line("{}", pair.message);
-        comparison.pictures.push_back(std::move(pair));
+        auto& pair = pairs.emplace_back(
+            ComparedPicture{.name = name, .expected = expected / name, .actual = actual / name, .goldens = all});
+        if (found.contains(name) && (is_drawn || !all.empty())) continue;
+        pair.match = Match::missing;
+        pair.message = is_drawn ? fmt::format("{}: there is no such frame", pair.expected.string())
+                                : fmt::format("{}: missing", (all.empty() ? pair.expected : pair.actual).string());
     }
-    print_line("{}", comparison.summary());
+    return pairs;
 }
 
-/// Pictures of --render in a temporary folder.
-struct Drawing {
-    TemporaryFolder folder = {};
-    std::string name = {};              // of the preset
-    fs::path golden = {}, actual = {};  // two pictures, or two folders of frames
-    bool is_sequence = false;
-};
-
-/// The golden of a single picture NAME: EXPECTED, or in the folder EXPECTED. Throws Error (exit 2) if it is missing.
-fs::path single_golden(const CompareOptions& options, const std::string& name) {
+/// A picture NAME to draw, and its goldens: EXPECTED, or in the folder EXPECTED. Throws Error (exit 2) if there is none.
+ComparedPicture single_picture(const CompareOptions& options, const std::string& name) {
     std::error_code ignored;
     const fs::path expected = options.expected;
     const bool is_folder = fs::is_directory(expected, ignored) || expected.extension() != ".png";
     const auto golden = is_folder ? expected / name : expected;
-    if (!options.update && goldens_of(golden).empty())
+    ComparedPicture picture{.name = golden.filename(), .expected = golden, .actual = {}, .goldens = goldens_of(golden)};
+    if (!options.update && picture.goldens.empty())
         throw bad_input("{}: there is no such golden picture; --update makes it", golden.string());
-    return golden;
-}
-
-void draw_figure(Drawing& drawing, const FigurePreset& figure, const CompareOptions& options, const Task& task,
-                 const Report& report) {
-    drawing.golden = single_golden(options, figure.name + ".png");
-    const FigureReport reports{[&](std::size_t, const FigureProgress& progress) {
-                                   report({std::lround(progress.done), std::lround(progress.total)});
-                               },
-                               [](std::size_t, const std::string&) {}, [](std::size_t, const RunResult&) {}};
-    run_figures({figure}, {.out = drawing.folder.path()}, task.stop, reports);
-    drawing.actual = drawing.folder.path() / figure.name / (figure.name + ".png");
-}
-
-void draw_still(Drawing& drawing, const Scene& scene, const CompareOptions& options, const Task& task,
-                const Report& report) {
-    const auto at = seconds_of_option("--at", options.at);
-    drawing.golden = single_golden(options, still_name(scene, still_moment(scene, at), PictureFormat::png));
-    const RunOptions run_options{.out = drawing.folder.path(), .gl = gl_named(options.gl)};
-    drawing.actual = draw_still(scene, at, PictureFormat::png, run_options, task.stop, report).files.front();
+    return picture;
 }
 
 /// The numbers of the frames to draw: those of the goldens, and those of --frames.
@@ -264,70 +239,60 @@ std::set<long> frame_numbers(const Scene& scene, const CompareOptions& options) 
     if (options.frames.empty()) return numbers;
     const auto [first, last] = frames_of_option(options.frames);
     check_run(scene, {.first = first, .last = last});
-    const long before = schedule.title + schedule.hold_start;
-    const long end = last == schedule.motion ? schedule.frames() : before + last;
-    for (long number = first == 0 ? 0 : before + first; number < end; ++number) numbers.insert(number);
+    const auto wanted = schedule.range(first, last);
+    for (long number = wanted.first; number < wanted.last; ++number) numbers.insert(number);
     return numbers;
 }
 
-/// Draws frames as `render --format png` names them.
-void draw_frames(Drawing& drawing, const Scene& scene, const CompareOptions& options, const Task& task,
-                 const Report& report) {
-    drawing.golden = options.expected;
-    drawing.is_sequence = true;
+/// Draws frames of a film as `render --format png` does. Returns their folder.
+fs::path draw_frames(const Scene& scene, const CompareOptions& options, RunOptions run_options, const Task& task,
+                     const Report& report) {
     if (std::error_code ignored; fs::is_regular_file(options.expected, ignored))
         throw bad_input("{} is a picture; give its time with --at, or a folder of frames", options.expected);
     const auto numbers = frame_numbers(scene, options);
     if (numbers.empty())
         throw bad_input("{}: there is no golden frame such as 000000.png; --frames 0:1 --update makes one",
                         options.expected);
-    constexpr long gap = 30;  // frames that are drawn although nobody wants them, in place of another run
-    const auto schedule = schedule_of(scene);
-    const auto frame_of = [&](long number) {
-        return std::clamp(number - schedule.title - schedule.hold_start, 0L, schedule.motion - 1);
-    };
-    drawing.actual = drawing.folder.path() / "frames";
-    fs::create_directory(drawing.actual);
-    for (auto next = numbers.begin(); next != numbers.end();) {
-        const auto begin = next;
-        long last = frame_of(*begin);
-        for (; next != numbers.end() && frame_of(*next) <= last + gap; ++next) last = frame_of(*next);
-        const RunOptions run_options{.out = drawing.folder.path() / fmt::format("from {}", *begin),
-                                     .first = frame_of(*begin),
-                                     .last = last + 1,
-                                     .gl = gl_named(options.gl)};
-        run(scene, run_options, task.stop, report);
-        for (auto number = begin; number != next; ++number) {
-            const auto name = fmt::format("{:06}.png", *number);
-            fs::rename(run_options.out / drawing.name / "frames" / name, drawing.actual / name);
-        }
-    }
+    run_options.only = {numbers.begin(), numbers.end()};
+    return run(scene, run_options, task.stop, report).files.front();
 }
 
-/// Draws what is compared with the goldens. Throws Error as render and figure do.
-void draw(Drawing& drawing, const CompareOptions& options, const Task& task) {
-    const auto text = find_preset(options.render, &task.stop);
+/// Draws in a folder what is compared with the goldens. Throws Error as render and figure do.
+std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetText& text, const fs::path& folder,
+                                  const Task& task) {
     const bool is_chart = is_figure(text);
-    drawing.name = text.name;
     auto overrides = overrides_of(options);
     overrides.push_back({is_chart ? "chart.format" : "video.format", "\"png\"", "compare, which draws PNG"});
     if (!options.size.empty()) overrides.push_back(size_override(is_chart ? "chart.size" : "video.size", options.size));
     if (is_chart && !(options.at + options.frames).empty())
-        throw bad_input("--at and --frames are for films; {} is a figure", drawing.name);
-    ProgressReport progress(progress_style("auto"), drawing.name, is_chart ? "trials" : "frames");
+        throw bad_input("--at and --frames are for films; {} is a figure", text.name);
+    ProgressReport progress(progress_style("auto"), text.name, is_chart ? "trials" : "frames");
     const Report report = std::ref(progress);
+    const RunOptions run_options{.out = folder, .gl = gl_named(options.gl)};
+    std::vector<ComparedPicture> pairs;
     if (is_chart) {
-        draw_figure(drawing, read_figure(text, overrides, {}, task.stop), options, task, report);
+        const auto figure = read_figure(text, overrides, {}, task.stop);
+        const auto file = figure.name + ".png";
+        pairs = {single_picture(options, file)};
+        const auto tell = [&](std::size_t, const FigureProgress& now) {
+            report({std::lround(now.done), std::lround(now.total)});
+        };
+        run_figures({figure}, {.out = folder}, task.stop, {.progress = tell});
+        pairs.front().actual = folder / figure.name / file;
     } else {
         auto scene = make_scene(read_preset(text, overrides), task.stop);
         scene.preset.video.poster_s.reset();
-        scene.preset.video.contact_sheet.reset();
-        if (options.at.empty())
-            draw_frames(drawing, scene, options, task, report);
-        else
-            draw_still(drawing, scene, options, task, report);
+        if (options.at.empty()) {
+            pairs = pairs_of(options.expected, draw_frames(scene, options, run_options, task, report), true);
+        } else {
+            const auto at = seconds_of_option("--at", options.at);
+            pairs = {single_picture(options, still_name(scene, still_moment(scene, at), PictureFormat::png))};
+            const auto drawn = draw_still(scene, at, PictureFormat::png, run_options, task.stop, report);
+            pairs.front().actual = drawn.files.front();
+        }
     }
     progress.clear();
+    return pairs;
 }
 
 /// A requested report. Reserves its path before the work, so that an error is reported at once.
@@ -367,36 +332,31 @@ bool compare(const CompareOptions& options) {
     }
     const auto junit = place_of_report(options.junit, junit_start);
     const auto html = place_of_report(options.html, page_start("compare"));
-    const bool is_drawn = !options.render.empty();
-    std::optional<Drawing> drawing;
-    Task task{fs::path(options.out) / "compare", is_drawn, options.update,
-              is_drawn ? watch_interrupts() : never_stopped};
-    fs::path expected = options.expected, actual = options.actual;
-    bool folders = fs::is_directory(expected);
-    if (is_drawn) {
-        draw(drawing.emplace(), options, task);
-        task.folder = fs::path(options.out) / drawing->name / "compare";
-        expected = drawing->golden, actual = drawing->actual, folders = drawing->is_sequence;
-    }
-    Comparison comparison{options.expected, is_drawn ? options.render : options.actual, {}};
-    std::optional<Error> first_fault;
-    if (folders) {
-        compare_folders(comparison, expected, actual, task, first_fault);
+    Comparison comparison{options.expected, options.render + options.actual, {}};
+    Task task{fs::path(options.out) / "compare", !options.render.empty(), options.update,
+              options.render.empty() ? never_stopped : watch_interrupts()};
+    std::optional<TemporaryFolder> drawn;
+    bool are_folders = fs::is_directory(options.actual);
+    if (task.is_drawn) {
+        const auto preset = find_preset(options.render, &task.stop);
+        task.folder = fs::path(options.out) / preset.name / "compare";
+        are_folders = !is_figure(preset) && options.at.empty();
+        comparison.pictures = draw(options, preset, drawn.emplace().path(), task);
+    } else if (are_folders) {
+        comparison.pictures = pairs_of(options.expected, options.actual, false);
     } else {
-        ComparedPicture pair{.name = (is_drawn ? expected : actual).filename().string(),
-                             .expected = expected,
-                             .actual = actual,
-                             .goldens = is_drawn ? goldens_of(expected) : std::vector{expected}};
-        pair = compared(std::move(pair), task, first_fault);
-        if (pair.match != Match::unreadable && !pair.message.empty()) print_line("{}", pair.message);
-        comparison.pictures.push_back(std::move(pair));
+        comparison.pictures = {{.name = fs::path(options.actual).filename(),
+                                .expected = options.expected,
+                                .actual = options.actual,
+                                .goldens = {options.expected}}};
     }
+    const auto first_fault = compare_all(comparison, task, are_folders);
     if (junit) write_junit(junit->place(), comparison);
     if (html) write_compare_page(html->place(), comparison);
     for (const auto* report : {&junit, &html})
         if (*report) (*report)->publish();
     if (!first_fault) return comparison.count(Match::passes) == std::ssize(comparison.pictures);
-    if (!folders) throw Error(*first_fault);
+    if (!are_folders) throw Error(*first_fault);
     throw Error(first_fault->code(),
                 fmt::format("{} of {} pictures could not be compared; the first: {}",
                             comparison.count(Match::unreadable), comparison.pictures.size(), first_fault->what()));

@@ -75,14 +75,6 @@ private:
     std::vector<std::optional<ProgressReport>> reports_;
 };
 
-std::vector<std::string> files_of(const FigurePreset& figure, const FigureCommandOptions& options) {
-    const auto& name = figure.name;
-    const auto shard = shard_of_option(options.shard, options.merge);
-    if (shard) return {shard_name(header_of(figure, shard->number, shard->of))};
-    if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
-    return {fmt::format("{}.{}", name, name_of(figure.chart.format)), name + ".csv", name + ".json"};
-}
-
 void make_figures(const FigureCommandOptions& options) {
     std::vector<FigurePreset> figures;
     Replacing replacing{.force = options.force};
@@ -97,11 +89,17 @@ void make_figures(const FigureCommandOptions& options) {
                                                                               : options.merge
                                                                                   ? "merge of parts in a folder"
                                                                                   : "part for a merge");
+    FigureOptions run{.jobs = options.jobs,
+                      .shard = shard_of_option(options.shard, options.merge),
+                      .merge = options.merge,
+                      .tiles = options.tiles,
+                      .replacing = std::move(replacing)};
     if (options.list_outputs) {
-        for (const auto& figure : figures) list_outputs(options, figure.name, files_of(figure, options));
+        for (const auto& figure : figures) list_outputs(options, figure.name, figure_files(figure, run));
         return;
     }
     const Destination to(options.out, figures.size(), fmt::format(".{}", name_of(figures.front().chart.format)));
+    run.out = to.folder();
     Reports reports(figures, progress_style(options.progress), to.streamed());
     const FigureReport report{
         [&](std::size_t k, const FigureProgress& progress) {
@@ -111,14 +109,7 @@ void make_figures(const FigureCommandOptions& options) {
         [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
     ignore_sigpipe();
     try {
-        run_figures(figures,
-                    {.out = to.folder(),
-                     .jobs = options.jobs,
-                     .shard = shard_of_option(options.shard, options.merge),
-                     .merge = options.merge,
-                     .tiles = options.tiles,
-                     .replacing = std::move(replacing)},
-                    watch_interrupts(), report);
+        run_figures(figures, run, watch_interrupts(), report);
     } catch (...) {
         reports.clear();
         throw;

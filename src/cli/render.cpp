@@ -246,7 +246,7 @@ void add_simulate(CLI::App& app) {
         const auto scenes = read_scenes(*options);
         std::optional<SingleFile> file;
         if (!options->recording.empty() && !options->list_outputs)
-            run.record_to = file.emplace(options->recording, recording_start).place();
+            run.record_to = file.emplace(options->recording, recording_file.start).place();
         run_all(scenes, *options, run);
         if (file) file->publish();
     });

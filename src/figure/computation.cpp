@@ -148,7 +148,7 @@ void Computation::report_estimate(double time) {
                              figure_.experiment->unit(), two_digits(rate), threads_, duration_text(left / rate)));
 }
 
-ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
+Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
     constexpr double allowed_s = 1, golden = 0.6180339887498949;
     const auto& experiment = *figure.experiment;
     const std::size_t trials = experiment.trials(), together = experiment.together();
@@ -169,7 +169,7 @@ ComputationEstimate estimated_computation(const FigurePreset& figure, int thread
     const std::size_t all_groups = (trials + together - 1) / together;
     double done = 0, seconds = 0, place = 0.5, from = 0;
     std::size_t first = 0, trials_done = 0, numbers_done = 0;
-    ComputationEstimate estimate;
+    Needs estimate;
     try {
         for (std::size_t calls = 0; calls < all_groups && !limit.reached(); ++calls) {
             first = static_cast<std::size_t>(place * static_cast<double>(all_groups)) * together;

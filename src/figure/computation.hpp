@@ -73,12 +73,8 @@ private:
     double done_units_ = 0, kept_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };
 
-/// What a figure takes, extrapolated from some trials. The process's memory counts from reset_peak_memory() on.
-struct ComputationEstimate : Needs {
-    double seconds = 0;     // with as many threads
-    bool at_least = false;  // one trial took more than half of the time allowed: a lower bound
-};
-/// Throws the error of a trial; exit 130 soon after `stop` is set.
-ComputationEstimate estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
+/// What a figure takes with so many threads, extrapolated from some trials. The process's memory counts from
+/// reset_peak_memory() on. Throws the error of a trial; exit 130 soon after `stop` is set.
+Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
 
 }  // namespace doppel

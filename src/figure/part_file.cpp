@@ -5,8 +5,6 @@
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -56,16 +54,20 @@ private:
     Stream file_;
 };
 
-Json json_of(const PartHeader& header) {
-    return {{"file", mark},
-            {"format", format},
-            {"figure", header.figure},
+/// What all parts of a figure agree on.
+Json identity(const PartHeader& header) {
+    return {{"figure", header.figure},
             {"version", header.version},
             {"revision", header.revision},
             {"preset_sha256", header.preset},
-            {"trials", header.trials},
-            {"shard", header.shard},
-            {"of", header.of}};
+            {"trials", header.trials}};
+}
+
+Json json_of(const PartHeader& header) {
+    Json json{{"file", mark}, {"format", format}};
+    json.update(identity(header));
+    json.update({{"shard", header.shard}, {"of", header.of}});
+    return json;
 }
 
 /// The checksum of a line in the file with this header.
@@ -124,40 +126,6 @@ PartHeader read_header(const std::string& line, const LineReader& file) {
 /// "fig8." or "fig8.3-of-8."
 std::string stem(const PartHeader& header) {
     return header.of == 1 ? header.figure + "." : fmt::format("{}.{}-of-{}.", header.figure, header.shard, header.of);
-}
-
-/// The files NAME.*.shard of a folder.
-std::vector<fs::path> shards_in(const fs::path& folder, const std::string& name) {
-    std::vector<fs::path> found;
-    if (type_of(folder) != fs::file_type::directory) return found;
-    for (const auto& file : names_in(folder))
-        if (file.starts_with(name + ".") && file.ends_with(".shard")) found.push_back(folder / file);
-    return found;
-}
-
-void check_header(const fs::path& path, const PartHeader& found, const PartHeader& wanted) {
-    const auto refuse = [&](std::string_view what, const std::string& is, const std::string& ours) {
-        throw bad_input("{} was made with another {}: {}, not {}; compute it again with --shard {}/{}", path.string(),
-                        what, is, ours, found.shard, found.of);
-    };
-    const auto short_hash = [](const std::string& hash) { return hash.substr(0, 12); };
-    if (found.figure != wanted.figure) refuse("figure", found.figure, wanted.figure);
-    if (found.version != wanted.version) refuse("version", found.version, wanted.version);
-    if (found.revision != wanted.revision) refuse("revision", found.revision, wanted.revision);
-    if (found.preset != wanted.preset || found.trials != wanted.trials)
-        refuse("preset, or other --set", short_hash(found.preset), short_hash(wanted.preset));
-}
-
-/// Throws if parts are missing; names the first one.
-void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
-    constexpr std::size_t max_named = 5;
-    const auto missing = static_cast<std::size_t>(std::count(parts.begin(), parts.end(), fs::path()));
-    if (missing == 0) return;
-    std::vector<std::string> named;
-    for (std::size_t i = 0; named.size() < std::min(missing, max_named); ++i)
-        if (parts[i].empty()) named.push_back(fmt::format("{}/{}", i + 1, parts.size()));
-    throw try_again("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
-                    missing > max_named ? fmt::format(" … {} in all", missing) : "");
 }
 
 /// The path "PATH.part". A file there is removed: it belongs to a run that was killed.
@@ -241,37 +209,23 @@ void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {
 }
 
 KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, const std::atomic<bool>& stop) {
-    const auto files = shards_in(folder, figure.name);
-    if (files.empty())
-        throw bad_input("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
-                        folder.string(), figure.name);
     const auto wanted = header_of(figure);
     KnownTrials all(wanted.trials);
-    std::vector<fs::path> parts;  // by part number; empty if not seen yet
-    for (const auto& path : files) {
+    all_parts(folder, figure.name, [&](const fs::path& path) {
         throw_if_set(stop);
         auto part = read_part_file(path);
         const auto& header = part.header;
-        check_header(path, header, wanted);
-        const auto of = static_cast<std::size_t>(header.of);
-        if (parts.empty()) parts.resize(of);
-        if (of != parts.size())
-            throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong", path.string(),
-                            of, files.front().string(), parts.size());
-        auto& seen = parts[static_cast<std::size_t>(header.shard) - 1];
-        if (!seen.empty())
-            throw bad_input("{} and {} are both part {}/{}; remove one of them", seen.string(), path.string(),
-                            header.shard, of);
-        seen = path;
+        const Shard shard{header.shard, header.of};
+        check_identity(path, identity(header), identity(wanted), shard, "compute");
         part.take(*figure.experiment, all);
         const auto refuse = [&](const std::string& why) {
-            throw io_failed("{} {}; compute it again with --shard {}/{}", path.string(), why, header.shard, of);
+            throw io_failed("{} {}; compute it again with --shard {}/{}", path.string(), why, shard.number, shard.of);
         };
         if (part.damaged_line > 0) refuse(fmt::format("is damaged in line {}", part.damaged_line));
         for (std::size_t trial = header.first(); trial < header.last(); ++trial)
             if (all[trial].empty()) refuse(fmt::format("is not whole: trial {} is missing", trial));
-    }
-    check_complete(parts, folder);
+        return shard;
+    });
     return all;
 }
 

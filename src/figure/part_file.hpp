@@ -1,6 +1,7 @@
 #pragma once
 
 #include "figure/preset.hpp"
+#include "film/shards.hpp"
 #include "output/files.hpp"
 
 #include <atomic>
@@ -9,9 +10,6 @@
 #include <vector>
 
 namespace doppel {
-
-/// The largest number of parts that a figure can be split into.
-inline constexpr int max_parts = 100'000;
 
 /// Identifies the run that a file of results belongs to. Files belong together if all members agree.
 struct PartHeader {

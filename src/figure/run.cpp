@@ -121,68 +121,59 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
     doppel::write_manifest(parts, figure.name + (tiles.is_null() ? ".json" : ".tiles.json"), std::move(manifest));
 }
 
-/// Draws and writes figures whose trials are complete.
-class FigureWriter {
-public:
-    FigureWriter(const FigureOptions& options, int jobs, const std::atomic<bool>& stop)
-        : options_(options), jobs_(jobs), stop_(stop) {}
-
-    RunResult write(const FigurePreset& figure, const KnownTrials& trials, FigureRecord record, Transaction& files) {
-        record.jobs = jobs_;
-        std::vector<std::string> warnings;
-        const auto finish = [&] {
-            const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-            const auto tiles = options_.tiles ? write_tiles(figure, page_of(figure, trials),
-                                                            theme_named(figure.chart.theme), files, jobs_, stop_)
-                                              : Json();
-            if (!options_.tiles) {
-                warnings = write_picture(figure, trials, files);
-                check_stop();
-                const auto csv = figure.name + ".csv";
-                Csv table(files.file(csv), figure.experiment->columns());
-                figure.experiment->write_rows(trials, table);
-                table.finish();
-                files.finished(csv);
-            }
-            record.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
-            check_stop();
-            write_manifest(files, figure, trials, record, tiles);
-            check_stop();
-            return files.publish();
-        };
-        auto written = files.keeping_finished(finish);
-        return {.files = std::move(written), .warnings = std::move(warnings)};
-    }
-
-private:
-    /// Returns what there was no room for.
-    std::vector<std::string> write_picture(const FigurePreset& figure, const KnownTrials& trials, Transaction& files) {
-        const auto format = figure.chart.format;
-        const auto name = fmt::format("{}.{}", figure.name, name_of(format));
-        if (format == PictureFormat::html) {
-            write_file(files.file(name), figure_page(figure, page_of(figure, trials), theme_named(figure.chart.theme)));
-            files.finished(name);
-            return {};
-        }
+/// Returns what there was no room for.
+std::vector<std::string> write_picture(const FigurePreset& figure, const KnownTrials& trials, Transaction& files,
+                                       const std::atomic<bool>& stop) {
+    const auto format = figure.chart.format;
+    const auto name = fmt::format("{}.{}", figure.name, name_of(format));
+    const auto place = files.file(name);
+    std::vector<std::string> notes;
+    if (format == PictureFormat::html) {
+        write_file(place, figure_page(figure, page_of(figure, trials), theme_named(figure.chart.theme)));
+    } else {
         const auto drawn = compose_figure(figure, trials);
         const double width_pt = layout_of(figure.chart).width_pt;
         const auto metadata =
             metadata_of(figure.title, figure.name, fmt::format("how it was made is in {}.json", figure.name));
         if (format == PictureFormat::png)
-            write_png(files.file(name), picture_of(drawn, stop_),
-                      {.metadata = metadata, .dpi = 72 * drawn.size.width / width_pt}, stop_);
+            write_png(place, picture_of(drawn, stop), {.metadata = metadata, .dpi = 72 * drawn.size.width / width_pt},
+                      stop);
         else
-            write_file(files.file(name), page_file(drawn, format, width_pt, metadata));
-        files.finished(name);
-        return drawn.notes;
+            write_file(place, page_file(drawn, format, width_pt, metadata));
+        notes = drawn.notes;
     }
+    files.finished(name);
+    return notes;
+}
 
-    void check_stop() const { throw_if_set(stop_); }
-
-    const FigureOptions& options_;
-    int jobs_;
-    const std::atomic<bool>& stop_;
-};
+/// Draws and writes a figure whose trials are complete.
+RunResult write_figure(const FigurePreset& figure, const KnownTrials& trials, FigureRecord record, bool as_tiles,
+                       Transaction& files, const std::atomic<bool>& stop) {
+    RunResult result;
+    const auto finish = [&] {
+        const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        Json tiles;
+        if (as_tiles) {
+            tiles =
+                write_tiles(figure, page_of(figure, trials), theme_named(figure.chart.theme), files, record.jobs, stop);
+        } else {
+            result.warnings = write_picture(figure, trials, files, stop);
+            throw_if_set(stop);
+            const auto csv = figure.name + ".csv";
+            Csv table(files.file(csv), figure.experiment->columns());
+            figure.experiment->write_rows(trials, table);
+            table.finish();
+            files.finished(csv);
+        }
+        record.draw_cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
+        throw_if_set(stop);
+        write_manifest(files, figure, trials, record, tiles);
+        throw_if_set(stop);
+        return files.publish();
+    };
+    result.files = files.keeping_finished(finish);
+    return result;
+}
 
 PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) {
     return options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
@@ -262,16 +253,22 @@ private:
 
 }  // namespace
 
+std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options) {
+    const auto& name = figure.name;
+    if (options.shard) return {shard_name(header_for(figure, options))};
+    if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
+    return {fmt::format("{}.{}", name, name_of(figure.chart.format)), name + ".csv", name + ".json"};
+}
+
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report) {
     const int jobs = options.jobs > 0 ? options.jobs : cores();
-    FigureWriter writer(options, jobs, stop);
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
             Transaction files(options.out / figures[k].name, "run", "figure", options.replacing);
-            auto result = writer.write(figures[k], trials, {}, files);
+            auto result = write_figure(figures[k], trials, {.jobs = jobs}, options.tiles, files, stop);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
         }
@@ -281,15 +278,13 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) {
         files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, "figure", options.replacing));
-        if (options.shard) continue;
-        std::vector<std::string_view> endings{name_of(figure.chart.format), "csv", "json"};
-        if (options.tiles) endings = {"html", "tiles.json"};
-        for (const auto ending : endings) files.back()->require(fmt::format("{}.{}", figure.name, ending));
+        for (const auto& name : figure_files(figure, options))
+            if (!name.ends_with('/') && !options.shard) files.back()->require(name);
     }
     Scheduler scheduler(figures, options, jobs, files, stop, report);
     while (const auto k = scheduler.next()) {
         auto& computation = scheduler.computation(*k);
-        FigureRecord record{.compute_cpu_s = computation.cpu_s()};
+        FigureRecord record{.jobs = jobs, .compute_cpu_s = computation.cpu_s()};
         const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
         record.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         RunResult result;
@@ -297,7 +292,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
             if (options.shard)
                 result.files = {computation.publish_shard()};
             else
-                result = writer.write(figures[*k], computation.take_all(), record, *files[*k]);
+                result = write_figure(figures[*k], computation.take_all(), record, options.tiles, *files[*k], stop);
         } catch (const Error& error) {
             // running the same command again could not draw more
             if (error.code() == ExitCode::method_failed) {

@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace doppel {
 
@@ -20,8 +22,8 @@ struct FigureOptions {
 /// Reports progress of the figures, numbered as given. Called by any thread, by one at a time for one figure.
 struct FigureReport {
     std::function<void(std::size_t figure, const FigureProgress&)> progress;
-    std::function<void(std::size_t figure, const std::string& sentence)> note;
-    std::function<void(std::size_t figure, const RunResult&)> done;
+    std::function<void(std::size_t figure, const std::string& sentence)> note = [](auto, const auto&) {};
+    std::function<void(std::size_t figure, const RunResult&)> done = [](auto, const auto&) {};
 };
 
 /// Makes figures. Threads compute the trials, figure after figure, while the calling thread draws and writes complete
@@ -33,6 +35,9 @@ struct FigureReport {
 /// set.
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report);
+
+/// The files that run_figures() writes in OUT/NAME/; names of folders end with "/".
+std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options);
 
 /// Lays out the picture of a figure without writing it.
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials);

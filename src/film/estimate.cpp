@@ -153,8 +153,7 @@ SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bo
     return all;
 }
 
-RenderEstimate estimated_render(const Scene& scene, const SimulationEstimate& simulation,
-                                const std::atomic<bool>& stop) {
+Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
     // long enough for trails to form, and short
     constexpr double motion_s = 4, begin_s = 0.15, patience_s = 1;
     const auto samples = static_cast<double>(scene.samples);
@@ -165,10 +164,11 @@ RenderEstimate estimated_render(const Scene& scene, const SimulationEstimate& si
     const bool is_page = video.format == FilmFormat::html;
     constexpr double number_bytes = 18.5;  // in the table, measured: 17.9 to 19.7
     const double table_bytes = number_bytes * samples * static_cast<double>(columns_of(scene).size());
-    RenderEstimate estimate{{.cpu_s = motions_s,
-                             .repeated_cpu_s = motions_s,
-                             .disk_bytes = table_bytes + (is_page ? estimated_page_bytes(scene) : unknown)},
-                            motions_s};
+    Needs estimate{.seconds = motions_s,
+                   .cpu_s = motions_s,
+                   .repeated_cpu_s = motions_s,
+                   .disk_bytes = table_bytes + (is_page ? estimated_page_bytes(scene) : unknown),
+                   .at_least = simulation.at_least};
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
     if (!is_page && !simulation.at_least && sample_s * static_cast<double>(one_frame) <= patience_s) {

@@ -1,14 +1,15 @@
 #include "film/film.hpp"
 
 #include "base/clock.hpp"
-#include "base/embedded.hpp"
 #include "image/picture.hpp"
-#include "output/film_part.hpp"
 #include "output/png.hpp"
 #include "output/sink.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace doppel {
 
@@ -68,6 +69,14 @@ Schedule schedule_of(const Scene& scene) {
             .end = frames(video.end_card_s)};
 }
 
+FrameRange drawn_frames(const Scene& scene, const RunOptions& options, long first) {
+    if (options.shard) return frames_of(scene, *options.shard);
+    if (options.merge) return {0, 0};
+    if (!options.only.empty()) return {options.only.front(), options.only.back() + 1, options.only};
+    const auto schedule = schedule_of(scene);
+    return schedule.range(first, schedule.motion);
+}
+
 double card_opacity(long k, long count, double fps, bool fades_in) {
     const double fade = std::max(1.0, std::min(0.5 * fps, static_cast<double>(count) / 2));  // frames
     const double left = static_cast<double>(fades_in ? k + 1 : count - k);
@@ -100,16 +109,15 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       record_(record),
       stop_(stop),
       schedule_(schedule_of(scene)),
-      begin_(first == 0 ? 0 : schedule_.title + schedule_.hold_start + first),
-      drawn_(options.shard   ? frames_of(scene, *options.shard)
-             : options.merge ? FrameRange{0, 0}
-                             : FrameRange{begin_, schedule_.frames()}),
+      drawn_(drawn_frames(scene, options, first)),
+      begin_(schedule_.range(first, schedule_.motion).first),
       next_(begin_),
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     if (options.merge) joined_ = parts_in(scene, parts.folder());
-    if (!joined_ || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
-    record.gl = joined_ ? joined_->gl : canvas_->description();
+    if (video.poster_s && !options.is_part()) poster_at_ = schedule_.at(*poster_frame(scene));
+    if (!options.merge || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
+    if (!options.merge) record.gl = canvas_->description();
     if (video.format == FilmFormat::png)
         begin_pictures();
     else
@@ -120,26 +128,38 @@ void Film::begin_pictures() {
     const auto& video = scene_.preset.video;
     film_name_ = "frames";
     folder_ = parts_.directory(film_name_);
-    const auto place_of = [this](long k) { return folder_ / fmt::format("{:06}.png", drawn_.first + k); };
+    const auto place_of = [this](long k) { return folder_ / fmt::format("{:06}.png", drawn_.at(k)); };
     sink_ = make_png_sink(place_of, png_threads(options_.jobs, video.size),
                           {.with_alpha = video.transparent, .metadata = film_metadata(scene_.preset)}, stop_);
 }
 
 void Film::begin_video() {
     auto video = video_options(scene_);
-    film_name_ = options_.shard ? part_name(scene_, *options_.shard) : scene_.preset.name + extension(video.format);
-    if (options_.shard) video.part_header = part_header(scene_, *options_.shard, record_.gl);
-    video.first_frame = options_.shard ? drawn_.first : 0;
+    film_name_ = scene_.preset.name + extension(video.format);
+    if (options_.shard) {
+        film_name_ = part_name(scene_, *options_.shard);
+        video.part_header = part_header(scene_, *options_.shard, record_.gl);
+        video.first_frame = drawn_.first;
+    }
     video.is_stream = options_.to_stream;
     if (options_.is_partial()) video.frames = 0;
-    const auto place = video.is_stream ? std::filesystem::path("-") : parts_.file(film_name_);
-    sink_ = joined_ ? join_film_parts(place, video, joined_->files, stop_) : make_video_sink(place, video, stop_);
+    sink_ = make_video_sink(video.is_stream ? "-" : parts_.file(film_name_), video, stop_);
     record_.libav = libav_description();
 }
 
-/// Draws the list if its frame belongs to the part; nothing otherwise.
-const Picture* Film::take(const DisplayList& list) {
-    if (!drawn_.contains(next_++)) return nullptr;
+/// The picture of the last snapshot as frame `number`, with a card that fades out or in over it.
+DisplayList Film::list_of(long number) const {
+    auto list = composer_.frame();
+    const double fps = scene_.fps.value();
+    const long end = schedule_.frames() - schedule_.end;
+    DisplayList card;
+    if (number < schedule_.title) card = composer_.title_card(card_opacity(number, schedule_.title, fps, false));
+    if (number >= end) card = composer_.end_card(card_opacity(number - end, schedule_.end, fps, true));
+    list.insert(list.end(), card.begin(), card.end());
+    return list;
+}
+
+const Picture& Film::take(const DisplayList& list) {
     const Picture* picture = nullptr;
     {
         Stopwatch watch(record_.draw_cpu_s);
@@ -148,53 +168,50 @@ const Picture* Film::take(const DisplayList& list) {
     Stopwatch watch(record_.write_cpu_s);
     sink_->take(*picture, canvas_->changed());
     ++record_.frames;
-    return picture;
-}
-
-/// Draws the first or last frame with a card fading out or in over it.
-void Film::take_card(long frames, bool fades_in) {
-    for (long k = 0; k < frames; ++k) {
-        const double opacity = card_opacity(k, frames, scene_.fps.value(), fades_in);
-        auto list = composer_.frame();
-        const auto card = fades_in ? composer_.end_card(opacity) : composer_.title_card(opacity);
-        list.insert(list.end(), card.begin(), card.end());
-        take(list);
-    }
+    return *picture;
 }
 
 void Film::write_frame(long number) {
-    const bool is_first = number == 0, is_last = number + 1 == schedule_.motion;
-    if (is_first) take_card(schedule_.title, false);
-    const long times = 1 + (is_first ? schedule_.hold_start : 0) + (is_last ? schedule_.hold_end : 0);
-    const bool is_poster = number == poster_frame(scene_) && !options_.shard;
-    const bool is_seen = next_ < drawn_.last && next_ + times > drawn_.first;
-    const auto list = is_seen || is_poster ? composer_.frame() : DisplayList();
-    for (long k = 0; k < times; ++k) {
-        const auto* picture = take(list);
-        if (k == 0 && is_poster) poster_ = picture ? *picture : canvas_->draw(list);
+    for (const long end = schedule_.range(number, number + 1).last; next_ < end; ++next_) {
+        const bool is_drawn = drawn_.contains(next_), is_poster = next_ == poster_at_;
+        if (!is_drawn && !is_poster) continue;
+        const auto list = list_of(next_);
+        const auto& picture = is_drawn ? take(list) : canvas_->draw(list);
+        if (is_poster) poster_ = picture;
     }
-    if (is_last) take_card(schedule_.end, true);
 }
 
 void Film::finish(const std::vector<FilmEvent>& events) {
     for (const auto& [frame, title] : chapters_of(scene_, events))
         if (frame >= begin_ && frame < next_) sink_->add_chapter(frame - begin_, title);
+    if (options_.merge) join_parts();
     sink_->finish();
-    if (joined_) record_.frames = schedule_.frames();
-    if (joined_ && !folder_.empty()) join_pictures(*joined_, folder_, stop_);
     if (options_.shard && !folder_.empty()) pack_pictures();
     parts_.finished(film_name_);
     if (poster_) write(".poster.png", *poster_);
 }
 
+void Film::join_parts() {
+    std::set<std::string> libraries;
+    for (const auto& path : joined_) {
+        BlockFile part(path, film_part);
+        libraries.insert(Json::parse(part.header()).value("gl", ""));
+        sink_->add(part);
+    }
+    record_.gl = fmt::format("{}", fmt::join(libraries, "; "));
+    record_.frames = schedule_.frames();
+}
+
 /// Puts the pictures of a part into one file.
 void Film::pack_pictures() {
     const auto name = part_name(scene_, *options_.shard);
-    FilmPartWriter part(parts_.file(name), part_header(scene_, *options_.shard, record_.gl));
+    BlockFile part(parts_.file(name), part_header(scene_, *options_.shard, record_.gl));
     for (long frame = drawn_.first; frame < drawn_.last; ++frame) {
         throw_if_set(stop_);
         const auto path = folder_ / fmt::format("{:06}.png", frame);
-        part.add({.pts = frame, .dts = frame, .bytes = start_of_file(path, std::filesystem::file_size(path))});
+        auto picture = start_of_file(path, std::filesystem::file_size(path));
+        part(picture);
+        part.end_block();
     }
     part.finish();
     parts_.keep_only(name, name);

@@ -11,6 +11,7 @@
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -49,10 +50,24 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
 struct Schedule {
     long title = 0, hold_start = 0, motion = 0, hold_end = 0, end = 0;
 
-    long frames() const { return title + hold_start + motion + hold_end + end; }
+    long frames() const { return before() + motion + hold_end + end; }
+    /// The number of frames before frame 1 of the motion, without its frame 0.
+    long before() const { return title + hold_start; }
+    /// The frame of the motion that frame `number` of the film shows.
+    long motion_frame(long number) const { return std::clamp(number - before(), 0L, motion - 1); }
+    /// The first frame of the film that shows a frame of the motion without a card.
+    long at(long frame) const { return frame == 0 ? title : before() + frame; }
+    /// The frames of the film that belong to the frames first … last − 1 of the motion.
+    FrameRange range(long first, long last) const {
+        return {first == 0 ? 0 : before() + first, last == motion ? frames() : before() + last};
+    }
 };
 
 Schedule schedule_of(const Scene& scene);
+
+/// The frames of the film that a run draws: those of its part, none for a merge, otherwise all from frame `first` of the
+/// motion on.
+FrameRange drawn_frames(const Scene& scene, const RunOptions& options, long first);
 
 /// The opacity of a card on frame `k` of `count`. It fades out over its last half second (or in over its first), but at
 /// most over half of its frames.
@@ -101,9 +116,10 @@ public:
 private:
     void begin_pictures();
     void begin_video();
+    void join_parts();
     void pack_pictures();
-    const Picture* take(const DisplayList& list);
-    void take_card(long frames, bool fades_in);
+    DisplayList list_of(long number) const;
+    const Picture& take(const DisplayList& list);
 
     const Scene& scene_;
     const RunOptions& options_;
@@ -111,10 +127,11 @@ private:
     RunRecord& record_;
     const std::atomic<bool>& stop_;
     const Schedule schedule_;
-    const long begin_;  // the first frame of the file; frames are counted in the whole film
-    const FrameRange drawn_;
+    const FrameRange drawn_;  // frames are counted in the whole film
+    const long begin_;        // the first frame of the file
     long next_;
-    std::optional<FilmParts> joined_;
+    long poster_at_ = -1;
+    std::vector<std::filesystem::path> joined_;  // parts, for a merge
     Composer composer_;
     std::string film_name_;         // name of the video, or of the folder of pictures
     std::filesystem::path folder_;  // of the pictures

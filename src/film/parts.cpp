@@ -3,13 +3,9 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "film/film.hpp"
-#include "output/film_part.hpp"
+#include "output/blocks.hpp"
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
-
-#include <algorithm>
-#include <optional>
-#include <set>
 
 namespace doppel {
 namespace {
@@ -25,23 +21,16 @@ Json identity(const Scene& scene) {
             {"libav", libav_description()}};
 }
 
-/// Throws if the part belongs to something else.
-void check_identity(const fs::path& path, const Json& header, const Json& wanted) {
-    for (const auto& [key, ours] : wanted.items())
-        if (const auto theirs = header.value(key, Json()); theirs != ours)
-            throw bad_input("{} was made with another {}: {}, not {}; render it again with --shard {}/{}",
-                            path.string(), key == "preset_sha256" ? "preset, or other --set" : key,
-                            theirs.dump().substr(0, 40), ours.dump().substr(0, 40), header.value("shard", 0),
-                            header.value("of", 0));
-}
-
-Json header_of(const fs::path& path) {
-    auto header = Json::parse(FilmPartReader(path).header(), nullptr, false);
+/// Reads the header of a part. Throws if it does not belong to the film.
+Shard shard_in(const BlockFile& part, const fs::path& path, const Scene& scene) {
+    const auto header = Json::parse(part.header(), nullptr, false);
     const auto number = [&](const char* key) { return header.is_object() ? header.value(key, Json()) : Json(); };
     const auto shard = number("shard"), of = number("of");
     if (!shard.is_number_integer() || !of.is_number_integer() || shard < 1 || of < shard)
         throw io_failed("{} is damaged; remove it", path.string());
-    return header;
+    const Shard result{shard, of};
+    check_identity(path, header, identity(scene), result, "render");
+    return result;
 }
 
 }  // namespace
@@ -80,8 +69,8 @@ bool is_part_complete(const Scene& scene, const Shard& shard, const fs::path& fo
     const auto path = folder / part_name(scene, shard);
     if (type_of(path) != fs::file_type::regular) return false;
     try {
-        check_identity(path, header_of(path), identity(scene));
-        FilmPartReader part(path);
+        BlockFile part(path, film_part);
+        shard_in(part, path, scene);
         while (part.next()) continue;
         return true;
     } catch (const Error&) {
@@ -89,44 +78,12 @@ bool is_part_complete(const Scene& scene, const Shard& shard, const fs::path& fo
     }
 }
 
-FilmParts parts_in(const Scene& scene, const fs::path& folder) {
-    const auto& name = scene.preset.name;
-    FilmParts parts;
-    std::set<std::string> libraries;
-    const auto wanted = identity(scene);
-    if (type_of(folder) != fs::file_type::directory) throw try_again("{} does not exist", folder.string());
-    for (const auto& file : names_in(folder)) {
-        if (!file.starts_with(name + ".") || !file.ends_with(".shard")) continue;
-        const auto header = header_of(folder / file);
-        check_identity(folder / file, header, wanted);
-        const Shard shard{header["shard"], header["of"]};
+std::vector<fs::path> parts_in(const Scene& scene, const fs::path& folder) {
+    return all_parts(folder, scene.preset.name, [&](const fs::path& path) {
+        const auto shard = shard_in(BlockFile(path, film_part), path, scene);
         frames_of(scene, shard);
-        if (parts.files.empty()) parts.files.resize(static_cast<std::size_t>(shard.of));
-        if (file != part_name(scene, shard) || static_cast<std::size_t>(shard.of) != parts.files.size())
-            throw bad_input("{} is part {} of {}, others are of {}; remove those that do not belong",
-                            (folder / file).string(), shard.number, shard.of, parts.files.size());
-        parts.files[static_cast<std::size_t>(shard.number) - 1] = folder / file;
-        libraries.insert(header.value("gl", ""));
-    }
-    if (parts.files.empty())
-        throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
-                        folder.string(), name);
-    std::vector<std::string> missing;
-    for (std::size_t i = 0; i < parts.files.size(); ++i)
-        if (parts.files[i].empty()) missing.push_back(fmt::format("{}/{}", i + 1, parts.files.size()));
-    if (!missing.empty()) throw try_again("{}: missing parts: {}", folder.string(), fmt::join(missing, ", "));
-    parts.gl = fmt::format("{}", fmt::join(libraries, "; "));
-    return parts;
-}
-
-void join_pictures(const FilmParts& parts, const fs::path& folder, const std::atomic<bool>& stop) {
-    for (const auto& path : parts.files) {
-        FilmPartReader part(path);
-        while (const auto picture = part.next()) {
-            throw_if_set(stop);
-            write_file(folder / fmt::format("{:06}.png", picture->pts), picture->bytes);
-        }
-    }
+        return shard;
+    });
 }
 
 }  // namespace doppel

@@ -1,24 +1,33 @@
 #pragma once
 
-#include "film/run.hpp"
+#include "film/shards.hpp"
 #include "scene/scene.hpp"
 
-#include <atomic>
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace doppel {
 
-/// Frames first … last − 1.
+/// The largest number of parts into which a film can be split: one for each segment; 1 if its format has none.
+long max_shards(const Scene& scene);
+
+/// Frames first … last − 1 of the whole film with its cards; if `only` is not empty, these of them, in order.
 struct FrameRange {
     long first, last;
+    std::vector<long> only = {};
 
-    bool contains(long frame) const { return first <= frame && frame < last; }
+    bool contains(long frame) const {
+        return only.empty() ? first <= frame && frame < last : std::ranges::binary_search(only, frame);
+    }
+    long count() const { return only.empty() ? last - first : static_cast<long>(only.size()); }
+    /// The number of its frame k.
+    long at(long k) const { return only.empty() ? first + k : only[static_cast<std::size_t>(k)]; }
 };
 
-/// The frames of a part, counted in the whole film with its cards. A part consists of whole segments
-/// (VideoOptions::segment). Throws Error (exit 2) if the film has fewer segments than parts, or cannot be split.
+/// The frames of a part. A part consists of whole segments (VideoOptions::segment). Throws Error (exit 2) if the film
+/// has fewer segments than parts, or cannot be split.
 FrameRange frames_of(const Scene& scene, const Shard& shard);
 
 /// "butterfly.3-of-8.shard"
@@ -30,16 +39,7 @@ std::string part_header(const Scene& scene, const Shard& shard, const std::strin
 /// Whether the folder contains this part, complete.
 bool is_part_complete(const Scene& scene, const Shard& shard, const std::filesystem::path& folder);
 
-/// The parts of a film in a folder, in order.
-struct FilmParts {
-    std::vector<std::filesystem::path> files;
-    std::string gl;  // the libraries that drew them
-};
-/// Throws Error: exit 75 if parts are missing, exit 2 if there are parts of another film or number, exit 4 if one
-/// cannot be read.
-FilmParts parts_in(const Scene& scene, const std::filesystem::path& folder);
-
-/// Writes the pictures of parts to `folder` as 000000.png …
-void join_pictures(const FilmParts& parts, const std::filesystem::path& folder, const std::atomic<bool>& stop);
+/// The parts of a film in a folder, in order. Throws Error as all_parts(), and exit 4 if one cannot be read.
+std::vector<std::filesystem::path> parts_in(const Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace doppel

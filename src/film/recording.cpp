@@ -20,7 +20,7 @@ void add(SideRecord& record, const Observation& seen, std::optional<double> ener
 }  // namespace
 
 Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-                     Report report, double max_bytes, std::filesystem::path file)
+                     std::filesystem::path file, Report report, double max_bytes)
     : scene_(scene),
       end_(end),
       with_pictures_(with_pictures),
@@ -60,30 +60,26 @@ void Recording::play(const Visit& visit) {
 /// The snapshots in order, simulated or from a file.
 class Recording::Source {
 public:
-    Source(const Recording& of, bool with_members) : of_(of), with_members_(with_members) {
-        if (!of.file_.empty())
-            file_.emplace(of.file_, of.scene_);
-        else
+    Source(const Recording& of, bool with_members) : stop_(of.stop_) {
+        if (of.file_.empty())
             pair_.emplace(of.scene_);
-        if (with_members_ && pair_) members_.emplace(of.scene_.members, 1);
+        else
+            file_.emplace(of.file_, of.scene_);
+        if (with_members && pair_) members_.emplace(of.scene_.members, 1);
     }
 
     Snapshot at(const Moment& moment, MotionRecord& record) {
-        if (file_) {
-            throw_if_set(of_.stop_);
-            auto snapshot = file_->at(moment, record);
-            if (!with_members_) snapshot.members.clear();
-            return snapshot;
-        }
+        throw_if_set(stop_);
+        if (file_) return file_->at(moment, record);
         const bool is_sample = moment.share == 0;
-        Snapshot snapshot{is_sample ? pair_->next(of_.stop_) : pair_->advance_to(moment, of_.stop_), {}};
+        Snapshot snapshot{is_sample ? pair_->next(stop_) : pair_->advance_to(moment, stop_), {}};
         record.a.effort = pair_->effort_a();
         record.b.effort = pair_->effort_b();
         if (!members_) return snapshot;
         if (!is_sample)
-            members_->advance_within(moment.share, of_.stop_);
+            members_->advance_within(moment.share, stop_);
         else if (moment.sample > 0)
-            members_->advance(of_.stop_);
+            members_->advance(stop_);
         for (std::size_t k = 0; k < members_->size(); ++k) snapshot.members.push_back(members_->bobs(k));
         return snapshot;
     }
@@ -92,8 +88,7 @@ public:
     double spent_s() const { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + (pair_ ? pair_->other_cpu_s() : 0); }
 
 private:
-    const Recording& of_;
-    const bool with_members_;
+    const std::atomic<bool>& stop_;
     std::optional<RecordingReader> file_;
     std::optional<PairRun> pair_;
     std::optional<MotionBatch> members_;

@@ -69,7 +69,7 @@ public:
     /// outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
     /// play() throws the others. With a `file` (RecordingReader), its snapshots replace the simulation.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-              Report report = {}, double max_bytes = usual_bytes, std::filesystem::path file = {});
+              std::filesystem::path file = {}, Report report = {}, double max_bytes = usual_bytes);
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 

@@ -160,21 +160,23 @@ std::vector<std::string> run_files(const Scene& scene, const RunOptions& options
 
 namespace {
 
-/// Draws one part of a film.
+/// Draws one part of a film, or some of its pictures.
 RunResult run_part(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
     const double start = seconds_of(CLOCK_MONOTONIC);
-    const auto& shard = *options.shard;
-    const auto name = part_name(scene, shard);
-    Transaction parts(options.out / scene.preset.name, fmt::format("shard-{}-of-{}", shard.number, shard.of), "film",
+    const auto& shard = options.shard;
+    Transaction parts(options.out / scene.preset.name,
+                      shard ? fmt::format("shard-{}-of-{}", shard->number, shard->of) : "run", "film",
                       options.replacing);
     RunRecord record;
-    record.files = {parts.folder() / name};
-    if (is_part_complete(scene, shard, parts.folder())) return record;
-    const auto range = frames_of(scene, shard);
+    if (shard && is_part_complete(scene, *shard, parts.folder())) {
+        record.files = {parts.folder() / part_name(scene, *shard)};
+        return record;
+    }
     const auto schedule = schedule_of(scene);
-    const long last = std::clamp(range.last - schedule.title - schedule.hold_start, 1L, schedule.motion);
+    const auto drawn = drawn_frames(scene, options, 0);
+    const long last = schedule.motion_frame(drawn.last - 1) + 1;
     const Moment end = last == schedule.motion ? Moment{scene.samples + 1} : scene.frames.at(last);
-    Recording recording(scene, end, true, stop, {}, Recording::usual_bytes, options.recording);
+    Recording recording(scene, end, true, stop, options.recording);
     std::optional<Film> film;
     if (!recording.fails()) film.emplace(scene, recording.bounds(), options, 0, parts, record, stop);
     long frame = 0;
@@ -184,14 +186,14 @@ RunResult run_part(const Scene& scene, const RunOptions& options, const std::ato
         film->add(snapshot);
         if (frame == last || snapshot.pair.moment() != scene.frames.at(frame)) return;
         film->write_frame(frame++);
-        report({record.frames, range.last - range.first});
+        report({record.frames, drawn.count()});
     });
     const auto finish = [&] {
         film->finish({});
         throw_if_set(stop);
         return parts.publish();
     };
-    parts.keeping_finished(finish);
+    record.files = parts.keeping_finished(finish);
     record.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
     return std::move(static_cast<RunResult&>(record));
 }
@@ -199,7 +201,7 @@ RunResult run_part(const Scene& scene, const RunOptions& options, const std::ato
 }  // namespace
 
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
-    if (options.shard) return run_part(scene, options, stop, report);
+    if (options.is_part()) return run_part(scene, options, stop, report);
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const auto part = part_of(scene, options);
     RunRecord record;
@@ -213,8 +215,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     for (const auto& file : run_files(scene, options)) parts.require(file);  // before the simulation
     if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
     const bool is_recorded = !options.record_to.empty();
-    Recording recording(scene, part.end, options.pictures || is_recorded, stop, {}, Recording::usual_bytes,
-                        options.recording);
+    Recording recording(scene, part.end, options.pictures || is_recorded, stop, options.recording);
     std::optional<RecordingWriter> recorder;
     if (is_recorded) recorder.emplace(options.record_to, scene);
     std::optional<Film> film;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "film/parts.hpp"
 #include "film/recording.hpp"
 #include "output/transaction.hpp"
 #include "render/renderer.hpp"
@@ -9,15 +10,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace doppel {
-
-/// Part `number`, from 1, of `of`.
-struct Shard {
-    int number = 1, of = 1;
-};
 
 /// What a run writes, and to which folder.
 struct RunOptions {
@@ -30,11 +25,14 @@ struct RunOptions {
     std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all if empty
     Replacing replacing = {};
     std::optional<Shard> shard = {};       // only this part of the film, into a file for a merge
+    std::vector<long> only = {};           // only these pictures of the film, counted with its cards, without a table
     bool merge = false;                    // draw nothing: join the parts in OUT/NAME/
     bool to_stream = false;                // the film goes to standard output while it is made
     std::filesystem::path recording = {};  // read the motion from this file
     std::filesystem::path record_to = {};  // also write the motion to this file
 
+    /// Whether no table and no manifest are written.
+    bool is_part() const { return shard || !only.empty(); }
     bool is_partial() const { return first != 0 || last >= 0 || from_s || to_s; }
 };
 
@@ -60,9 +58,6 @@ void check_run(const Scene& scene, const RunOptions& options);
 
 /// The files that run() writes in OUT/NAME/; names of folders end with "/".
 std::vector<std::string> run_files(const Scene& scene, const RunOptions& options);
-
-/// The largest number of parts into which a film can be split: one for each segment; 1 if its format has none.
-long max_shards(const Scene& scene);
 
 /// Simulates, draws and writes, in parallel. Files appear complete or not at all. A part of a film that is complete is
 /// not made again. Joined parts give the same files as one run. Throws Error: exit 2, 3, 4, 75 if parts are missing, or

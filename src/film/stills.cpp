@@ -53,7 +53,7 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     alone.frames = {.last = moment, .count = 1};
     alone.preset.video.contact_sheet.reset();
     const long samples = moment.sample + 1;
-    Recording recording(alone, {samples}, true, stop, report);
+    Recording recording(alone, {samples}, true, stop, {}, report);
     Composer composer(scene, recording.bounds());
     std::optional<Canvas> canvas;  // made first, so that missing OpenGL is reported at once
     if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);

@@ -23,8 +23,6 @@ extern "C" {
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
-#include <map>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -58,7 +56,8 @@ Libav<T> owned(T* thing) {
 /// used. (It opens an MP4 again, to put the index at the front.)
 Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, const Encoding& encoding) {
     capture_libav_log();
-    const auto address = fmt::format("{}{}", encoding.is_stream ? "pipe:" : "file:/proc/self/fd/", fileno(file));
+    const auto address =
+        fmt::format("{}{}", encoding.options.is_stream ? "pipe:" : "file:/proc/self/fd/", fileno(file));
     AVFormatContext* format = nullptr;
     avformat_alloc_output_context2(&format, nullptr, encoding.container, address.c_str());
     auto muxer = owned(format);
@@ -80,28 +79,41 @@ bool has_chroma(AVPixelFormat pixels) {
     return !(about.flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL));
 }
 
-FilmPacket packet_of(const AVPacket& packet) {
-    const auto text = [](const std::uint8_t* bytes, std::size_t size) {
-        return std::string(reinterpret_cast<const char*>(bytes), size);
-    };
-    FilmPacket part{packet.pts, packet.dts, packet.flags, text(packet.data, static_cast<std::size_t>(packet.size))};
-    for (int i = 0; i < packet.side_data_elems; ++i) {
-        const auto& side = packet.side_data[i];
-        part.side_data.emplace_back(static_cast<int>(side.type), text(side.data, side.size));
-    }
-    return part;
+void set_side_data(AVPacket& packet, AVPacketSideDataType type, std::string_view bytes) {
+    auto* place = av_packet_new_side_data(&packet, type, bytes.size());
+    if (!place) throw std::bad_alloc();
+    std::memcpy(place, bytes.data(), bytes.size());
 }
 
-void fill(AVPacket& packet, const FilmPacket& part) {
-    if (av_new_packet(&packet, static_cast<int>(part.bytes.size())) < 0) throw std::bad_alloc();
-    std::memcpy(packet.data, part.bytes.data(), part.bytes.size());
-    packet.pts = part.pts;
-    packet.dts = part.dts;
-    packet.flags = part.flags;
-    for (const auto& [type, bytes] : part.side_data) {
-        auto* place = av_packet_new_side_data(&packet, static_cast<AVPacketSideDataType>(type), bytes.size());
-        if (!place) throw std::bad_alloc();
-        std::memcpy(place, bytes.data(), bytes.size());
+std::string text(const std::uint8_t* bytes, std::size_t size) {
+    return {reinterpret_cast<const char*>(bytes), size};
+}
+
+/// Writes a packet with all that the muxer needs.
+void write_block(AVPacket& packet, BlockFile& part) {
+    auto bytes = text(packet.data, static_cast<std::size_t>(packet.size));
+    part(packet.pts, packet.dts, packet.flags, packet.side_data_elems, bytes);
+    for (int i = 0; i < packet.side_data_elems; ++i) {
+        bytes = text(packet.side_data[i].data, packet.side_data[i].size);
+        part(packet.side_data[i].type, bytes);
+    }
+    part.end_block();
+}
+
+void read_block(BlockFile& part, AVPacket& packet) {
+    std::int64_t pts = 0, dts = 0;
+    int flags = 0, side_data = 0;
+    std::string bytes;
+    part(pts, dts, flags, side_data, bytes);
+    if (av_new_packet(&packet, static_cast<int>(bytes.size())) < 0) throw std::bad_alloc();
+    std::memcpy(packet.data, bytes.data(), bytes.size());
+    packet.pts = pts;
+    packet.dts = dts;
+    packet.flags = flags;
+    for (int i = 0; i < side_data; ++i) {
+        AVPacketSideDataType type{};
+        part(type, bytes);
+        set_side_data(packet, type, bytes);
     }
 }
 
@@ -186,10 +198,11 @@ Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& 
     // if threads cannot be started, SVT-AV1 (some 110 threads) hangs and libaom aborts
     if (has_chroma(encoding.pixels)) need_threads(encoder == "libsvtav1" ? 200 : 3 * encoding.threads);
     auto codec = owned(avcodec_alloc_context3(encoding.encoder));
-    codec->width = encoding.size.width;
-    codec->height = encoding.size.height;
+    codec->width = encoding.options.size.width;
+    codec->height = encoding.options.size.height;
     codec->sample_aspect_ratio = {1, 1};
-    codec->framerate = encoding.frame_rate;
+    codec->framerate = {static_cast<int>(encoding.options.fps_numerator),
+                        static_cast<int>(encoding.options.fps_denominator)};
     codec->time_base = encoding.tick;
     codec->pix_fmt = encoding.pixels;
     if (has_chroma(encoding.pixels)) tag_bt709(*codec);
@@ -208,9 +221,9 @@ Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const st
       encoding_(std::move(encoding)),
       stop_(stop),
       packet_(owned(av_packet_alloc())) {
-    frame_ = make_frame(encoding_.size, encoding_.pixels);
-    if (!encoding_.part_header.empty()) {
-        part_.emplace(place, encoding_.part_header);
+    frame_ = make_frame(encoding_.options.size, encoding_.pixels);
+    if (!encoding_.options.part_header.empty()) {
+        part_.emplace(place, encoding_.options.part_header);
         return;
     }
     file_ = output_file(place);
@@ -230,7 +243,7 @@ void Encoder::write_header() {
     check(avformat_init_output(format_.get(), nullptr), "the header cannot be made");
     format_->flags &= ~AVFMT_FLAG_BITEXACT;
     // set only here, because avformat_init_output() sets or clears the encoder's name
-    for (const auto& [key, text] : encoding_.metadata)
+    for (const auto& [key, text] : encoding_.options.metadata)
         check(av_dict_set(&format_->metadata, key.c_str(), text.c_str(), 0), "no memory for metadata");
     check(avformat_write_header(format_.get(), nullptr), "the header cannot be written");
 }
@@ -271,7 +284,7 @@ void Encoder::write_packets() {
         if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
         check(result, "cannot be encoded");
         if (part_)
-            part_->add(packet_of(*packet_));
+            write_block(*packet_, *part_);
         else
             write_packet();
         av_packet_unref(packet_.get());
@@ -288,20 +301,24 @@ void Encoder::write_packet() {
 }
 
 /// The header needs an open encoder. It gets a frame, as some encoders need one, and is closed.
-void Encoder::add(const FilmPacket& packet) {
-    if (!stream_) {
-        codec_ = open_encoder(encoding_, path_);
-        frame_->pts = 0;
-        check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
-        write_header();
-        check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
-        while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) av_packet_unref(packet_.get());
-        codec_.reset();
+void Encoder::open_without_frames() {
+    codec_ = open_encoder(encoding_, path_);
+    frame_->pts = 0;
+    check(avcodec_send_frame(codec_.get(), frame_.get()), "the encoder refuses a frame");
+    write_header();
+    check(avcodec_send_frame(codec_.get(), nullptr), "the encoder refuses the end");
+    while (avcodec_receive_packet(codec_.get(), packet_.get()) >= 0) av_packet_unref(packet_.get());
+    codec_.reset();
+}
+
+void Encoder::add(BlockFile& part) {
+    if (!stream_) open_without_frames();
+    while (part.next()) {
+        throw_if_set(stop_);
+        read_block(part, *packet_);
+        write_packet();
+        av_packet_unref(packet_.get());
     }
-    throw_if_set(stop_);
-    fill(*packet_, packet);
-    write_packet();
-    av_packet_unref(packet_.get());
 }
 
 /// The header of an APNG is part of the first packet.
@@ -309,30 +326,24 @@ void Encoder::insert_png_chunks() {
     std::size_t size = 0;
     const auto* header = av_packet_get_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, &size);
     if (!header) return;
-    const std::string longer = std::string(reinterpret_cast<const char*>(header), size) + encoding_.png_chunks;
-    auto* place = av_packet_new_side_data(packet_.get(), AV_PKT_DATA_NEW_EXTRADATA, longer.size());
-    if (!place) throw std::bad_alloc();
-    std::memcpy(place, longer.data(), longer.size());
+    set_side_data(*packet_, AV_PKT_DATA_NEW_EXTRADATA, text(header, size) + encoding_.png_chunks);
     encoding_.png_chunks.clear();
 }
 
-/// Chapters in the order of time; of those that begin together the last one.
 void Encoder::write_chapters() {
-    std::map<std::int64_t, std::string> titles;
-    for (const auto& [time, title] : chapters_) titles[time] = title;
-    const auto count = static_cast<unsigned>(titles.size());
-    if (count == 0) return;
-    format_->chapters = static_cast<AVChapter**>(av_calloc(count, sizeof(AVChapter*)));
+    if (chapters_.empty()) return;
+    format_->chapters = static_cast<AVChapter**>(av_calloc(chapters_.size(), sizeof(AVChapter*)));
     if (!format_->chapters) throw std::bad_alloc();
-    for (auto at = titles.begin(); at != titles.end(); ++at) {
+    for (const auto& [time, title] : chapters_) {
         auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
         if (!chapter) throw std::bad_alloc();
         format_->chapters[format_->nb_chapters++] = chapter;
         chapter->id = static_cast<int>(format_->nb_chapters);
         chapter->time_base = encoding_.tick;
-        chapter->start = at->first;
-        chapter->end = std::next(at) == titles.end() ? end_ : std::next(at)->first;
-        check(av_dict_set(&chapter->metadata, "title", at->second.c_str(), 0), "no memory for chapters");
+        chapter->start = time;
+        const bool is_last = format_->nb_chapters == chapters_.size();
+        chapter->end = is_last ? end_ : chapters_[format_->nb_chapters].first;
+        check(av_dict_set(&chapter->metadata, "title", title.c_str(), 0), "no memory for chapters");
     }
 }
 
@@ -340,7 +351,7 @@ void Encoder::finish(std::string_view ending, int replaced) {
     if (codec_) end_segment();
     if (part_) return part_->finish();
     if (!stream_) throw std::logic_error("a video without frames");
-    if (!encoding_.is_stream) write_chapters();
+    if (!encoding_.options.is_stream) write_chapters();
     check(av_write_trailer(format_.get()), "the end cannot be written");
     if (!ending.empty()) {
         check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");

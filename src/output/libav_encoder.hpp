@@ -1,7 +1,7 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/film_part.hpp"
+#include "output/blocks.hpp"
 #include "output/samples.hpp"
 #include "output/sink.hpp"
 
@@ -42,19 +42,15 @@ using Libav = std::unique_ptr<T, LibavFree>;
 const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec);
 
 struct Encoding {
-    const char* container;   // libav's name
-    const AVCodec* encoder;  // from find_encoder()
-    AVPixelFormat pixels;    // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
-    Size size;
-    AVRational frame_rate;
+    VideoOptions options;
+    const char* container;           // libav's name
+    const AVCodec* encoder;          // from find_encoder()
+    AVPixelFormat pixels;            // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     AVRational tick;                 // time base, s
     long segment = 1, segments = 1;  // frames after which the encoder starts anew, and the number of such segments
-    bool is_stream = false;          // the file cannot seek
-    std::string part_header{};       // writes a part with this header instead of a video
-    std::size_t threads = 1;
+    std::size_t threads = encoder_threads;
     Metadata encoder_options = {}, container_options = {};  // with libav's names
-    Metadata metadata = {};
-    std::string png_chunks = {};  // inserted after the header of an APNG
+    std::string png_chunks = {};                            // inserted after the header of an APNG
 };
 
 /// Throws as check_video(), except for a missing encoder.
@@ -88,8 +84,8 @@ public:
     AVFrame& frame();
     /// Encodes frame() with this start and duration, in ticks.
     void send_frame(std::int64_t time, std::int64_t duration);
-    /// Adds a packet of a part, in place of frames. All packets are required, in order.
-    void add(const FilmPacket& packet);
+    /// Adds the packets of a part, in place of frames. All parts are required, in order.
+    void add(BlockFile& part);
     /// A chapter that begins at this tick, and ends where the next one begins.
     void add_chapter(std::int64_t time, const std::string& title) { chapters_.emplace_back(time, title); }
     /// Sets an option of the container; it takes effect at the next write.
@@ -99,6 +95,7 @@ public:
     void finish(std::string_view ending = {}, int replaced = 0);
 
 private:
+    void open_without_frames();
     void write_header();
     void write_chapters();
     void end_segment();
@@ -111,7 +108,7 @@ private:
     Encoding encoding_;
     const std::atomic<bool>& stop_;
     Stream file_;
-    std::optional<FilmPartWriter> part_;
+    std::optional<BlockFile> part_;
     Libav<AVFormatContext> format_;  // writes the file, unless it is a part
     Libav<AVCodecContext> codec_;
     Libav<AVFrame> frame_;

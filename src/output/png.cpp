@@ -165,6 +165,14 @@ public:
         writers_.give(std::move(job));
     }
 
+    void add(BlockFile& part) override {
+        for (std::string bytes; part.next();) {
+            throw_if_set(stop_);
+            part(bytes);
+            write_file(place_of_(taken_++), bytes);
+        }
+    }
+
     void finish() override { writers_.finish(); }
 
 private:

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/files.hpp"
+#include "output/blocks.hpp"
 #include "output/formats.hpp"
 
 #include <atomic>
 #include <memory>
+#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -23,7 +23,11 @@ public:
     /// Adds the next frame. `changed`: where it differs from the previous one; for the first frame, everything.
     virtual void take(const Picture& picture, const std::vector<Rect>& changed) = 0;
 
-    /// A chapter of the film that begins with this frame; where the file can contain none, it is left out.
+    /// Adds the pictures of a part of the film (film_part) as they are, in place of take(). All parts are required, in
+    /// order. Only for formats with parts.
+    virtual void add(BlockFile& /*part*/) { throw std::logic_error("this format has no parts"); }
+
+    /// A chapter of the film that begins with this frame, after the chapter before; where the file can contain none, it is left out.
     virtual void add_chapter(long /*frame*/, const std::string& /*title*/) {}
 
     /// Writes all frames and completes the file.
@@ -45,14 +49,8 @@ inline constexpr std::size_t encoder_threads = 8;
 /// take() converts what changed; a thread of the sink encodes, fed through a queue of a few frames.
 /// Throws Error: exit 2 for options that the format cannot have, exit 4 where libav has no encoder for it (those
 /// present are listed) or writing fails, exit 130 soon after `stop` is set.
-/// With options.part_header, the file is a part for join_film_parts(); the frames counted from options.first_frame.
+/// With options.part_header, the file is a part for Sink::add(); the frames counted from options.first_frame.
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
-                                      const std::atomic<bool>& stop = never_stopped);
-
-/// A sink that takes no pictures, and writes the packets of these parts, in order: the same bytes as one sink that took
-/// all pictures. Throws Error (exit 4).
-std::unique_ptr<Sink> join_film_parts(const std::filesystem::path& place, const VideoOptions& options,
-                                      std::vector<std::filesystem::path> parts,
                                       const std::atomic<bool>& stop = never_stopped);
 
 /// Checks as make_video_sink() does, without opening a file. For a sequence of PNGs nothing can be missing.

@@ -23,6 +23,7 @@ public:
         encoding_.give(std::move(changes));
     }
 
+    void add(BlockFile& part) override { encoder_.add(part); }
     void add_chapter(long frame, const std::string& title) override { encoder_.add_chapter(frame, title); }
 
     void finish() override {
@@ -44,35 +45,7 @@ private:
     Workers<SampledAreas> encoding_;
 };
 
-/// Takes no pictures: the packets of the parts are those of the film.
-class JoiningSink final : public Sink {
-public:
-    JoiningSink(const std::filesystem::path& place, const VideoOptions& options,
-                std::vector<std::filesystem::path> parts, const std::atomic<bool>& stop)
-        : encoder_(place, encoding_of(options), stop), parts_(std::move(parts)) {}
-
-    void take(const Picture& /*picture*/, const std::vector<Rect>& /*changed*/) override {}
-    void add_chapter(long frame, const std::string& title) override { encoder_.add_chapter(frame, title); }
-
-    void finish() override {
-        for (const auto& path : parts_) {
-            FilmPartReader part(path);
-            while (const auto packet = part.next()) encoder_.add(*packet);
-        }
-        encoder_.finish();
-    }
-
-private:
-    Encoder encoder_;
-    const std::vector<std::filesystem::path> parts_;
-};
-
 }  // namespace
-
-std::unique_ptr<Sink> join_film_parts(const std::filesystem::path& place, const VideoOptions& options,
-                                      std::vector<std::filesystem::path> parts, const std::atomic<bool>& stop) {
-    return std::make_unique<JoiningSink>(place, options, std::move(parts), stop);
-}
 
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop) {

@@ -85,48 +85,20 @@ long mp4_timescale(const VideoOptions& options) {
     return ticks;
 }
 
-void choose_encoder(const VideoOptions& options, Encoding& encoding) {
-    const auto& row = format_row(options.format, options.codec);
-    if (row.has_parts()) encoding.segment = options.segment(), encoding.segments = options.segments();
-    switch (options.format) {
-        case FilmFormat::mp4:
-            encoding.encoder = &find_encoder({"libx264"}, AV_CODEC_ID_H264);
-            encoding.encoder_options = x264_options(options);
-            if (options.preset == "doppel") encoding.threads = slice_threads;
-            encoding.container_options = {
-                {"movflags", options.is_stream ? "+frag_keyframe+empty_moov+default_base_moof" : "+faststart"},
-                {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
-            break;
-        case FilmFormat::webm:
-            if (options.codec == "av1") {
-                encoding.encoder = &find_encoder(av1_encoders(options), AV_CODEC_ID_AV1);
-                encoding.encoder_options = av1_options(options, encoding.encoder->name);
-            } else {
-                encoding.encoder = &find_encoder({"libvpx-vp9"}, AV_CODEC_ID_VP9);
-                encoding.encoder_options = vpx_options(options);
-            }
-            break;
-        case FilmFormat::gif:
-            encoding.encoder = &find_encoder({"gif"}, AV_CODEC_ID_GIF);
-            encoding.tick = {1, 100};
-            break;
-        case FilmFormat::apng:
-            encoding.encoder = &find_encoder({"apng"}, AV_CODEC_ID_APNG);
-            encoding.container_options = {{"plays", "0"}};
-            encoding.png_chunks = png_text_chunks(options.metadata);
-            break;
-        case FilmFormat::y4m:
-        case FilmFormat::rgb:
-            encoding.container = options.format == FilmFormat::y4m ? "yuv4mpegpipe" : "rawvideo";
-            encoding.encoder =
-                &find_encoder({options.format == FilmFormat::y4m ? "wrapped_avframe" : "rawvideo"},
-                              options.format == FilmFormat::y4m ? AV_CODEC_ID_WRAPPED_AVFRAME : AV_CODEC_ID_RAWVIDEO);
-            break;
-        case FilmFormat::png:
-        case FilmFormat::html:
-            throw std::logic_error("no encoder writes this format");
-    }
-}
+/// How libav writes a format; WebM may also be AV1.
+struct LibavRow {
+    FilmFormat format;
+    const char *container, *encoder;
+    AVCodecID codec;
+};
+constexpr std::array libav_rows{
+    LibavRow{FilmFormat::mp4, "mp4", "libx264", AV_CODEC_ID_H264},
+    LibavRow{FilmFormat::webm, "webm", "libvpx-vp9", AV_CODEC_ID_VP9},
+    LibavRow{FilmFormat::gif, "gif", "gif", AV_CODEC_ID_GIF},
+    LibavRow{FilmFormat::apng, "apng", "apng", AV_CODEC_ID_APNG},
+    LibavRow{FilmFormat::y4m, "yuv4mpegpipe", "wrapped_avframe", AV_CODEC_ID_WRAPPED_AVFRAME},
+    LibavRow{FilmFormat::rgb, "rawvideo", "rawvideo", AV_CODEC_ID_RAWVIDEO},
+};
 
 AVPixelFormat pixels_of(const VideoOptions& options) {
     if (options.format == FilmFormat::gif) return AV_PIX_FMT_PAL8;
@@ -145,18 +117,32 @@ void check_options(const VideoOptions& options) {
 }
 
 Encoding encoding_of(const VideoOptions& options) {
-    const AVRational rate{static_cast<int>(options.fps_numerator), static_cast<int>(options.fps_denominator)};
-    Encoding encoding{.container = format_names[static_cast<std::size_t>(options.format)].data(),
-                      .encoder = nullptr,
+    const auto* row = std::ranges::find(libav_rows, options.format, &LibavRow::format);
+    if (row == libav_rows.end()) throw std::logic_error("no encoder writes this format");
+    const bool is_av1 = options.codec == "av1";
+    const auto& encoder =
+        is_av1 ? find_encoder(av1_encoders(options), AV_CODEC_ID_AV1) : find_encoder({row->encoder}, row->codec);
+    Encoding encoding{.options = options,
+                      .container = row->container,
+                      .encoder = &encoder,
                       .pixels = pixels_of(options),
-                      .size = options.size,
-                      .frame_rate = rate,
-                      .tick = av_inv_q(rate),
-                      .is_stream = options.is_stream,
-                      .part_header = options.part_header,
-                      .threads = encoder_threads,
-                      .metadata = options.metadata};
-    choose_encoder(options, encoding);
+                      .tick = {static_cast<int>(options.fps_denominator), static_cast<int>(options.fps_numerator)}};
+    if (format_row(options.format, options.codec).has_parts())
+        encoding.segment = options.segment(), encoding.segments = options.segments();
+    if (options.format == FilmFormat::mp4) {
+        encoding.encoder_options = x264_options(options);
+        if (options.preset == "doppel") encoding.threads = slice_threads;
+        encoding.container_options = {
+            {"movflags", options.is_stream ? "+frag_keyframe+empty_moov+default_base_moof" : "+faststart"},
+            {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
+    }
+    if (options.format == FilmFormat::webm)
+        encoding.encoder_options = is_av1 ? av1_options(options, encoder.name) : vpx_options(options);
+    if (options.format == FilmFormat::gif) encoding.tick = {1, 100};
+    if (options.format == FilmFormat::apng) {
+        encoding.container_options = {{"plays", "0"}};
+        encoding.png_chunks = png_text_chunks(options.metadata);
+    }
     return encoding;
 }
 

@@ -87,7 +87,7 @@ TEST(FailedFilms, WhatIsTooLargeToKeepIsSimulatedAgain) {
     const auto seen = [&](double max_bytes) {
         long reports = 0;
         Recording recording(
-            scene, {40}, true, never_stopped, [&](const Progress&) { ++reports; }, max_bytes);
+            scene, {40}, true, never_stopped, {}, [&](const Progress&) { ++reports; }, max_bytes);
         std::vector<double> numbers;
         for (int time = 0; time < 2; ++time)
             recording.play([&](const Snapshot& snapshot) {

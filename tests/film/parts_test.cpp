@@ -4,7 +4,6 @@
 #include "film/recording_file.hpp"
 #include "film/runs.hpp"
 #include "output/decoded.hpp"
-#include "output/film_part.hpp"
 
 #include <fstream>
 
@@ -128,7 +127,7 @@ TEST(FilmParts, AreRefusedIfTheirHeaderIsDamaged) {
     const auto part = folder / "butterfly/butterfly.0-of-0.shard";
     for (const std::string numbers :
          {"", ",\"shard\":0,\"of\":0", ",\"shard\":2,\"of\":1", ",\"shard\":\"1\",\"of\":1"}) {
-        write_bytes(part, std::string(film_part_start) + numbers + "}\nend\n");
+        write_bytes(part, std::string(film_part.start) + numbers + "}\nend\n");
         EXPECT_EQ(thrown_by([&] { render(film(), {.out = folder, .merge = true}); }),
                   (Thrown{ExitCode::io_failed, part.string() + " is damaged; remove it"}))
             << numbers;
@@ -192,7 +191,7 @@ TEST(Events, FlipsAreWhereALinkIsUpright) {
     for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) { flips.add(snapshot.pair); });
     std::vector<double> times;
     for (const auto& flip : flips.flips())
-        if (flip.side == 'a') times.push_back(flip.time_s);
+        if (flip.details["side"] == "a") times.push_back(flip.time_s);
     ASSERT_EQ(times.size(), 3U);
     // a sample is 1/120 s
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(times[static_cast<std::size_t>(k)], 0.5 + k, 1.0 / 120) << k;
@@ -213,9 +212,9 @@ TEST(Events, AreInTheManifestAndChaptersOfTheFilm) {
     EXPECT_EQ(events[2]["link"], 2);
     EXPECT_NEAR(events[2]["time_s"], 10.73, 0.01);
     std::vector<std::string> titles;
-    for (const auto& chapter :
-         chapters_of(scene, film_events(scene, {{10.73, "flip", 'a', 2}, {11, "flip", 'b', 2}}, {})))
-        titles.push_back(chapter.title);
+    for (const auto& [frame, title] :
+         chapters_of(scene, film_events(scene, {{10.73, "flip", "A: link 2 flips"}, {11, "flip", "near"}}, {})))
+        titles.push_back(title);
     EXPECT_EQ(titles, (std::vector<std::string>{scene.preset.title, "Release", "Speed 2", "A: link 2 flips"}));
     const auto video = read_video(folder / "butterfly/butterfly.mp4");
     ASSERT_EQ(video.chapters.size(), 4U);

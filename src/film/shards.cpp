@@ -1,0 +1,73 @@
+#include "film/shards.hpp"
+
+#include "base/error.hpp"
+#include "output/files.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace doppel {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Throws if parts are missing; names the first ones.
+void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
+    constexpr std::size_t max_named = 5;
+    const auto missing = static_cast<std::size_t>(std::ranges::count(parts, fs::path()));
+    if (missing == 0) return;
+    std::vector<std::string> named;
+    for (std::size_t i = 0; named.size() < std::min(missing, max_named); ++i)
+        if (parts[i].empty()) named.push_back(fmt::format("{}/{}", i + 1, parts.size()));
+    throw try_again("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
+                    missing > max_named ? fmt::format(" … {} in all", missing) : "");
+}
+
+}  // namespace
+
+void check_identity(const fs::path& path, const Json& header, const Json& wanted, const Shard& shard,
+                    std::string_view verb) {
+    constexpr std::size_t hash_digits = 12;
+    for (const auto& [key, ours] : wanted.items()) {
+        const auto theirs = header.value(key, Json());
+        if (theirs == ours) continue;
+        const bool is_hash = key == "preset_sha256";
+        const auto text = [&](const Json& value) {
+            const auto words = value.is_string() ? value.get<std::string>() : value.dump();
+            return is_hash ? words.substr(0, hash_digits) : words;
+        };
+        throw bad_input("{} was made with another {}: {}, not {}; {} it again with --shard {}/{}", path.string(),
+                        is_hash ? "preset, or other --set" : key, text(theirs), text(ours), verb, shard.number,
+                        shard.of);
+    }
+}
+
+std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
+                                const std::function<Shard(const fs::path&)>& take) {
+    std::vector<fs::path> parts;  // by number; empty if not seen yet
+    fs::path first;
+    if (type_of(folder) == fs::file_type::directory)
+        for (const auto& file : names_in(folder)) {
+            if (!file.starts_with(name + ".") || !file.ends_with(".shard")) continue;
+            const auto path = folder / file;
+            const auto shard = take(path);
+            const auto of = static_cast<std::size_t>(shard.of);
+            if (parts.empty()) first = path, parts.resize(of);
+            if (of != parts.size())
+                throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong",
+                                path.string(), of, first.string(), parts.size());
+            auto& seen = parts[static_cast<std::size_t>(shard.number) - 1];
+            if (!seen.empty())
+                throw bad_input("{} and {} are both part {}/{}; remove one of them", seen.string(), path.string(),
+                                shard.number, of);
+            seen = path;
+        }
+    if (parts.empty())
+        throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
+                        folder.string(), name);
+    check_complete(parts, folder);
+    return parts;
+}
+
+}  // namespace doppel
