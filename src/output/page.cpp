@@ -53,21 +53,25 @@ std::string page_start(std::string_view kind) {
 }
 
 std::string page_text(const HtmlPage& page) {
-    std::string styles, style_sources, scripts, script_sources;
-    styles += element("style", embedded_file(output_files(), "output/page.css"), style_sources);
-    for (const auto style : page.styles) styles += element("style", style, style_sources);
-    for (const auto script : page.scripts) scripts += element("script", script, script_sources);
-    std::string data;
+    const auto file = [](std::string_view name) { return embedded_file(output_files(), name); };
+    auto style_files = page.styles, script_files = page.scripts;
+    std::string styles, scripts, style_sources, script_sources;
+    style_files.insert(style_files.begin(), file("output/page.css"));
+    for (const auto style : style_files) styles += element("style", style, style_sources);
+    const auto packed = [](std::string_view id, std::string_view contents) {
+        return fmt::format("<script type=\"text/packed\"{}>{}</script>\n", id, deflated(contents));
+    };
+    if (page.is_packed) scripts = element("script", file("output/unpack.js"), script_sources);
     if (!page.data.is_null()) {
+        constexpr std::string_view id = " id=\"data\"";
         const auto json = in_script(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-        data = fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", json);
-        if (page.is_packed)
-            data = fmt::format("<script type=\"text/packed\" id=\"data\">{}</script>\n", deflated(json));
+        scripts += page.is_packed ? packed(id, json)
+                                  : fmt::format("<script type=\"application/json\"{}>{}</script>\n", id, json);
+        script_files.insert(script_files.begin(), file("output/helpers.js"));
     }
-    if (page.is_packed) {
-        scripts = element("script", embedded_file(output_files(), "output/unpack.js"), script_sources);
-        for (const auto script : page.scripts)
-            scripts += fmt::format("<script type=\"text/packed\">{}</script>\n", deflated(fmt::format("\n{}", script)));
+    for (const auto script : script_files) {
+        const auto plain = element("script", script, script_sources);
+        scripts += page.is_packed ? packed("", fmt::format("\n{}", script)) : plain;
     }
     return fmt::format(R"({}
 <html lang="en">
@@ -81,12 +85,11 @@ std::string page_text(const HtmlPage& page) {
 {}</head>
 <body>
 {}
-{}{}</body>
+{}</body>
 </html>
 )",
                        page_start(page.kind), script_sources, style_sources,
-                       page.has_pictures_beside ? " 'self' file:" : "", markup(page.title), styles, page.body, data,
-                       scripts);
+                       page.has_pictures_beside ? " 'self' file:" : "", markup(page.title), styles, page.body, scripts);
 }
 
 }  // namespace doppel
