@@ -11,7 +11,8 @@ const within = share => share > -1e-6 && share < 1 + 1e-6;
 function cell(panel, column, row) {
   const { x, y, map } = panel, counts = [map.columns, map.rows];
   [column, row] = [column, row].map((number, i) => clamp(number, 0, counts[i] - 1));
-  const [across, up] = [(column + .5) / map.columns, (row + .5) / map.rows], value = map.values[row * map.columns + column];
+  const [across, up] = [(column + .5) / map.columns, (row + .5) / map.rows];
+  const value = map.values[row * map.columns + column];
   const [width, height] = [x, y].map(({ start, end }, i) => Math.max(Math.abs(end - start) / counts[i], 16));
   const values = [axisValue(x, across), axisValue(y, up)], last = isNaN(value) ? [map.none] : [map.label, value];
   return { panel, column, row, values, x: pixelAt(x, across), y: pixelAt(y, up), width, height, rx: 0,
@@ -23,8 +24,8 @@ function point(panel, curve, index) {
     lines: [...label, [panel.x.label, values[0]], [curve.axis.label, values[1]]] };
 }
 function nearest(panel, x, y, curves = panel.curves) {
-  const { map } = panel;
-  if (map) return cell(panel, Math.floor(shareAt(panel.x, x) * map.columns), Math.floor(shareAt(panel.y, y) * map.rows));
+  const { map } = panel, [across, up] = [shareAt(panel.x, x), shareAt(panel.y, y)];
+  if (map) return cell(panel, Math.floor(across * map.columns), Math.floor(up * map.rows));
   let best = Infinity, found = null;
   for (const curve of curves)
     curve.points.forEach(({ at }, index) => {
@@ -42,7 +43,7 @@ function choose(place) {
   const corner = { x: x - width / 2, y: y - height / 2, width, height, rx };
   for (const [name, value] of Object.entries(corner)) mark.setAttribute(name, value);
   for (const [label, value] of panels.length > 1 && panel.title ? [[panel.title], ...lines] : lines) {
-    readout.append(element("span", { textContent: label, className: value === undefined ? "whole" : "" }));
+    readout.append(element("span", { class: value === undefined ? "whole" : "" }, label));
     if (value !== undefined) readout.append(element("b", {}, written(Number(value.toPrecision(6)))));
   }
   const beside = (px, side) => px < side / 2 ? "16px" : "calc(-100% - 16px)";  // on the side with more space
@@ -56,7 +57,7 @@ function open() {
 
 figure.onpointermove = figure.onpointerdown = event => {
   const area = figure.getBoundingClientRect(), before = chosen;
-  const [x, y] = [(event.clientX - area.left) / area.width * size[0], (event.clientY - area.top) / area.height * size[1]];
+  const x = (event.clientX - area.left) / area.width * size[0], y = (event.clientY - area.top) / area.height * size[1];
   const panel = panels.find(one => within(shareAt(one.x, x)) && within(shareAt(one.y, y)));
   choose(panel ? nearest(panel, x, y) : null);
   if (event.type === "pointerdown") again = before?.x === chosen?.x && before?.y === chosen?.y;
@@ -70,10 +71,12 @@ function stepBy(right, up, next = 0) {
   if (chosen?.panel !== panel) return nearest(panel, pixelAt(panel.x, .5), pixelAt(panel.y, .5));
   const { curve, index, column, row, x } = chosen, { curves } = panel;
   if (panel.map) return cell(panel, column + right, row + up);
-  if (up) return nearest(panel, x, undefined, [curves[clamp(curves.indexOf(curve) - up, 0, curves.length - 1)]]) ?? chosen;
+  const other = curves[clamp(curves.indexOf(curve) - up, 0, curves.length - 1)];
+  if (up) return nearest(panel, x, undefined, [other]) ?? chosen;
   return point(panel, curve, clamp(index + right, 0, curve.points.length - 1));
 }
-const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], PageUp: [0, 0, -1], PageDown: [0, 0, 1] };
+const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+  PageUp: [0, 0, -1], PageDown: [0, 0, 1] };
 const moves = { Escape: () => choose(null), Enter: open };
 for (const [key, [right, up, next]] of Object.entries(steps))
   moves[key] = ({ shiftKey }) => choose(stepBy(right * (shiftKey ? 10 : 1), up * (shiftKey ? 10 : 1), next));
@@ -86,7 +89,8 @@ for (const panel of panels) {
     const points = xs.map((x, i) => ({ values: [x, ys[i]], shares: [axisShare(panel.x, x), axisShare(axis, ys[i])] }))
       .filter(({ shares }) => shares.every(within));
     curve.axis = axis;
-    curve.points = points.map(({ values, shares: [x, y] }) => ({ values, at: [pixelAt(panel.x, x), pixelAt(axis, y)] }));
+    curve.points = points.map(({ values, shares }) =>
+      ({ values, at: [pixelAt(panel.x, shares[0]), pixelAt(axis, shares[1])] }));
   }
 }
 figure.parentElement.style.maxWidth = `max(680px, ${85 * size[0] / size[1]}vh)`;

@@ -1,7 +1,6 @@
 #include "film/page.hpp"
 
 #include "base/embedded.hpp"
-#include "base/text.hpp"
 #include "embedded/film.hpp"
 #include "film/page_json.hpp"
 #include "film/strips.hpp"
@@ -38,13 +37,9 @@ bool is_by_angles(const Side& side) {
 /// The player with the data of a film.
 HtmlPage player(const Scene& scene, Json film) {
     const auto file = [](std::string_view name) { return embedded_file(film_files(), name); };
-    std::string body(file("film/page/player.html"));
-    for (const auto& [name, text] : {std::pair<std::string_view, std::string>{"{title}", scene.preset.title},
-                                     {"{caption}", scene_caption(scene, wording_of(scene))}})
-        body.replace(body.find(name), name.size(), markup(text));
     return {.kind = "film",
             .title = scene.preset.title,
-            .body = std::move(body),
+            .body = std::string(file("film/page/player.html")),
             .styles = {file("film/page/player.css")},
             .scripts = {file("film/page/chain.js"), file("film/page/motion.js"), file("film/page/player.js"),
                         file("film/page/controls.js")},
@@ -130,9 +125,7 @@ Json FilmPage::motion_json() const {
 }
 
 void FilmPage::finish() {
-    auto film = page_json(scene_, bounds_);
-    film["samples"] = samples_ - 1;
-    film["duration_s"] = scene_.time(samples_ - 1);
+    auto film = page_json(scene_, bounds_, samples_ - 1);
     if (!places_.empty()) film["motion"] = motion_json();
     std::vector<std::uint32_t> bits;
     for (const auto& curve : curves_)
@@ -151,21 +144,23 @@ std::optional<HtmlPage> film_player(Scene scene) {
         video.layout = Arrangement::single;
         video.strips.clear();
     }
-    return player(scene, page_json(scene, Recording(scene, {1}, true, never_stopped).bounds()));
+    return player(scene, page_json(scene, Recording(scene, {1}, true, never_stopped).bounds(), scene.samples));
 }
 
 double estimated_page_bytes(const Scene& scene) {
-    constexpr double script = 33e3, place = 1.3, number = 4;  // bytes, measured: 0.8 to 2 per position
-    double places = 0, numbers = scene.preset.video.layout == Arrangement::phase ? 6 : 0;
-    for (const auto& [motion, side] : shown_pendulums(scene))
-        places += static_cast<double>(side.mass.size()) * (is_by_angles(side) ? 1 : 2);
+    constexpr double script = 33e3, place = 1.3 / 16,
+                     number = 4;  // bytes; of a place per bit. Measured: 0.8 to 2 in 16
+    const auto& video = scene.preset.video;
     const bool computes = page_computes(scene);
-    if (computes) places = numbers = 0;
-    places *= scene.preset.video.position_bits / 16.0;
-    for (const auto kind : scene.preset.video.strips)
+    double per_sample = !computes && video.layout == Arrangement::phase ? 6 * number : 0;
+    for (const auto& [motion, side] : shown_pendulums(scene))
+        if (!computes)
+            per_sample +=
+                place * video.position_bits * static_cast<double>(side.mass.size()) * (is_by_angles(side) ? 1 : 2);
+    for (const auto kind : video.strips)
         if (!computes || !page_computes(kind))
-            numbers += kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2;
-    return script + static_cast<double>(scene.samples) * (place * places + number * numbers);
+            per_sample += number * (kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2);
+    return script + static_cast<double>(scene.samples) * per_sample;
 }
 
 }  // namespace doppel

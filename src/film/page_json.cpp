@@ -208,9 +208,10 @@ bool page_computes(StripKind kind) {
     return kind == StripKind::distance || kind == StripKind::exponent || kind == StripKind::energy;
 }
 
-Json page_json(const Scene& scene, const MotionBounds& bounds) {
+Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
     const auto& video = scene.preset.video;
     const auto style = make_style(video, 1, 1);
+    const auto clock = clock_text(scene, 0);
     Json bodies = Json::array(), pictures = Json::array();
     for (std::size_t k = 0; const auto& pendulum : shown_pendulums(scene)) {
         const bool is_side = scene.members.empty();
@@ -227,21 +228,24 @@ Json page_json(const Scene& scene, const MotionBounds& bounds) {
         pictures.push_back(picture_json(upright, bounds, first));
     }
     Json json{{"title", scene.preset.title},
+              {"caption", scene_caption(scene, wording_of(scene))},
               {"layout", name_of(video.layout)},
               {"show", video.show},
               {"transparent", video.transparent},
-              {"trail_s", video.trail_s},
-              {"samples", scene.samples},
-              {"sample_s", quotient({1, 1}, scene.preset.sample_hz)->value()},
-              {"duration_s", scene.time(scene.samples)},
-              {"fps", scene.fps.value()},
-              {"decimals", clock_text(scene, 0) == "0 s" ? 0 : clock_text(scene, 0).size() - 4},
-              {"speed", speed_json(scene)},
-              {"start_s", video.poster_s ? video.poster_s->value() : 0},
               {"follow", video.view.follow},
               {"view", video.view.height_m || video.view.center_m || video.view.follow > 0},
+              {"samples", samples},
+              {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
+              {"speed", speed_json(scene)},
               {"bodies", bodies},
               {"pictures", pictures}};
+    for (const auto& [key, number] : std::initializer_list<std::pair<const char*, double>>{
+             {"trail_s", video.trail_s},
+             {"sample_s", quotient({1, 1}, scene.preset.sample_hz)->value()},
+             {"duration_s", scene.time(samples)},
+             {"fps", scene.fps.value()},
+             {"start_s", video.poster_s ? video.poster_s->value() : 0}})
+        json[key] = number;
     for (const auto& color : color_names)
         json["theme"][std::string(color.key)] = hexadecimal(style.theme.*color.member);
     if (video.layout == Arrangement::phase)

@@ -9,8 +9,8 @@
 
 namespace doppel {
 
-/// The page's data except its motion, for src/film/page/player.js.
-Json page_json(const Scene& scene, const MotionBounds& bounds);
+/// The page's data except its motion of samples 0 … `samples`, for src/film/page/player.js.
+Json page_json(const Scene& scene, const MotionBounds& bounds, long samples);
 
 /// An axis for the scripts of pages: its label, the values `from` … `to`, and the pixels `start` … `end`.
 Json axis_json(const Axis& axis, const std::string& label = "");

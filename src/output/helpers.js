@@ -3,11 +3,12 @@
 const $ = selector => document.querySelector(selector), pageData = JSON.parse($("#data").textContent);
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const written = value => String(value).replace("-", "−");
-const element = (tag, properties, ...inner) => {
-  const made = Object.assign(document.createElement(tag), properties);
+function element(tag, attributes, ...inner) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
   made.append(...inner);
   return made;
-};
+}
 
 // Values along an axis: from its start, 0, to its end, 1; and pixels.
 const axisValue = ({ from, to, logarithmic }, share) =>
@@ -21,7 +22,8 @@ const shareAt = ({ start, end }, pixel) => (pixel - start) / (end - start);
 const addressNumbers = () => Object.fromEntries([...new URLSearchParams(location.hash.slice(1))]
   .map(([key, text]) => [key, Number(text)]).filter(([, number]) => Number.isFinite(number)));
 function keepAddress(numbers) {
-  try { history.replaceState(null, "", `#${new URLSearchParams(numbers)}`); } catch { /* a frame that has no address */ }
+  const hash = `#${new URLSearchParams(numbers)}`;
+  try { history.replaceState(null, "", hash); } catch { /* a frame that has no address */ }
 }
 
 // Gives a canvas so many pixels of the page, at the screen's density.

@@ -54,25 +54,27 @@ std::string page_start(std::string_view kind) {
 
 std::string page_text(const HtmlPage& page) {
     const auto file = [](std::string_view name) { return embedded_file(output_files(), name); };
-    auto style_files = page.styles, script_files = page.scripts;
-    std::string styles, scripts, style_sources, script_sources;
-    style_files.insert(style_files.begin(), file("output/page.css"));
-    for (const auto style : style_files) styles += element("style", style, style_sources);
-    const auto packed = [](std::string_view id, std::string_view contents) {
-        return fmt::format("<script type=\"text/packed\"{}>{}</script>\n", id, deflated(contents));
+    std::string style_sources, script_sources, scripts;
+    auto styles = element("style", file("output/page.css"), style_sources);
+    for (const auto style : page.styles) styles += element("style", style, style_sources);
+    const auto add = [&](std::string_view type, std::string_view contents) {
+        scripts += fmt::format("<script type=\"{}\">{}</script>\n", type, contents);
+    };
+    const auto add_script = [&](std::string_view script) {
+        const auto plain = element("script", script, script_sources);
+        if (page.is_packed)
+            add("text/packed", deflated(fmt::format("\n{}", script)));
+        else
+            scripts += plain;
     };
     if (page.is_packed) scripts = element("script", file("output/unpack.js"), script_sources);
     if (!page.data.is_null()) {
-        constexpr std::string_view id = " id=\"data\"";
         const auto json = in_script(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-        scripts += page.is_packed ? packed(id, json)
-                                  : fmt::format("<script type=\"application/json\"{}>{}</script>\n", id, json);
-        script_files.insert(script_files.begin(), file("output/helpers.js"));
+        add(page.is_packed ? "text/packed\" id=\"data" : "application/json\" id=\"data",
+            page.is_packed ? deflated(json) : json);
+        add_script(file("output/helpers.js"));
     }
-    for (const auto script : script_files) {
-        const auto plain = element("script", script, script_sources);
-        scripts += page.is_packed ? packed("", fmt::format("\n{}", script)) : plain;
-    }
+    for (const auto script : page.scripts) add_script(script);
     return fmt::format(R"({}
 <html lang="en">
 <head>

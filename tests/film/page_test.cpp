@@ -218,7 +218,7 @@ TEST(Page, DoesNoHarmWithAnyWords) {
                               html("[b]\nangle_deg = [91, 90]"));
     EXPECT_EQ(page.find("harm()</script>"), std::string::npos);
     EXPECT_EQ(page.find("<b>"), std::string::npos);
-    EXPECT_NE(page.find("<h1>&lt;/script&gt;"), std::string::npos);
+    EXPECT_NE(page.find("<title>&lt;/script&gt;"), std::string::npos);
     EXPECT_NE(data_of(page).at("title").get<std::string>().find("</script><script>harm()"), std::string::npos);
 }
 

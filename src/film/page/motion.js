@@ -25,7 +25,8 @@ async function embeddedMotion({ bits, low, step, like_last, pendulums, words }) 
   const channel = (from, unit) => numbers(() => from + unit * (steps[at++] & most));
   const place = () => [channel(low, step), channel(low, step)];
   return { pendulums: pendulums.map(({ turn, length, moves }, k) => {
-    const found = bodies[k].mass.map(() => turn ? channel(-turn * 2 ** (bits - 1), turn) : place()), pivot = moves ? place() : still;
+    const angle = () => channel(-turn * 2 ** (bits - 1), turn), found = bodies[k].mass.map(turn ? angle : place);
+    const pivot = moves ? place() : still;
     return { pivot, bobs: turn ? placesOf(found, length, pivot) : found };
   }) };
 }
@@ -39,19 +40,22 @@ function placesOf(angles, length, pivot) {
 // The motion of chains from their states, at one sample or all; with the curves that follow from states, by the kind of
 // the strip; of a phase panel angles, rates and angles of the first link.
 function motionOf(of, states) {
-  const size = 2 * of[0].mass.length, ofLink = (k, from) => states[k].filter((_, i) => i % size === from);
-  const pendulums = of.map(({ length }, k) => ({ pivot: still, bobs: placesOf(length.map((_, b) => ofLink(k, b)), length, still) }));
+  const size = 2 * of[0].mass.length, list = (k, from) => states[k].filter((_, i) => i % size === from);
+  const pendulums = of.map(({ length }, k) =>
+    ({ pivot: still, bobs: placesOf(length.map((_, b) => list(k, b)), length, still) }));
   if (states[0].length === size) return { of, pendulums };
-  const ends = [...new Set([0, of.length - 1])], bobs = ends.map(k => [...still[0]].map((_, i) => chains.bobs(of[k], states[k], size * i)));
+  const ends = [...new Set([0, of.length - 1])];
+  const bobs = ends.map(k => Array.from(still[0], (_, i) => chains.bobs(of[k], states[k], size * i)));
   const distance = numbers(i => chains.distance(bobs[0][i], bobs.at(-1)[i]));
-  const energies = ends.map((k, e) => numbers(i => chains.energy(of[k].gravity, bobs[e][i])));
+  const growth = distance.map((d, i) => 20 * i >= film.samples && d > 0 && distance[0] > 0
+    ? Math.log(d / distance[0]) / (i * film.sample_s) : NaN);
   const levels = ({ mass, length }) => sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));
   const range = mostOf(ends.map(k => 2 * of[k].gravity * levels(of[k])));
-  const errors = energies.map(energy => energy.map(e => Math.abs(e - energy[0]) / range));
-  const growth = distance.map((d, i) => i > 0 && 20 * i >= film.samples && d > 0 && distance[0] > 0
-    ? Math.log(d / distance[0]) / (i * film.sample_s) : NaN);
-  const phase = film.phase && ends.map(k => [film.phase.link, size / 2 + film.phase.link, 0].map(from => ofLink(k, from)));
-  return { of, pendulums, computed: { distance: [distance], exponent: [growth], energy: errors }, phase, drift: mostOf(errors.map(mostOf)) };
+  const energy = ends.map((k, e) => numbers(i => chains.energy(of[k].gravity, bobs[e][i])))
+    .map(total => total.map(now => Math.abs(now - total[0]) / range));
+  const phase = film.phase && ends.map(k => [film.phase.link, size / 2 + film.phase.link, 0].map(i => list(k, i)));
+  const computed = { distance: [distance], exponent: [growth], energy };
+  return { of, pendulums, computed, phase, drift: mostOf(energy.map(mostOf)) };
 }
 
 // Adds the curves of strips: computed ones, and those that the page holds: floats, of a phase panel at the end.
@@ -74,16 +78,11 @@ function divergence(distance) {
   return NaN;
 }
 
-// Computes the states of chains beside the page, and calls done(motion): of several requests that wait, of the last one.
-let worker = null, waiting = null, isBusy = false;
-function compute(of, done) {
-  waiting = [of, done];
-  if (!isBusy) computeNext();
-}
-function computeNext() {
-  const [of, done] = waiting, begun = performance.now();
-  waiting = null;
-  isBusy = true;
+// The motion of chains, computed beside the page. While one is computed the others wait; of these only the last one is
+// computed at all.
+let worker = null, turn = Promise.resolve(), wanted = null;
+function compute(of) {
+  wanted = of;
   worker ??= new Worker(URL.createObjectURL(new Blob([`const chains = (${makeChains})();
     onmessage = ({ data: { of, samples } }) => {
       let last = Date.now();
@@ -92,11 +91,12 @@ function computeNext() {
       }));
       postMessage({ states }, states.map(list => list.buffer));
     };`], { type: "text/javascript" })));
-  worker.onmessage = ({ data: { share, states } }) => {
-    if (!states) return performance.now() - begun > 500 && say(`computing the motion: ${Math.round(100 * share)} %`);
-    isBusy = false;
-    done(motionOf(of, states));
-    if (waiting) computeNext();
-  };
-  worker.postMessage({ of, samples: film.samples });
+  return turn = turn.then(() => wanted === of && new Promise(done => {
+    const begun = performance.now();
+    worker.onmessage = ({ data: { share, states } }) => {
+      if (states) done(motionOf(of, states));
+      else if (performance.now() - begun > 500) say(`computing the motion: ${Math.round(100 * share)} %`);
+    };
+    worker.postMessage({ of, samples: film.samples });
+  }));
 }

@@ -9,8 +9,9 @@ let time = 0;                        // s
 
 // Colours, "#rrggbb" or "#rrggbbaa"
 
-const hex = byte => Math.round(byte).toString(16).padStart(2, "0"), byteOf = (color, i) => parseInt(color.substr(i, 2), 16);
-const mixed = (a, b, share) => "#" + [1, 3, 5].map(i => hex((1 - share) * byteOf(a, i) + share * byteOf(b, i))).join("");
+const hex = byte => Math.round(byte).toString(16).padStart(2, "0");
+const byteOf = (color, i) => parseInt(color.slice(2 * i - 1, 2 * i + 1), 16);
+const mixed = (a, b, u) => "#" + [1, 2, 3].map(i => hex((1 - u) * byteOf(a, i) + u * byteOf(b, i))).join("");
 const faded = (color, alpha) => color.slice(0, 7) + hex(255 * clamp(alpha, 0, 1));
 
 // What pictures are made of
@@ -25,7 +26,8 @@ const fill = (fillStyle, trace) => paint({ fillStyle }, trace);
 const stroke = (strokeStyle, lineWidth, trace) =>
   paint({ strokeStyle, lineWidth, lineCap: "round", lineJoin: "round" }, trace);
 const polyline = points => points.forEach(([x, y], i) => i ? g.lineTo(x, y) : g.moveTo(x, y));
-const box = (left, top, width, height, corner, color) => fill(color, () => g.roundRect(left, top, width, height, corner));
+const box = (left, top, width, height, corner, color) =>
+  fill(color, () => g.roundRect(left, top, width, height, corner));
 const line = (from, to, radius, color) => stroke(color, 2 * radius, () => polyline([from, to]));
 const ring = ([x, y], radius, width, color) => stroke(color, width, () => g.arc(x, y, radius, 0, 7));
 function disc([x, y], radius, color, glow = 0) {
@@ -40,6 +42,7 @@ function text(words, [x, y], size, align, weight, color, width = 1e5) {
   Object.assign(g, { font, fillStyle: color, textAlign: align });
   g.fillText(words, x, y, width + 1);
 }
+const isIn = ([x, y], [left, top, right, bottom]) => x >= left && x <= right && y >= top && y <= bottom;
 const drawAll = items => items.forEach(([kind, ...item]) => ({ box, line, ring, text }[kind](...item)));
 const drawLabel = (label, words) => text(words, ...label.slice(2, 7));
 
@@ -56,8 +59,8 @@ function value(list) {
 const speedAt = t => film.speed.reduce((last, entry) => entry[0] <= t + 1e-9 ? entry : last);
 
 // Pendulums as they are now: places, m, and masses, kg.
-const posesNow = () => motion.pendulums.map(({ bobs, pivot }, k) =>
-  ({ bobs: bobs.map(place => place.map(value)), pivot: pivot.map(value), mass: motion.of?.[k].mass ?? bodies[k].mass }));
+const posesNow = () => motion.pendulums.map(({ bobs, pivot }, k) => ({
+  bobs: bobs.map(place => place.map(value)), pivot: pivot.map(value), mass: (motion.of ?? bodies)[k].mass }));
 const reachOf = chains => mostOf(chains.map(chain => sumOf(chain.length)));
 
 // A panel's way from metres to pixels. Where the view follows a mass, that stays in the middle.
@@ -69,7 +72,7 @@ function viewOf({ center, origin, scale, shown }, poses) {
 }
 
 // A path of points [x, y, age, s] that fades and narrows with its age, in pieces of even light; broken where it jumps.
-function fadingPath(points, width, color, glow, jump = Infinity) {
+function fadingPath(points, width, color, jump = Infinity) {
   const pieces = new Map(), shares = Math.max(8, 20 * film.trail_s) / film.trail_s;
   points.forEach(([x, y, age], i) => {
     const [from, to] = [points[i - 1], points[i + 1]].map(next =>
@@ -81,7 +84,7 @@ function fadingPath(points, width, color, glow, jump = Infinity) {
     curve.quadraticCurveTo(x, y, ...to);
   });
   for (const { age, curve } of pieces.values()) {
-    const fresh = clamp(1 - age / film.trail_s, 0, 1), reach = glow * fresh ** 4;
+    const fresh = clamp(1 - age / film.trail_s, 0, 1), reach = picture.glow * fresh ** 4;
     for (const [share, light] of reach > 1 ? [[0.7, 0.05], [0.4, 0.1], [0.15, 0.15], [0, 1]] : [[0, 1]]) {
       Object.assign(g, { strokeStyle: color, globalAlpha: light * fresh ** 1.6, lineCap: "butt", lineJoin: "round",
         lineWidth: width * (0.55 + 0.45 * fresh) + 2 * share * reach });
@@ -98,8 +101,7 @@ function trailOf(at, lists) {
   return [...points, [...at(lists.map(value)), 0]];
 }
 function drawTrail(k, at, color, width) {
-  const points = film.trail_s > 0 && width > 0 ? trailOf(at, motion.pendulums[k].bobs.at(-1)) : [];
-  fadingPath(points, width, color, picture.glow);
+  if (film.trail_s > 0 && width > 0) fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), width, color);
 }
 
 // Rods, springs as zigzags, and pivots where ends are fixed.
@@ -107,33 +109,37 @@ function drawLines(k, { bobs, pivot }, at, radius, color, hasPivots = true) {
   const lines = shows("rods") && radius > 0 ? bodies[k].lines : [], { bob, last_bob, reach } = picture;
   const place = end => at(end.length ? [end[0] + pivot[0], end[1] + pivot[1]] : bobs[end]);
   for (const [kind, from, to, width] of lines) {
-    const [a, b] = [from, to].map(place), [x, y] = [b[0] - a[0], b[1] - a[1]], swing = 0.5 * bob / Math.max(Math.hypot(x, y), 1);
-    const points = Array.from({ length: 16 }, (_, i) => [(i + 0.5) / 16, i % 2 ? swing : -swing])
-      .map(([share, aside]) => [a[0] + share * x - aside * y, a[1] + share * y + aside * x]);
+    const [a, b] = [place(from), place(to)], [x, y] = [b[0] - a[0], b[1] - a[1]];
+    const swing = 0.5 * bob / Math.max(Math.hypot(x, y), 1), turns = Array.from({ length: 16 }, (_, i) => {
+      const share = (i + 0.5) / 16, aside = i % 2 ? swing : -swing;
+      return [a[0] + share * x - aside * y, a[1] + share * y + aside * x];
+    });
     if (kind === "rod") line(a, b, width * radius, color);
-    if (kind === "spring") stroke(color, 0.9 * radius, () => polyline([a, ...points, b]));
+    if (kind === "spring") stroke(color, 0.9 * radius, () => polyline([a, ...turns, b]));
   }
-  const fixed = lines.flatMap(([kind, from, to]) => ({ rod: [from, to], spring: [from, to], anchor: [from] }[kind] ?? []));
-  for (const end of hasPivots ? fixed.filter(end => end.length) : [])
+  const fixed = { rod: 2, spring: 2, anchor: 1 };
+  const pivots = lines.flatMap(([kind, ...ends]) => ends.slice(0, fixed[kind] ?? 0));
+  for (const end of hasPivots ? pivots.filter(end => end.length) : [])
     disc(place(end), Math.max(0.4 * bob, 0.5 * last_bob, 0.012 * reach), theme.pivot);
 }
 
 // Bobs from `first` on, the last one in a colour of its own, where they are in the panel.
 function drawBobs(k, poses, at, [left, top, right, bottom], { first = 0, last, others, least = 0, glow = 0, rim = 0 }) {
-  const heaviest = mostOf([1e-300, ...poses.flatMap(pose => pose.mass)]), { bobs, mass } = poses[k], end = bobs.length - 1;
+  const { bobs, mass } = poses[k], end = bobs.length - 1;
+  const heaviest = mostOf([1e-300, ...poses.flatMap(pose => pose.mass)]);
   for (let i = shows("bobs") && picture.bob > 0 ? first : end + 1; i <= end; ++i) {
     const smallest = Math.max(bodies[k].least_bob * picture.rod, i === end ? least : 0), [x, y] = at(bobs[i]);
     const radius = Math.max(picture.bob * Math.sqrt(mass[i] / heaviest), smallest), edge = film.view ? radius : 0;
-    if (!(x >= left + edge && x <= right - edge && y >= top + edge && y <= bottom - edge)) continue;
+    if (!isIn([x, y], [left + edge, top + edge, right - edge, bottom - edge])) continue;
     if (rim > 0 && !film.transparent) disc([x, y], radius + Math.min(rim, 0.3 * radius), theme.panel);
     disc([x, y], radius, i === end ? last : others, i === end ? glow : 0);
   }
 }
 
-// The pendulums of a panel; of one alone the other as a shadow behind it. The more members an ensemble has, the more they
-// let through.
+// The pendulums of a panel; of one alone the other as a shadow behind it. The more members an ensemble has, the more
+// they let through.
 function drawPanel(panel, poses) {
-  const at = viewOf(panel, poses), { area, shown } = panel, fromBehind = [...shown].reverse(), { rod, trail, glow } = picture;
+  const at = viewOf(panel, poses), { area, shown } = panel, fromBehind = [...shown].reverse(), { rod, glow } = picture;
   const isAlone = !isEnsemble && shown.length === 1, other = 1 - shown[0], root = Math.sqrt(bodies.length);
   const hue = (k, opacity) => isMany ? faded(bodies[k].color, clamp(opacity * 14 / root, 0.16, 0.9)) : bodies[k].color;
   const hued = (k, color, share) => isAlone ? color : mixed(color, bodies[k].color, share);
@@ -147,13 +153,15 @@ function drawPanel(panel, poses) {
     drawLines(other, poses[other], at, 0.7 * rod, shadow, false);
     drawBobs(other, poses, at, area, { last: shadow, others: shadow });
   }
-  for (const k of fromBehind) drawTrail(k, at, hue(k, 0.5), trail * (isMany ? clamp(Math.sqrt(8) / root, 0.4, 1) : 1));
+  const trail = picture.trail * (isMany ? clamp(Math.sqrt(8) / root, 0.4, 1) : 1);
+  for (const k of fromBehind) drawTrail(k, at, hue(k, 0.5), trail);
   for (const k of fromBehind) {
     const { color: last } = bodies[k], others = hued(k, theme.bob, 0.4), least = isEnsemble ? 0 : picture.last_bob;
     drawLines(k, poses[k], at, rod, isEnsemble ? hue(k, 0.43) : hued(k, theme.rod, 0.55));
     if (!isMany) drawBobs(k, poses, at, area, { last, others, least, glow, rim: Math.max(2 * picture.unit, 0.75) });
   }
-  if (isMany) for (const k of fromBehind) drawBobs(k, poses, at, area, { first: poses[k].bobs.length - 1, last: bodies[k].color });
+  for (const k of isMany ? fromBehind : [])
+    drawBobs(k, poses, at, area, { first: poses[k].bobs.length - 1, last: bodies[k].color });
   g.restore();
 }
 
@@ -173,7 +181,8 @@ function decadesOf({ axis, area: [left, top, right, bottom] }, list) {
   const decades = [...list].filter(v => v > 0).map(Math.log10), em = picture.em;
   if (!axis.logarithmic || decades.every(e => e >= Math.log10(axis.from) && e <= Math.log10(axis.to))) return axis;
   const first = Math.floor(-mostOf(decades.map(e => -e))), last = Math.max(Math.ceil(mostOf(decades)), first + 1);
-  const made = { ...axis, from: 10 ** first, to: 10 ** last }, every = Math.ceil((last - first) * 2.2 * em / (bottom - top));
+  const made = { ...axis, from: 10 ** first, to: 10 ** last };
+  const every = Math.ceil((last - first) * 2.2 * em / (bottom - top));
   box(left, top, right - left, bottom - top, 0, theme.background);
   box(0, top - 0.6 * em, left, bottom - top + 1.2 * em, 0, theme.background);
   for (let e = first; e <= last; e += every) {
@@ -197,28 +206,31 @@ function drawMark({ area: [left, top, right, bottom], backdrop, time }, at, word
   const from = Math.max(Math.min(isRight ? x + 10 * t : x - 10 * t - width, right - width - 2 * t), left + 2 * t);
   const notes = motion === original ? backdrop.filter(item => item[0] === "text" && item[6] === theme.text) : [];
   const foot = Math.min(bottom - 0.45 * size, ...notes.map(item => item[2][1] - 1.2 * size));
-  if (!film.transparent) box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
+  const behind = film.transparent ? "#0000" : faded(theme.background, 0.85);
+  box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, behind);
   text(words, [from, foot], ...style);
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
 const stripOfPair = Math.max(0, strips.findIndex(strip => strip.kind === "distance"));
 function drawStrip(strip, index) {
-  const { isStill, since } = motion, curves = motion.curves[index], now = value(curves[0]), x = along(strip.time, time);
-  const axis = motion === original ? strip.axis : decadesOf(strip, curves[0]), last = isStill ? film.samples : sampleNow();
+  const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[index];
+  const axis = motion === original ? strip.axis : decadesOf(strip, curves[0]), at = t => along(strip.time, t);
+  const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   drawAll(strip.words);
-  if (strip.value && !isStill)
-    drawLabel(strip.value, strip.kind === "distance" ? scientific(now) : now >= -Infinity ? written(now.toFixed(2)) : "");
+  if (strip.value && !isStill && !Number.isNaN(now))
+    drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
   if (index === stripOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6))
     drawMark(strip, since, `diverged at ${since.toFixed(1)} s`);
-  verticalLine(x, strip.area[1], strip.area[3], theme.cursor);
-  if (picture.trace > 0) strip.pens.forEach(([color, width], c) => {
-    const points = Array.from(curves[c].subarray(0, last + 1), (v, i) => [along(strip.time, i * film.sample_s), along(axis, v)]);
-    if (!isStill) points.push([x, along(axis, value(curves[c]))]);
+  verticalLine(x, area[1], area[3], theme.cursor);
+  for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
+    const [color, width] = pens[c];
+    const points = Array.from(list.subarray(0, last + 1), (v, i) => [at(i * film.sample_s), along(axis, v)]);
+    if (!isStill) points.push([x, along(axis, value(list))]);
     const known = points.filter(([, y]) => y >= 0);
     stroke(color, width, () => polyline(known));
     if (curves.length === 1 && known.length && !isStill) drawHead(known.at(-1), color);
-  });
+  }
 }
 
 // Rates over angles: paths, or the points at which θ1 passes a whole number of turns upwards.
@@ -233,7 +245,7 @@ function drawPhase({ area, angle, rate }) {
       if (share > 0 && share <= 1) disc(at(passed), 1.2 * picture.trace, faded(color, 0.8));
     }
     if (film.phase.kind === "section") continue;
-    fadingPath(points, picture.trail, color, picture.glow, (area[2] - area[0]) / 2);
+    fadingPath(points, picture.trail, color, (area[2] - area[0]) / 2);
     drawHead(points.at(-1), color);
   }
 }
