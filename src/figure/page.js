@@ -75,10 +75,9 @@ function stepBy(right, up, next = 0) {
   if (up) return nearest(panel, x, undefined, [other]) ?? chosen;
   return point(panel, curve, clamp(index + right, 0, curve.points.length - 1));
 }
-const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
-  PageUp: [0, 0, -1], PageDown: [0, 0, 1] };
 const moves = { Escape: () => choose(null), Enter: open };
-for (const [key, [right, up, next]] of Object.entries(steps))
+for (const [key, right, up, next] of [["ArrowLeft", -1, 0], ["ArrowRight", 1, 0], ["ArrowUp", 0, 1], ["ArrowDown", 0, -1],
+  ["PageUp", 0, 0, -1], ["PageDown", 0, 0, 1]])
   moves[key] = ({ shiftKey }) => choose(stepBy(right * (shiftKey ? 10 : 1), up * (shiftKey ? 10 : 1), next));
 if (panels.length) onKeys(moves, figure);
 

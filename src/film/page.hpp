@@ -40,9 +40,9 @@ private:
     Channels curves_;   // of all strips, then of a phase panel
 };
 
-/// The player of a scene's chains of one to three ideal links, for another kind of page. The page's data contains the
-/// player's as "film". It is hidden until the document gets an event "release", whose detail has the
-/// release angles by their keys. nullopt if the scene has other pendulums.
+/// The player of a scene's chains of one to three ideal links, for another kind of page, which adds to its body and
+/// data. It is hidden until a script calls releaseAt() with release angles, degrees, by their keys. nullopt if the scene
+/// has other pendulums.
 std::optional<HtmlPage> film_player(Scene scene);
 
 /// The approximate size in bytes of a scene's page.

@@ -26,9 +26,9 @@ struct PictureJson {
     }
     template <class Items>
     Json all(const Items& items) const {
-        Json list = Json::array();
-        for (const auto& item : items) list.push_back(std::visit(*this, Item(item)));
-        return list;
+        Json json = Json::array();
+        for (const auto& item : items) json.push_back(std::visit(*this, Item(item)));
+        return json;
     }
     Json operator()(const char* text) const { return text; }
     Json operator()(double length) const { return std::round(100 * length) / 100; }
@@ -81,30 +81,27 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     const auto& style = layout.style;
     const auto& video = scene.preset.video;
     const PictureJson json_of{style.type};
-    Json json{{"size", {video.size.width, video.size.height}}, {"words", json_of.all(layout.words)}};
-    for (const auto& [key, length] :
-         std::initializer_list<std::pair<const char*, double>>{{"unit", layout.unit},
-                                                               {"text", layout.text},
-                                                               {"reach", layout.reach},
-                                                               {"bob", layout.bob_radius},
-                                                               {"rod", layout.rod_radius},
-                                                               {"last_bob", layout.last_bob_radius},
-                                                               {"trail", style.width.trail},
-                                                               {"trace", style.width.trace},
-                                                               {"mark", style.width.mark},
-                                                               {"grid", style.width.grid},
-                                                               {"glow", style.glow},
-                                                               {"font", style.font.strip},
-                                                               {"em", style.font.axis}})
-        json[key] = length;
+    Json json{{"size", {video.size.width, video.size.height}},
+              {"unit", layout.unit},
+              {"text", layout.text},
+              {"reach", layout.reach},
+              {"bob", layout.bob_radius},
+              {"last_bob", layout.last_bob_radius},
+              {"rod", layout.rod_radius},
+              {"glow", style.glow},
+              {"font", style.font.strip},
+              {"em", style.font.axis},
+              {"words", json_of.all(layout.words)},
+              {"panels", Json::array()},
+              {"strips", Json::array()}};
+    for (const auto& width : width_names) json[std::string(width.key)] = style.width.*width.member;
     DisplayList backdrop;
     if (!video.transparent) backdrop.push_back(filled(video.size, style.theme.background));
-    json["panels"] = Json::array();
     for (const auto& panel : layout.panels) {
         make_pendulum_layer(state, panel)->backdrop(backdrop);
         std::vector<std::size_t> shown(panel.sides);  // pendulums, from the front
         if (!scene.members.empty()) shown.resize(scene.members.size());
-        if (!scene.members.empty()) std::iota(shown.begin(), shown.end(), 0);
+        if (!scene.members.empty()) std::iota(shown.begin(), shown.end(), std::size_t{0});
         json["panels"].push_back({{"area", json_of(panel.area)},
                                   {"shown", shown},
                                   {"center", json_of(panel.center)},
@@ -117,7 +114,6 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
             {"area", json_of(phase->area)}, {"angle", axis_json(phase->angle)}, {"rate", axis_json(phase->rate)}};
     }
     json["backdrop"] = json_of.all(backdrop);
-    json["strips"] = Json::array();
     for (std::size_t i = 0; i < layout.strips.size(); ++i) json["strips"].push_back(strip_json(state, i, json_of));
     for (const auto& [key, label] : {std::pair("clock", &layout.clock), {"speed", &layout.speed}})
         if (*label) json[key] = json_of(**label);
@@ -235,17 +231,15 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
               {"follow", video.view.follow},
               {"view", video.view.height_m || video.view.center_m || video.view.follow > 0},
               {"samples", samples},
+              {"sample_s", quotient({1, 1}, scene.preset.sample_hz)->value()},
+              {"duration_s", scene.time(samples)},
+              {"trail_s", video.trail_s},
+              {"start_s", video.poster_s ? video.poster_s->value() : 0},
+              {"fps", scene.fps.value()},
               {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
               {"speed", speed_json(scene)},
               {"bodies", bodies},
               {"pictures", pictures}};
-    for (const auto& [key, number] : std::initializer_list<std::pair<const char*, double>>{
-             {"trail_s", video.trail_s},
-             {"sample_s", quotient({1, 1}, scene.preset.sample_hz)->value()},
-             {"duration_s", scene.time(samples)},
-             {"fps", scene.fps.value()},
-             {"start_s", video.poster_s ? video.poster_s->value() : 0}})
-        json[key] = number;
     for (const auto& color : color_names)
         json["theme"][std::string(color.key)] = hexadecimal(style.theme.*color.member);
     if (video.layout == Arrangement::phase)

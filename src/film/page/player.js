@@ -36,10 +36,10 @@ function disc([x, y], radius, color, glow = 0) {
   if (glow > 0) fill(light, () => g.arc(x, y, radius + glow, 0, 7));
   fill(color, () => g.arc(x, y, radius, 0, 7));
 }
+const fonts = '"DejaVu Sans", Verdana, system-ui, sans-serif';
 // Narrower than its font has it where it would be wider than `width`: where the reader lacks the film's font.
 function text(words, [x, y], size, align, weight, color, width = 1e5) {
-  const font = `${weight} ${size}px "DejaVu Sans", Verdana, system-ui, sans-serif`;
-  Object.assign(g, { font, fillStyle: color, textAlign: align });
+  Object.assign(g, { fillStyle: color, textAlign: align, font: `${weight} ${size}px ${fonts}` });
   g.fillText(words, x, y, width + 1);
 }
 const isIn = ([x, y], [left, top, right, bottom]) => x >= left && x <= right && y >= top && y <= bottom;
@@ -100,9 +100,6 @@ function trailOf(at, lists) {
     points.push([...at(lists.map(list => list[i])), time - i * film.sample_s]);
   return [...points, [...at(lists.map(value)), 0]];
 }
-function drawTrail(k, at, color, width) {
-  if (film.trail_s > 0 && width > 0) fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), width, color);
-}
 
 // Rods, springs as zigzags, and pivots where ends are fixed.
 function drawLines(k, { bobs, pivot }, at, radius, color, hasPivots = true) {
@@ -154,7 +151,8 @@ function drawPanel(panel, poses) {
     drawBobs(other, poses, at, area, { last: shadow, others: shadow });
   }
   const trail = picture.trail * (isMany ? clamp(Math.sqrt(8) / root, 0.4, 1) : 1);
-  for (const k of fromBehind) drawTrail(k, at, hue(k, 0.5), trail);
+  for (const k of film.trail_s > 0 && trail > 0 ? fromBehind : [])
+    fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), trail, hue(k, 0.5));
   for (const k of fromBehind) {
     const { color: last } = bodies[k], others = hued(k, theme.bob, 0.4), least = isEnsemble ? 0 : picture.last_bob;
     drawLines(k, poses[k], at, rod, isEnsemble ? hue(k, 0.43) : hued(k, theme.rod, 0.55));
