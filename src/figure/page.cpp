@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "embedded/figure.hpp"
 #include "film/page.hpp"
+#include "film/page_json.hpp"
 #include "output/page.hpp"
 #include "output/png.hpp"
 
@@ -16,8 +17,8 @@ namespace {
 
 /// The cells of a map, otherwise the points of the curves, as text; NaN is "nan".
 Json panel_json(const Plot& plot, const PlotRanges& axes) {
-    Json panel{{"title", plot.title}, {"x", axis_json(plot.x.label, axes.x)}, {"y", axis_json(plot.y.label, axes.y)}};
-    if (axes.right) panel["right"] = axis_json(plot.right->label, *axes.right);
+    Json panel{{"title", plot.title}, {"x", axis_json(axes.x, plot.x.label)}, {"y", axis_json(axes.y, plot.y.label)}};
+    if (axes.right) panel["right"] = axis_json(*axes.right, plot.right->label);
     auto& curves = panel["curves"] = Json::array();
     if (const auto& map = plot.map) {
         const auto values = fmt::format("{:.4g}", fmt::join(map->values, " "));
@@ -47,11 +48,6 @@ std::string picture_url(const FigurePreset& figure, const Page& page) {
 
 }  // namespace
 
-Json axis_json(const std::string& label, const Axis& axis) {
-    return {{"label", label},     {"from", axis.low}, {"to", axis.high}, {"logarithmic", axis.logarithmic},
-            {"start", axis.from}, {"end", axis.to}};
-}
-
 std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& theme) {
     std::string heading, captions;
     if (!drawn.title.empty())
@@ -64,41 +60,36 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
     const auto page = compose(drawn, layout.picture, theme, layout.scale, layout.unit);
     const auto [width, height] =
         std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
-    Json panels = Json::array();
-    for (std::size_t i = 0; i < drawn.panels.size(); ++i) panels.push_back(panel_json(drawn.panels[i], page.panels[i]));
-    Json data{{"size", {width, height}}, {"panels", panels}, {"release", Json::array()}};
-    std::optional<HtmlPage> player;
+    auto whole = HtmlPage{.is_packed = true};
+    auto keys = Json::array();
     if (auto releases = figure.experiment->releases()) {
         constexpr Rational longest_s{60, 1};
         auto& duration = releases->pair.duration_s;
         if (duration.value() > longest_s.value()) duration = longest_s;
-        player = film_player(make_scene(releases->pair));
-        if (player) data["release"] = releases->keys, data["film"] = player->data;
+        if (auto player = film_player(make_scene(releases->pair))) whole = std::move(*player), keys = releases->keys;
     }
-    auto body = fmt::format(R"html({0}<main>
+    whole.body = fmt::format(R"html({0}<main>
 <div id="frame"><div id="figure" tabindex="0" role="application" aria-label="{1}: arrow keys move through its numbers">
 <img src="{2}" width="{3}" height="{4}" alt="{1}"/>
 <svg viewBox="0 0 {3} {4}" aria-hidden="true"><rect/></svg>
 <output></output>
 </div></div>
 </main>
-<footer>{5}<p>Point at the figure, or use arrow keys, with Shift in larger steps.{6}{7}</p></footer>)html",
-                            heading, markup(figure.title), picture_url(figure, page), width, height, captions,
-                            drawn.panels.size() > 1 ? " Page Up and Page Down change the panel." : "",
-                            !player ? "" : " A click or Enter releases the pendulum there.");
+<footer>{5}<p>Point at the figure, or use arrow keys, with Shift in larger steps.{6}{7}</p></footer>
+{8})html",
+                             heading, markup(figure.title), picture_url(figure, page), width, height, captions,
+                             drawn.panels.size() > 1 ? " Page Up and Page Down change the panel." : "",
+                             keys.empty() ? "" : " A click or Enter releases the pendulum there.", whole.body);
     const auto file = [](std::string_view name) { return embedded_file(figure_files(), name); };
-    HtmlPage whole{.kind = "figure",
-                   .title = figure.title,
-                   .body = std::move(body),
-                   .styles = {file("figure/page.css")},
-                   .scripts = {file("figure/axes.js"), file("figure/page.js")},
-                   .data = std::move(data),
-                   .is_packed = true};
-    if (player) {
-        whole.body += player->body;
-        whole.styles.insert(whole.styles.end(), player->styles.begin(), player->styles.end());
-        whole.scripts.insert(whole.scripts.end(), player->scripts.begin(), player->scripts.end());
-    }
+    whole.kind = "figure";
+    whole.title = figure.title;
+    whole.styles.insert(whole.styles.begin(), file("figure/page.css"));
+    whole.scripts.insert(whole.scripts.begin(), file("figure/page.js"));
+    whole.data["size"] = {width, height};
+    whole.data["release"] = keys;
+    whole.data["panels"] = Json::array();
+    for (std::size_t i = 0; i < drawn.panels.size(); ++i)
+        whole.data["panels"].push_back(panel_json(drawn.panels[i], page.panels[i]));
     return page_text(whole);
 }
 

@@ -13,7 +13,4 @@ namespace doppel {
 /// three ideal links, opens the release in a player.
 std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& theme);
 
-/// An axis for scripts: its label, the values `from` … `to`, and the pixels `start` … `end`.
-Json axis_json(const std::string& label, const Axis& axis);
-
 }  // namespace doppel

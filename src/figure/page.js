@@ -1,106 +1,97 @@
-"use strict";
 // Shows the numbers of the cell or the curve's point under the pointer or selected by keys.
-const figure = document.getElementById("figure"), mark = figure.querySelector("rect"), readout = figure.querySelector("output");
-let size, panels = [], release = [];  // pixels of the picture; keys of a preset
-let chosen = null, again = false;     // a place; whether the pointer was at the same place before
+"use strict";
+const figure = $("#figure"), mark = $("#figure rect"), readout = $("#figure output");
+const { size, panels, release } = pageData;  // pixels of the picture; keys of a preset
+let chosen = null, again = false;            // a place; whether the pointer was at the same place before
 
-const numbers = text => text ? text.split(" ").map(Number) : [];
-const pixel = (axis, share) => axis.start + (axis.end - axis.start) * share;
-const shareAt = (axis, px) => (px - axis.start) / (axis.end - axis.start);
+const numbersIn = text => text ? text.split(" ").map(Number) : [];
 const within = share => share > -1e-6 && share < 1 + 1e-6;
-const limited = (number, count) => Math.max(0, Math.min(count - 1, number));
 
 // A place: its texts as [label, value], and its position in pixels of the picture.
 function cell(panel, column, row) {
-  const { x, y, map } = panel;
-  [column, row] = [limited(column, map.columns), limited(row, map.rows)];
-  const across = (column + .5) / map.columns, up = (row + .5) / map.rows, value = map.values[row * map.columns + column];
-  const values = [axisValue(x, across), axisValue(y, up)];
-  const [width, height] = [[x, map.columns], [y, map.rows]].map(([axis, count]) => Math.max(Math.abs(axis.end - axis.start) / count, 16));
-  return { panel, column, row, values, x: pixel(x, across), y: pixel(y, up), width, height, rx: 0,
-    lines: [[x.label, values[0]], [y.label, values[1]], isNaN(value) ? [map.none] : [map.label, value]] };
+  const { x, y, map } = panel, counts = [map.columns, map.rows];
+  [column, row] = [column, row].map((number, i) => clamp(number, 0, counts[i] - 1));
+  const [across, up] = [(column + .5) / map.columns, (row + .5) / map.rows];
+  const value = map.values[row * map.columns + column];
+  const [width, height] = [x, y].map(({ start, end }, i) => Math.max(Math.abs(end - start) / counts[i], 16));
+  const values = [axisValue(x, across), axisValue(y, up)], last = isNaN(value) ? [map.none] : [map.label, value];
+  return { panel, column, row, values, x: pixelAt(x, across), y: pixelAt(y, up), width, height, rx: 0,
+    lines: [[x.label, values[0]], [y.label, values[1]], last] };
 }
 function point(panel, curve, index) {
-  const [x, y] = curve.points[index], values = [curve.x[index], curve.y[index]];
+  const { at: [x, y], values } = curve.points[index], label = curve.label ? [[curve.label]] : [];
   return { panel, curve, index, values, x, y, width: 18, height: 18, rx: 9,
-    lines: [...curve.label ? [[curve.label]] : [], [panel.x.label, values[0]], [curve.axis.label, values[1]]] };
+    lines: [...label, [panel.x.label, values[0]], [curve.axis.label, values[1]]] };
 }
 function nearest(panel, x, y, curves = panel.curves) {
-  const { map } = panel;
-  if (map) return cell(panel, Math.floor(shareAt(panel.x, x) * map.columns), Math.floor(shareAt(panel.y, y) * map.rows));
+  const { map } = panel, [across, up] = [shareAt(panel.x, x), shareAt(panel.y, y)];
+  if (map) return cell(panel, Math.floor(across * map.columns), Math.floor(up * map.rows));
   let best = Infinity, found = null;
   for (const curve of curves)
-    curve.points.forEach(([px, py], index) => {
-      const far = Math.hypot(px - x, y === undefined ? 0 : py - y);
+    curve.points.forEach(({ at }, index) => {
+      const far = Math.hypot(at[0] - x, y === undefined ? 0 : at[1] - y);
       if (far < best) best = far, found = [curve, index];
     });
   return found && point(panel, ...found);
 }
-function step(panel, right, up) {
-  if (chosen?.panel !== panel) return nearest(panel, pixel(panel.x, .5), pixel(panel.y, .5));
-  if (panel.map) return cell(panel, chosen.column + right, chosen.row + up);
-  const { curve, index } = chosen;
-  if (up) return nearest(panel, chosen.x, undefined, [panel.curves[limited(panel.curves.indexOf(curve) - up, panel.curves.length)]]) ?? chosen;
-  const shown = [...curve.points.keys()].filter(i => !isNaN(curve.points[i][0]));
-  return point(panel, curve, shown[limited(shown.indexOf(index) + right, shown.length)]);
-}
-
 function choose(place) {
   chosen = place;
   mark.toggleAttribute("hidden", !place);
   readout.replaceChildren();
   if (!place) return;
-  const { x, y, width, height, rx, panel } = place;
-  for (const [name, value] of Object.entries({ x: x - width / 2, y: y - height / 2, width, height, rx })) mark.setAttribute(name, value);
-  for (const [label, value] of panels.length > 1 && panel.title ? [[panel.title], ...place.lines] : place.lines) {
-    const words = readout.appendChild(document.createElement("span"));
-    words.textContent = label;
-    if (value === undefined) words.className = "whole";
-    else readout.appendChild(document.createElement("b")).textContent = written(Number(value.toPrecision(6)));
+  const { x, y, width, height, rx, panel, lines } = place;
+  const corner = { x: x - width / 2, y: y - height / 2, width, height, rx };
+  for (const [name, value] of Object.entries(corner)) mark.setAttribute(name, value);
+  for (const [label, value] of panels.length > 1 && panel.title ? [[panel.title], ...lines] : lines) {
+    readout.append(element("span", { class: value === undefined ? "whole" : "" }, label));
+    if (value !== undefined) readout.append(element("b", {}, written(Number(value.toPrecision(6)))));
   }
   const beside = (px, side) => px < side / 2 ? "16px" : "calc(-100% - 16px)";  // on the side with more space
-  const transform = `translate(${beside(x, size[0])}, ${beside(y, size[1])})`;
-  Object.assign(readout.style, { left: 100 * x / size[0] + "%", top: 100 * y / size[1] + "%", transform });
+  Object.assign(readout.style, { left: `${100 * x / size[0]}%`, top: `${100 * y / size[1]}%`,
+    transform: `translate(${beside(x, size[0])}, ${beside(y, size[1])})` });
 }
 function open() {
-  const detail = () => Object.fromEntries(release.map((key, i) => [key, Number(chosen.values[i].toPrecision(12))]));
-  if (chosen && release.length) document.dispatchEvent(new CustomEvent("release", { detail: detail() }));
+  if (chosen && release.length)
+    releaseAt(Object.fromEntries(release.map((key, i) => [key, Number(chosen.values[i].toPrecision(12))])));
 }
 
 figure.onpointermove = figure.onpointerdown = event => {
   const area = figure.getBoundingClientRect(), before = chosen;
-  const [x, y] = [(event.clientX - area.left) / area.width * size[0], (event.clientY - area.top) / area.height * size[1]];
+  const x = (event.clientX - area.left) / area.width * size[0], y = (event.clientY - area.top) / area.height * size[1];
   const panel = panels.find(one => within(shareAt(one.x, x)) && within(shareAt(one.y, y)));
   choose(panel ? nearest(panel, x, y) : null);
   if (event.type === "pointerdown") again = before?.x === chosen?.x && before?.y === chosen?.y;
 };
 figure.onpointerleave = event => event.pointerType === "mouse" && choose(null);
 figure.onclick = event => (event.pointerType !== "touch" || again) && open();  // a first touch shows the numbers
-const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1], PageUp: [0, 0, -1], PageDown: [0, 0, 1] };
-figure.onkeydown = event => {
-  if (!panels.length) return;
-  const [right, up, next = 0] = moves[event.key] ?? [], far = event.shiftKey ? 10 : 1;
-  if (moves[event.key]) choose(step(panels[limited(panels.indexOf(chosen?.panel ?? panels[0]) + next, panels.length)], right * far, up * far));
-  else if (event.key === "Escape") choose(null);
-  else if (event.key === "Enter") open();
-  else return;
-  event.preventDefault();
-};
 
-function start() {
-  const shown = JSON.parse(document.getElementById("data").textContent);
-  for (const panel of shown.panels) {
-    if (panel.map) panel.map.values = numbers(panel.map.values);
-    for (const curve of panel.curves) {
-      curve.axis = curve.right && panel.right || panel.y;
-      [curve.x, curve.y] = [numbers(curve.x), numbers(curve.y)];
-      curve.points = curve.x.map((value, i) => [axisShare(panel.x, value), axisShare(curve.axis, curve.y[i])])
-        .map(([x, y]) => within(x) && within(y) ? [pixel(panel.x, x), pixel(curve.axis, y)] : [NaN, NaN]);
-    }
-  }
-  ({ size, panels, release } = shown);
-  figure.parentElement.style.maxWidth = `max(680px, ${85 * size[0] / size[1]}vh)`;
-  figure.classList.toggle("releases", release.length > 0);
+// The place so many columns or points, and rows or curves, from the chosen one, or in the middle of another panel.
+function stepBy(right, up, next = 0) {
+  const panel = panels[clamp(panels.indexOf(chosen?.panel ?? panels[0]) + next, 0, panels.length - 1)];
+  if (chosen?.panel !== panel) return nearest(panel, pixelAt(panel.x, .5), pixelAt(panel.y, .5));
+  const { curve, index, column, row, x } = chosen, { curves } = panel;
+  if (panel.map) return cell(panel, column + right, row + up);
+  const other = curves[clamp(curves.indexOf(curve) - up, 0, curves.length - 1)];
+  if (up) return nearest(panel, x, undefined, [other]) ?? chosen;
+  return point(panel, curve, clamp(index + right, 0, curve.points.length - 1));
 }
+const moves = { Escape: () => choose(null), Enter: open };
+for (const [key, right, up, next] of [["ArrowLeft", -1, 0], ["ArrowRight", 1, 0], ["ArrowUp", 0, 1], ["ArrowDown", 0, -1],
+  ["PageUp", 0, 0, -1], ["PageDown", 0, 0, 1]])
+  moves[key] = ({ shiftKey }) => choose(stepBy(right * (shiftKey ? 10 : 1), up * (shiftKey ? 10 : 1), next));
+if (panels.length) onKeys(moves, figure);
+
+for (const panel of panels) {
+  if (panel.map) panel.map.values = numbersIn(panel.map.values);
+  for (const curve of panel.curves) {
+    const [xs, ys] = [numbersIn(curve.x), numbersIn(curve.y)], axis = curve.right && panel.right || panel.y;
+    const points = xs.map((x, i) => ({ values: [x, ys[i]], shares: [axisShare(panel.x, x), axisShare(axis, ys[i])] }))
+      .filter(({ shares }) => shares.every(within));
+    curve.axis = axis;
+    curve.points = points.map(({ values, shares }) =>
+      ({ values, at: [pixelAt(panel.x, shares[0]), pixelAt(axis, shares[1])] }));
+  }
+}
+figure.parentElement.style.maxWidth = `max(680px, ${85 * size[0] / size[1]}vh)`;
+figure.classList.toggle("releases", release.length > 0);
 choose(null);
-start();

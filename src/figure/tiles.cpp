@@ -5,7 +5,7 @@
 #include "base/text.hpp"
 #include "base/threads.hpp"
 #include "embedded/figure.hpp"
-#include "figure/page.hpp"
+#include "film/page_json.hpp"
 #include "output/page.hpp"
 #include "output/png.hpp"
 
@@ -90,7 +90,7 @@ Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& th
         });
     }
     files.finished(name);
-    const auto axis = [](const PlotAxis& of) { return axis_json(of.label, {*of.low, *of.high, 0, 1, of.logarithmic}); };
+    const auto axis = [](const PlotAxis& of) { return axis_json({*of.low, *of.high, 0, 1, of.logarithmic}, of.label); };
     const Json map{{"folder", in_address(name)},  {"tile", tile},
                    {"levels", levels.size() - 1}, {"columns", plot.map->columns},
                    {"rows", plot.map->rows},      {"x", axis(plot.x)},
@@ -99,8 +99,7 @@ Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& th
                                             .title = figure.title,
                                             .body = body_of(figure, *plot.map),
                                             .styles = {embedded_file(figure_files(), "figure/tiles.css")},
-                                            .scripts = {embedded_file(figure_files(), "figure/axes.js"),
-                                                        embedded_file(figure_files(), "figure/tiles.js")},
+                                            .scripts = {embedded_file(figure_files(), "figure/tiles.js")},
                                             .data = map,
                                             .has_pictures_beside = true}));
     files.finished(html);

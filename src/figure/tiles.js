@@ -1,16 +1,13 @@
 "use strict";
-const map = JSON.parse(document.getElementById("data").textContent);
-const scale = document.getElementById("scale");
-scale.style.setProperty("--colors", map.scale.colors.join());
+const map = pageData, canvas = $("canvas"), g = canvas.getContext("2d"), margin = { left: 58, bottom: 44 };
+$("#scale").style.setProperty("--colors", map.scale.colors.join());
 for (const [share, text] of map.scale.numbers) {
-  const number = scale.appendChild(document.createElement("span"));
-  number.textContent = text;
+  const number = element("span", {}, text);
   number.style.setProperty("--at", 100 * share + "%");
+  $("#scale").append(number);
 }
-document.getElementById("none").style.borderColor = map.scale.none;
+$("#none").style.borderColor = map.scale.none;
 
-const canvas = document.querySelector("canvas"), g = canvas.getContext("2d"), at = document.getElementById("at");
-const margin = { left: 58, bottom: 44 };
 let width = 0, height = 0, density = 1;
 // the cell in the middle, from the top left, and pixels per cell
 const view = { x: map.columns / 2, y: map.rows / 2, scale: 1 };
@@ -103,12 +100,13 @@ function draw() {
 
 let later = 0;
 function moved() {
-  view.scale = Math.min(Math.max(view.scale, .5 * plotWidth() / map.columns), 64);
-  view.x = Math.min(Math.max(view.x, 0), map.columns);
-  view.y = Math.min(Math.max(view.y, 0), map.rows);
+  view.scale = clamp(view.scale, .5 * plotWidth() / map.columns, 64);
+  view.x = clamp(view.x, 0, map.columns);
+  view.y = clamp(view.y, 0, map.rows);
   draw();
   clearTimeout(later);
-  later = setTimeout(() => history.replaceState(null, "", `#x=${view.x.toFixed(2)}&y=${view.y.toFixed(2)}&scale=${view.scale.toPrecision(5)}`), 200);
+  const numbers = { x: view.x.toFixed(2), y: view.y.toFixed(2), scale: view.scale.toPrecision(5) };
+  later = setTimeout(() => keepAddress(numbers), 200);
 }
 function move(right, down) {
   view.x += right / view.scale;
@@ -134,7 +132,7 @@ canvas.onpointerdown = event => {
 canvas.onpointerup = canvas.onpointercancel = event => pointers.delete(event.pointerId);
 canvas.onpointermove = event => {
   const here = [event.offsetX, event.offsetY], before = pointers.get(event.pointerId);
-  at.textContent = [map.x, map.y].map((axis, i) => {
+  $("#at").textContent = [map.x, map.y].map((axis, i) => {
     const share = i ? 1 - cellY(here[1]) / map.rows : cellX(here[0]) / map.columns;
     return `${axis.label}: ${written(Number(axisValue(axis, share).toPrecision(6)))}`;
   }).join("   ");
@@ -150,24 +148,19 @@ canvas.addEventListener("wheel", event => {
   zoom(2 ** (-event.deltaY / (event.deltaMode ? 8 : 240)), event.offsetX, event.offsetY);
 }, { passive: false });
 canvas.ondblclick = event => zoom(2, event.offsetX, event.offsetY);
-const keys = { ArrowLeft: () => move(-80, 0), ArrowRight: () => move(80, 0), ArrowUp: () => move(0, -80), ArrowDown: () => move(0, 80),
-  "+": () => zoom(1.5), "=": () => zoom(1.5), "-": () => zoom(1 / 1.5), "0": showAll };
-addEventListener("keydown", event => {
-  if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
-  event.preventDefault();
-  keys[event.key]();
-});
-for (const button of document.querySelectorAll("button")) button.onclick = () => Number(button.dataset.by) ? zoom(Number(button.dataset.by)) : showAll();
+onKeys({ ArrowLeft: () => move(-80, 0), ArrowRight: () => move(80, 0), ArrowUp: () => move(0, -80), ArrowDown: () => move(0, 80),
+  "+": () => zoom(1.5), "=": () => zoom(1.5), "-": () => zoom(1 / 1.5), 0: showAll });
+for (const button of document.querySelectorAll("button"))
+  button.onclick = () => Number(button.dataset.by) ? zoom(Number(button.dataset.by)) : showAll();
 
 function resize() {
   const first = width === 0;
   ({ width, height } = canvas.parentElement.getBoundingClientRect());
   density = devicePixelRatio || 1;
-  canvas.width = Math.round(width * density);
-  canvas.height = Math.round(height * density);
+  setSize(canvas, width, height);
   if (!first) return draw();
   showAll();
-  for (const [key, value] of new URLSearchParams(location.hash.slice(1))) if (Number(value) > 0) view[key] = Number(value);
+  Object.assign(view, addressNumbers());
   moved();
 }
 addEventListener("resize", resize);

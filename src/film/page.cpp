@@ -1,7 +1,6 @@
 #include "film/page.hpp"
 
 #include "base/embedded.hpp"
-#include "base/text.hpp"
 #include "embedded/film.hpp"
 #include "film/page_json.hpp"
 #include "film/strips.hpp"
@@ -17,8 +16,12 @@
 namespace doppel {
 namespace {
 
-/// Words of `word_bytes` bytes, compressed by zlib, as base64: first the lowest byte of all words, then the next one …
-std::string packed(const std::vector<std::uint32_t>& words, std::size_t word_bytes) {
+/// Channels of `count` words of `word_bytes` bytes: differences in time, `order` times; first the lowest byte of all,
+/// then the next one …; compressed by zlib, as base64.
+std::string packed(std::vector<std::uint32_t> words, std::size_t count, int order, std::size_t word_bytes) {
+    for (; order > 0; --order)
+        for (std::size_t i = words.size(); i-- > 0;)
+            if (i % count > 0) words[i] -= words[i - 1];
     std::string bytes(words.size() * word_bytes, '\0');
     for (std::size_t i = 0; i < words.size(); ++i)
         for (std::size_t k = 0; k < word_bytes; ++k)
@@ -26,48 +29,21 @@ std::string packed(const std::vector<std::uint32_t>& words, std::size_t word_byt
     return deflated(bytes);
 }
 
-/// Floats, each stored as the difference of its bits from the previous one.
-std::string packed_floats(const std::vector<std::vector<float>>& channels) {
-    std::vector<std::uint32_t> words;
-    for (const auto& numbers : channels) {
-        std::uint32_t last = 0;
-        for (const float number : numbers) {
-            const auto bits = std::bit_cast<std::uint32_t>(number);
-            words.push_back(bits - last);
-            last = bits;
-        }
-    }
-    return packed(words, sizeof(float));
-}
-
-/// The side of a pendulum, or for members the side with the same layout.
-const Side& side_of(const Scene& scene, std::size_t pendulum) {
-    return pendulum == 1 && scene.members.empty() ? scene.b : scene.a;
-}
-
 /// Whether the positions of its bobs follow from the angles and lengths of its links.
 bool is_by_angles(const Side& side) {
     return side.has_angles && side.motion.model == Model::angles && !side.replay;
 }
 
-/// The step of the stored angles, rad.
-double turn_step(const Side& side, int bits) {
-    return std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(side.mass.size()));
-}
-
-/// The page without its data.
-HtmlPage player(const Scene& scene) {
+/// The player with the data of a film.
+HtmlPage player(const Scene& scene, Json film) {
     const auto file = [](std::string_view name) { return embedded_file(film_files(), name); };
-    std::string body(file("film/page/player.html"));
-    for (const auto& [name, text] : {std::pair<std::string_view, std::string>{"{title}", scene.preset.title},
-                                     {"{caption}", scene_caption(scene, wording_of(scene))}})
-        body.replace(body.find(name), name.size(), markup(text));
     return {.kind = "film",
             .title = scene.preset.title,
-            .body = std::move(body),
+            .body = std::string(file("film/page/player.html")),
             .styles = {file("film/page/player.css")},
             .scripts = {file("film/page/chain.js"), file("film/page/motion.js"), file("film/page/player.js"),
                         file("film/page/controls.js")},
+            .data = {{"film", std::move(film)}},
             .is_packed = true};
 }
 
@@ -81,142 +57,109 @@ FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& 
       parts_(parts) {}
 
 void FilmPage::add(const Snapshot& snapshot) {
-    if (snapshot.pair.share > 0) return;
-    if (snapshot.pair.sample == 0) start_distance_ = snapshot.pair.distance;
-    ++samples_;
-    if (!computes_) add_positions(snapshot);
-    add_curves(snapshot.pair);
-}
-
-void FilmPage::add_positions(const Snapshot& snapshot) {
-    const auto &a = snapshot.pair.a, &b = snapshot.pair.b;
-    std::vector<const Bobs<double>*> pendulums;
-    for (const auto& member : snapshot.members) pendulums.push_back(&member);
-    if (pendulums.empty()) pendulums.push_back(&a.bobs);
-    if (snapshot.members.empty() && !scene_.is_single()) pendulums.push_back(&b.bobs);
-    positions_.resize(pendulums.size());
+    const auto& pair = snapshot.pair;
+    const auto& video = scene_.preset.video;
+    if (pair.share > 0) return;
+    if (pair.sample == 0) start_distance_ = pair.distance;
+    std::vector<double> places, curves;
+    const auto pendulums = computes_ ? std::vector<ShownPendulum>() : shown_pendulums(scene_);
     for (std::size_t k = 0; k < pendulums.size(); ++k) {
-        const auto& side = side_of(scene_, k);
-        const auto& pivot = (&side == &scene_.a ? a : b).pivot;
-        auto& channels = positions_[k];
-        channels.resize((is_by_angles(side) ? 1 : 2) * pendulums[k]->size() + (side.pivot_reach > 0 ? 2 : 0));
-        auto channel = channels.begin();
-        const auto take = [&](double number) { (channel++)->push_back(static_cast<float>(number)); };
-        for (const auto& bob : *pendulums[k]) {
-            if (is_by_angles(side)) take(std::remainder(bob.theta, 2 * pi));
-            if (!is_by_angles(side)) take(bob.x), take(bob.y);
-        }
-        if (side.pivot_reach > 0) take(pivot.x), take(pivot.y);
+        const auto& side = pendulums[k].side;
+        const auto& seen = &side == &scene_.a ? pair.a : pair.b;
+        for (const auto& bob : snapshot.members.empty() ? seen.bobs : snapshot.members[k])
+            if (is_by_angles(side))
+                places.push_back(std::remainder(bob.theta, 2 * pi));
+            else
+                places.insert(places.end(), {bob.x, bob.y});
+        if (side.pivot_reach > 0) places.insert(places.end(), {seen.pivot.x, seen.pivot.y});
     }
-}
-
-void FilmPage::add_curves(const PairState& state) {
-    std::size_t channel = 0;
-    const auto take = [&](double number) {
-        if (channel == curves_.size()) curves_.emplace_back();
-        curves_[channel++].push_back(static_cast<float>(number));
-    };
-    for (const auto kind : scene_.preset.video.strips)
+    for (const auto kind : video.strips)
         if (!computes_ || !page_computes(kind))
-            for (const auto& curve : strip_curves(kind, scene_, state, start_distance_, themes[0], 1))
-                take(curve.value.value_or(NAN));
-    if (scene_.preset.video.layout != Arrangement::phase || computes_) return;
-    for (const auto* seen : {&state.a, &state.b}) {
-        const auto& bob = seen->bobs[static_cast<std::size_t>(scene_.preset.video.phase_link - 1)];
-        for (const double number : {bob.theta, bob.omega, seen->bobs[0].theta}) take(number);
+            for (const auto& curve : strip_curves(kind, scene_, pair, start_distance_, themes[0], 1))
+                curves.push_back(curve.value.value_or(NAN));
+    for (const auto* seen : {&pair.a, &pair.b}) {
+        if (video.layout != Arrangement::phase || computes_) break;
+        const auto& bob = seen->bobs[static_cast<std::size_t>(video.phase_link - 1)];
+        curves.insert(curves.end(), {bob.theta, bob.omega, seen->bobs[0].theta});
     }
+    for (auto [channels, numbers] : {std::pair(&places_, &places), {&curves_, &curves}}) {
+        channels->resize(numbers->size());
+        for (std::size_t i = 0; i < numbers->size(); ++i) (*channels)[i].push_back(static_cast<float>((*numbers)[i]));
+    }
+    ++samples_;
 }
 
-/// Angles in steps of 2^−bits of a turn, times √N for a chain of N links, whose errors add up randomly. Other positions
-/// in steps of 2^−bits of their range. Stores second differences in time, less those of the previous pendulum.
+/// Angles in steps of 2^−bits of a turn, times √N for a chain of N links, whose errors add up randomly; `low` is −half
+/// the range. Coordinates in steps of 2^−bits of their range. Stores second differences in time, less those of the
+/// previous pendulum if all have as many channels.
 Json FilmPage::motion_json() const {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    const auto is_angle = [&](std::size_t k, std::size_t channel) {
-        const auto& side = side_of(scene_, k);
-        return is_by_angles(side) && channel < side.mass.size();
-    };
-    for (std::size_t k = 0; k < positions_.size(); ++k)
-        for (std::size_t c = 0; c < positions_[k].size(); ++c)
-            for (const float number : positions_[k][c])
-                if (!is_angle(k, c)) low = std::min<double>(low, number), high = std::max<double>(high, number);
-    if (!(high > low)) low = 0, high = 1;
     const int bits = scene_.preset.video.position_bits;
-    const std::uint32_t most = (std::uint32_t{1} << bits) - 1;
-    std::vector<std::uint32_t> words;
-    std::vector<std::pair<std::size_t, std::size_t>> begins;  // start and word count of pendulums like the previous one
+    std::vector<double> turns;  // the step of a channel of angles, rad; 0: of coordinates
     Json pendulums = Json::array();
-    for (std::size_t k = 0; k < positions_.size(); ++k) {
-        const auto& side = side_of(scene_, k);
-        const auto count = positions_[k].size() * static_cast<std::size_t>(samples_), begin = words.size();
-        const bool is_like_last = k > 0 && positions_[k - 1].size() == positions_[k].size();
-        for (std::size_t c = 0; c < positions_[k].size(); ++c) {
-            std::uint32_t last = 0, change = 0;
-            for (const float number : positions_[k][c]) {
-                const double steps =
-                    is_angle(k, c) ? number / turn_step(side, bits) : most * ((number - low) / (high - low));
-                const auto step = static_cast<std::uint32_t>(std::lround(steps)), moved = step - last;
-                words.push_back((moved - change) & most);
-                last = step, change = moved;
-            }
-        }
-        Json json{{"angles", is_by_angles(side)}, {"pivot", side.pivot_reach > 0}, {"like_last", is_like_last}};
-        if (is_by_angles(side)) {
-            json["length"] = side.motion.chain->cast<double>().length;
-            json["step"] = turn_step(side, bits);
-        }
-        pendulums.push_back(std::move(json));
-        // backwards below, so that the previous pendulum's words are still unchanged
-        if (is_like_last) begins.emplace_back(begin, count);
+    std::size_t channels = 0;  // of the last pendulum
+    for (const auto& [motion, side] : shown_pendulums(scene_)) {
+        const auto links = side.mass.size(), before = turns.size();
+        const double turn = is_by_angles(side) ? std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(links)) : 0;
+        turns.resize(before + (turn > 0 ? links : 2 * links), turn);
+        if (side.pivot_reach > 0) turns.resize(turns.size() + 2, 0);
+        channels = turns.size() - before;
+        pendulums.push_back({{"turn", turn}, {"moves", side.pivot_reach > 0}});
+        if (turn > 0) pendulums.back()["length"] = motion.chain->cast<double>().length;
     }
-    for (auto at = begins.rbegin(); at != begins.rend(); ++at)
-        for (std::size_t i = at->first; i < at->first + at->second; ++i)
-            words[i] = (words[i] - words[i - at->second]) & most;
-    return {{"bits", bits},
-            {"low", low},
-            {"high", high},
-            {"pendulums", pendulums},
-            {"words", packed(words, bits > 16 ? 3 : 2)}};
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t c = 0; c < turns.size(); ++c)
+        for (const float number : places_[c])
+            if (turns[c] == 0) low = std::min<double>(low, number), high = std::max<double>(high, number);
+    if (!(high > low)) low = 0, high = 1;
+    const double step = (high - low) / (std::ldexp(1, bits) - 1);
+    std::vector<std::uint32_t> words;
+    for (std::size_t c = 0; c < turns.size(); ++c)
+        for (const float number : places_[c])
+            words.push_back(static_cast<std::uint32_t>(
+                std::lround(turns[c] > 0 ? number / turns[c] + std::ldexp(1, bits - 1) : (number - low) / step)));
+    const auto like_last = channels * pendulums.size() == turns.size() ? channels * places_[0].size() : words.size();
+    for (std::size_t i = words.size(); i-- > like_last;) words[i] -= words[i - like_last];
+    return {{"bits", bits},           {"low", low},
+            {"step", step},           {"like_last", like_last},
+            {"pendulums", pendulums}, {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
 }
 
 void FilmPage::finish() {
-    const auto& preset = scene_.preset;
-    auto data = page_json(scene_, bounds_);
-    data["samples"] = samples_ - 1;
-    data["duration_s"] = scene_.time(samples_ - 1);
-    if (!positions_.empty()) data["motion"] = motion_json();
-    if (!curves_.empty()) data["curves"] = packed_floats(curves_);
-    auto page = player(scene_);
-    page.data = std::move(data);
-    write_file(place_, page_text(page));
-    parts_.finished(preset.name + ".html");
+    auto film = page_json(scene_, bounds_, samples_ - 1);
+    if (!places_.empty()) film["motion"] = motion_json();
+    std::vector<std::uint32_t> bits;
+    for (const auto& curve : curves_)
+        for (const float number : curve) bits.push_back(std::bit_cast<std::uint32_t>(number));
+    if (!bits.empty()) film["curves"] = packed(std::move(bits), curves_[0].size(), 1, sizeof(float));
+    write_file(place_, page_text(player(scene_, std::move(film))));
+    parts_.finished(scene_.preset.name + ".html");
 }
 
 std::optional<HtmlPage> film_player(Scene scene) {
-    if (std::ranges::any_of(shown_motions(scene), [](const auto* motion) { return chain_json(*motion).is_null(); }))
-        return std::nullopt;
+    for (const auto& pendulum : shown_pendulums(scene))
+        if (chain_json(pendulum.motion).is_null()) return std::nullopt;
     auto& video = scene.preset.video;
     video = {};
     if (differing_keys(scene.preset.a, scene.preset.b).empty()) {
         video.layout = Arrangement::single;
         video.strips.clear();
     }
-    auto page = player(scene);
-    page.data = page_json(scene, Recording(scene, {1}, true, never_stopped).bounds());
-    return page;
+    return player(scene, page_json(scene, Recording(scene, {1}, true, never_stopped).bounds(), scene.samples));
 }
 
 double estimated_page_bytes(const Scene& scene) {
-    constexpr double script = 33e3, place = 1.3, number = 4;  // bytes, measured: 0.8 to 2 per position
-    double places = 0, numbers = scene.preset.video.layout == Arrangement::phase ? 6 : 0;
-    for (std::size_t k = 0; k < shown_motions(scene).size(); ++k)
-        places += static_cast<double>(side_of(scene, k).mass.size()) * (is_by_angles(side_of(scene, k)) ? 1 : 2);
+    constexpr double script = 33e3, place = 1.3 / 16, number = 4;  // bytes; per bit of a place, measured: 0.05 to 0.13
+    const auto& video = scene.preset.video;
     const bool computes = page_computes(scene);
-    if (computes) places = numbers = 0;
-    places *= scene.preset.video.position_bits / 16.0;
-    for (const auto kind : scene.preset.video.strips)
+    double per_sample = !computes && video.layout == Arrangement::phase ? 6 * number : 0;
+    for (const auto& [motion, side] : shown_pendulums(scene))
+        if (!computes)
+            per_sample +=
+                place * video.position_bits * static_cast<double>(side.mass.size()) * (is_by_angles(side) ? 1 : 2);
+    for (const auto kind : video.strips)
         if (!computes || !page_computes(kind))
-            numbers += kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2;
-    return script + static_cast<double>(scene.samples) * (place * places + number * numbers);
+            per_sample += number * (kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2);
+    return script + static_cast<double>(scene.samples) * per_sample;
 }
 
 }  // namespace doppel

@@ -27,9 +27,6 @@ public:
 
 private:
     using Channels = std::vector<std::vector<float>>;  // numbers over time
-
-    void add_positions(const Snapshot& snapshot);
-    void add_curves(const PairState& state);
     Json motion_json() const;
 
     const Scene& scene_;
@@ -38,14 +35,14 @@ private:
     const bool computes_;  // the script computes the motion
     Transaction& parts_;
     double start_distance_ = 0;
-    long samples_ = 0;                 // added
-    std::vector<Channels> positions_;  // one entry per pendulum
-    Channels curves_;                  // of all strips, then of a phase panel
+    long samples_ = 0;  // added
+    Channels places_;   // of all pendulums: angles or coordinates of bobs, then of the pivot if it moves
+    Channels curves_;   // of all strips, then of a phase panel
 };
 
-/// The player of a scene's chains of one to three ideal links, for another kind of page. The page's data contains the
-/// player's as "film". It is hidden until the document gets an event "release", whose detail has the
-/// release angles by their keys. nullopt if the scene has other pendulums.
+/// The player of a scene's chains of one to three ideal links, for another kind of page, which adds to its body and
+/// data. It is hidden until a script calls releaseAt() with release angles, degrees, by their keys. nullopt if the scene
+/// has other pendulums.
 std::optional<HtmlPage> film_player(Scene scene);
 
 /// The approximate size in bytes of a scene's page.

@@ -9,15 +9,22 @@
 
 namespace doppel {
 
-/// The page's data except its motion, for src/film/page/player.js.
-Json page_json(const Scene& scene, const MotionBounds& bounds);
+/// The page's data except its motion of samples 0 … `samples`, for src/film/page/player.js.
+Json page_json(const Scene& scene, const MotionBounds& bounds, long samples);
+
+/// An axis for the scripts of pages: its label, the values `from` … `to`, and the pixels `start` … `end`.
+Json axis_json(const Axis& axis, const std::string& label = "");
 
 /// The numbers in double of a motion's ideal chain of one to three links. Includes its method and steps if
 /// src/film/page/chain.js computes the motion bit for bit. null for any other motion.
 Json chain_json(const MotionSpec& motion);
 
-/// The motions in a film: those of its members, or of its sides.
-std::vector<const MotionSpec*> shown_motions(const Scene& scene);
+/// A pendulum of a film: that of a side, or an ensemble's member with the side that has the same layout.
+struct ShownPendulum {
+    const MotionSpec& motion;
+    const Side& side;
+};
+std::vector<ShownPendulum> shown_pendulums(const Scene& scene);
 
 /// Whether the page computes all of these motions.
 bool page_computes(const Scene& scene);

@@ -53,22 +53,28 @@ std::string page_start(std::string_view kind) {
 }
 
 std::string page_text(const HtmlPage& page) {
-    std::string styles, style_sources, scripts, script_sources;
-    styles += element("style", embedded_file(output_files(), "output/page.css"), style_sources);
+    const auto file = [](std::string_view name) { return embedded_file(output_files(), name); };
+    std::string style_sources, script_sources, scripts;
+    auto styles = element("style", file("output/page.css"), style_sources);
     for (const auto style : page.styles) styles += element("style", style, style_sources);
-    for (const auto script : page.scripts) scripts += element("script", script, script_sources);
-    std::string data;
+    const auto add = [&](std::string_view type, std::string_view contents) {
+        scripts += fmt::format("<script type=\"{}\">{}</script>\n", type, contents);
+    };
+    const auto add_script = [&](std::string_view script) {
+        const auto plain = element("script", script, script_sources);
+        if (page.is_packed)
+            add("text/packed", deflated(fmt::format("\n{}", script)));
+        else
+            scripts += plain;
+    };
+    if (page.is_packed) scripts = element("script", file("output/unpack.js"), script_sources);
     if (!page.data.is_null()) {
         const auto json = in_script(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-        data = fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", json);
-        if (page.is_packed)
-            data = fmt::format("<script type=\"text/packed\" id=\"data\">{}</script>\n", deflated(json));
+        add(page.is_packed ? "text/packed\" id=\"data" : "application/json\" id=\"data",
+            page.is_packed ? deflated(json) : json);
+        add_script(file("output/helpers.js"));
     }
-    if (page.is_packed) {
-        scripts = element("script", embedded_file(output_files(), "output/unpack.js"), script_sources);
-        for (const auto script : page.scripts)
-            scripts += fmt::format("<script type=\"text/packed\">{}</script>\n", deflated(fmt::format("\n{}", script)));
-    }
+    for (const auto script : page.scripts) add_script(script);
     return fmt::format(R"({}
 <html lang="en">
 <head>
@@ -81,12 +87,11 @@ std::string page_text(const HtmlPage& page) {
 {}</head>
 <body>
 {}
-{}{}</body>
+{}</body>
 </html>
 )",
                        page_start(page.kind), script_sources, style_sources,
-                       page.has_pictures_beside ? " 'self' file:" : "", markup(page.title), styles, page.body, data,
-                       scripts);
+                       page.has_pictures_beside ? " 'self' file:" : "", markup(page.title), styles, page.body, scripts);
 }
 
 }  // namespace doppel

@@ -26,7 +26,10 @@ std::string page_of(const std::string& text, const RunOptions& options = {}) {
     return test::bytes_of(in.out / "x" / "x.html");
 }
 
-using test::data_of;
+/// The film's data.
+nlohmann::ordered_json data_of(const std::string& page) {
+    return test::data_of(page).at("film");
+}
 
 std::string html(const std::string& keys) {
     return keys + "\n[video]\nformat = \"html\"\n";
@@ -65,7 +68,7 @@ TEST_P(PageChains, AreComputedToTheLastBit) {
         "for (var i = 0; i <= samples; ++i) {{\n"
         "  var line = [], bobs = of.map(function (p, k) {{ return chains.bobs(p, states[k], 2 * n * i); }});\n"
         "  for (var k = 0; k < 2; ++k) for (var j = 0; j < 2 * n; ++j) line.push(states[k][2 * n * i + j]);\n"
-        "  line.push(chains.distance(of[0], of[1], bobs[0], bobs[1]), chains.energy(of[0], bobs[0]));\n"
+        "  line.push(chains.distance(bobs[0], bobs[1]), chains.energy(of[0].gravity, bobs[0]));\n"
         "  write(line.join(' '));\n"
         "}}\n",
         chains.dump(), scene.samples));
@@ -131,34 +134,34 @@ TEST(Page, HasTheSizeThatCheckSays) {
     }
 }
 
-/// The numbers of each pendulum's channels, as the page's script reads them.
-std::vector<std::vector<std::vector<double>>> channels_of(const Json& motion, std::size_t count, std::size_t links) {
+/// The numbers of all channels, as the page's script reads them.
+std::vector<std::vector<double>> channels_of(const Json& motion, std::size_t count) {
     const unsigned bits = motion.at("bits"), bytes = bits > 16 ? 3 : 2, most = (1U << bits) - 1;
-    const double low = motion.at("low"), high = motion.at("high");
     const auto planes = test::inflated(motion.at("words"));
     std::vector<unsigned> words(planes.size() / bytes);
-    for (unsigned b = 0; b < bytes; ++b)
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        words[i % words.size()] |= static_cast<unsigned>(static_cast<unsigned char>(planes[i]))
+                                   << (8 * (i / words.size()));
+    for (int order = 0; order < 2; ++order)
         for (std::size_t i = 0; i < words.size(); ++i)
-            words[i] |= static_cast<unsigned>(static_cast<unsigned char>(planes[b * words.size() + i])) << (8 * b);
-    std::vector<std::vector<std::vector<double>>> pendulums;
-    std::size_t at = 0, before = 0;
+            if (i % count > 0) words[i] += words[i - 1];
+    for (std::size_t i = motion.at("like_last"); i < words.size(); ++i)
+        words[i] += words[i - motion.at("like_last").get<std::size_t>()];
+    std::vector<std::vector<double>> channels;
+    std::size_t at = 0;
+    const auto add = [&](double low, double step) {
+        auto& channel = channels.emplace_back();
+        for (std::size_t i = 0; i < count; ++i) channel.push_back(low + step * (words[at++] & most));
+    };
     for (const auto& pendulum : motion.at("pendulums")) {
-        const bool by_angles = pendulum.at("angles"), moves = pendulum.at("pivot"), is_like = pendulum.at("like_last");
-        const auto first = at;
-        auto& channels = pendulums.emplace_back((by_angles ? links : 2 * links) + (moves ? 2 : 0));
-        for (std::size_t c = 0; c < channels.size(); ++c)
-            for (unsigned i = 0, last = 0, change = 0; i < count; ++i, ++at) {
-                if (is_like) words[at] += words[at - before];
-                change = (change + words[at]) & most;
-                last = (last + change) & most;
-                const bool is_angle = by_angles && c < links;
-                channels[c].push_back(is_angle ? std::remainder(last, most + 1.0) * pendulum.at("step").get<double>()
-                                               : low + (high - low) * last / most);
-            }
-        before = at - first;
+        const double turn = pendulum.at("turn");
+        for (int i = 0; i < (turn > 0 ? 2 : 4); ++i)
+            turn > 0 ? add(-std::ldexp(turn, static_cast<int>(bits) - 1), turn)
+                     : add(motion.at("low"), motion.at("step"));
+        for (int i = 0; pendulum.at("moves") && i < 2; ++i) add(motion.at("low"), motion.at("step"));
     }
     EXPECT_EQ(at, words.size());
-    return pendulums;
+    return channels;
 }
 
 class PageMotion : public testing::TestWithParam<std::tuple<const char*, int>> {};
@@ -169,26 +172,30 @@ TEST_P(PageMotion, IsHeldInSteps) {
     const auto text = html(std::string("[scene]\nduration_s = 2\n") + keys) + fmt::format("position_bits = {}\n", bits);
     const auto data = data_of(page_of(text));
     const auto& motion = data.at("motion");
-    const double range = motion.at("high").get<double>() - motion.at("low").get<double>();
-    const auto channels = channels_of(motion, data.at("samples").get<std::size_t>() + 1, 2);
+    const auto channels = channels_of(motion, data.at("samples").get<std::size_t>() + 1);
     const auto scene = scene_of_text(text);
     for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
         const auto i = static_cast<std::size_t>(snapshot.pair.sample);
+        auto channel = channels.begin();
+        const auto expect_near = [&](double number, double step) {
+            EXPECT_LE(std::abs(std::remainder((*channel++)[i] - number, 2 * pi)), 0.5 * step + 3e-7) << i;
+        };
         for (std::size_t k = 0; k < 2; ++k) {
             const auto& pendulum = motion.at("pendulums")[k];
-            const auto& bobs = (k == 0 ? snapshot.pair.a : snapshot.pair.b).bobs;
-            const auto expect_near = [&](std::size_t channel, double number, double step) {
-                EXPECT_LE(std::abs(std::remainder(channels[k][channel][i] - number, 2 * pi)), 0.5 * step + 3e-7) << i;
-            };
-            for (std::size_t b = 0; b < 2; ++b) {
-                if (pendulum.at("angles")) {
-                    expect_near(b, bobs[b].theta, pendulum.at("step").get<double>());
+            const auto& seen = k == 0 ? snapshot.pair.a : snapshot.pair.b;
+            for (const auto& bob : seen.bobs) {
+                if (pendulum.at("turn") > 0) {
+                    expect_near(bob.theta, pendulum.at("turn"));
                     continue;
                 }
-                expect_near(2 * b, bobs[b].x, range / ((1 << bits) - 1));
-                expect_near(2 * b + 1, bobs[b].y, range / ((1 << bits) - 1));
+                expect_near(bob.x, motion.at("step"));
+                expect_near(bob.y, motion.at("step"));
             }
+            if (!pendulum.at("moves")) continue;
+            expect_near(seen.pivot.x, motion.at("step"));
+            expect_near(seen.pivot.y, motion.at("step"));
         }
+        EXPECT_EQ(channel, channels.end());
     });
 }
 
@@ -211,7 +218,7 @@ TEST(Page, DoesNoHarmWithAnyWords) {
                               html("[b]\nangle_deg = [91, 90]"));
     EXPECT_EQ(page.find("harm()</script>"), std::string::npos);
     EXPECT_EQ(page.find("<b>"), std::string::npos);
-    EXPECT_NE(page.find("<h1>&lt;/script&gt;"), std::string::npos);
+    EXPECT_NE(page.find("<title>&lt;/script&gt;"), std::string::npos);
     EXPECT_NE(data_of(page).at("title").get<std::string>().find("</script><script>harm()"), std::string::npos);
 }
 
@@ -235,10 +242,11 @@ TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
     const auto page = test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "docs/butterfly.html");
     const std::string start = "<script type=\"text/packed\">";
     auto at = page.find(start);
-    for (const char* name : {"chain.js", "motion.js", "player.js", "controls.js"}) {
+    for (const std::string name : {"output/helpers.js", "film/page/chain.js", "film/page/motion.js",
+                                   "film/page/player.js", "film/page/controls.js"}) {
         ASSERT_NE(at, std::string::npos) << name;
         const auto script = test::inflated(page.substr(at + start.size(), page.find('<', at + 1) - at - start.size()));
-        EXPECT_EQ(script, "\n" + test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "src/film/page" / name)) << name;
+        EXPECT_EQ(script, "\n" + test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "src" / name)) << name;
         at = page.find(start, at + 1);
     }
 }

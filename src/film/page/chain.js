@@ -1,13 +1,15 @@
-// chain.js: the motion of chains of one to three ideal links in angles, to the last bit as Doppel computes it: + − × ÷ and √ of
-// doubles round the same everywhere, and nothing else is used. In the syntax of 2009, which every engine reads.
+// chain.js: the motion of chains of one to three ideal links in angles, to the last bit as Doppel computes it: + − × ÷
+// and √ of doubles round the same everywhere; nothing else is used. In the syntax of 2009, which every engine reads.
 // A chain is {mass: [kg], length: [m], angle: [rad], rate: [rad/s], gravity: m/s²}; a state θ1 … θN, ω1 … ωN.
 "use strict";
 function makeChains() {
-  var largestTurn = 1 / 1024, sine = 0, cosine = 0;  // rad; what sinCos() found
+  var largestTurn = 1 / 1024;  // rad
 
-  // As src/numeric/sin_cos.hpp: angle = n π/2 + r + tail.
-  function sinCos(angle) {
-    if (!(Math.abs(angle) <= 1e5)) { sine = Math.sin(angle); cosine = Math.cos(angle); return; }
+  function array(size) { return new Float64Array(size); }
+  function turns(count) { return { sin: array(count), cos: array(count) }; }
+
+  // Element k of `to` ← sine and cosine, as src/numeric/sin_cos.hpp: angle = n π/2 + r + tail.
+  function sinCos(angle, to, k) {
     var shift = 6755399441055744, n = (angle * 0.6366197723675814 + shift) - shift;
     var coarse = angle - n * 1.5707963267341256, fine = n * 6.077100506303966e-11;
     var r = coarse - fine, tail = ((coarse - r) - fine) - n * 2.0222662487959506e-21;
@@ -18,225 +20,157 @@ function makeChains() {
       z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
     var s = r + (tail * rest + (r * z) * (odd - 1.66666666666666324348e-01));
     var c = rest + (((1 - rest) - half) + (z * even - r * tail));
-    var quarter = n & 3;
-    sine = quarter & 1 ? c : s;
-    cosine = quarter & 1 ? s : c;
-    if (quarter & 2) sine = -sine;
-    if ((quarter + 1) & 2) cosine = -cosine;
+    var quarter = n & 3, isNear = Math.abs(angle) <= 1e5;
+    to.sin[k] = isNear ? (quarter & 1 ? c : s) * (quarter & 2 ? -1 : 1) : Math.sin(angle);
+    to.cos[k] = isNear ? (quarter & 1 ? s : c) * (quarter + 1 & 2 ? -1 : 1) : Math.cos(angle);
+  }
+  // The same after a turn of at most largestTurn from those in `from`, which may be scaled.
+  function turn(from, to, k, by) {
+    var square = by * by, t = by * (0.5 + square * (1 / 24)), s = from.sin[k], c = from.cos[k], u = c - t * s;
+    s += (by * (1 - square * (1 / 6))) * u;
+    to.sin[k] = s;
+    to.cos[k] = u - t * s;
   }
 
-  // A model finds dydt from a state and from sine and cosine of θ1 and of each angle between neighbours.
-  // Two links: the closed form of DoublePendulum (src/physics/angle_chain.hpp).
-  function pairModel(p) {
+  // For each number of links, ω′ (the last elements of dydt) from a state and from sine and cosine of θ1 and of the
+  // angles between neighbours, as DoublePendulum and AngleChain in src/physics/angle_chain.hpp.
+  var models = [null, function (p) {
+    var byLength = 1 / p.length[0];
+    return function (y, sin, cos, dydt) { dydt[1] = -(p.gravity * sin[0]) * byLength; };
+  }, function (p) {
     var ratio = p.mass[0] / p.mass[1], longer = p.length[1] / p.length[0];
     var lever = (p.mass[0] + p.mass[1]) / (p.mass[1] * longer), pull = p.gravity / p.length[0];
     return function (y, sin, cos, dydt) {
       var square2 = y[3] * y[3], f = sin[1] / (ratio + sin[1] * sin[1]), q = y[2] * y[2] + pull * cos[0];
-      dydt[0] = y[2];
-      dydt[1] = y[3];
       dydt[2] = (q * cos[1] + longer * square2) * f - pull * sin[0];
       dydt[3] = -((q * lever + square2 * cos[1]) * f);
     };
-  }
-
-  // One or three links: the tensions of the rods, a tridiagonal system eliminated from both ends (AngleChain and
-  // src/numeric/chain_matrix.hpp).
-  function chainModel(p) {
-    var n = p.mass.length, last = n - 1, middle = n >> 1, w = [], byLength = [], k;
-    var s = [], c = [], upper = [], lower = [], inverse = [], tension = [];
-    for (k = 0; k < n; ++k) { w[k] = 1 / p.mass[k]; byLength[k] = 1 / p.length[k]; }
-    var byLast = n > 1 ? 1 / (w[n - 2] + w[n - 1]) : 0;
-    function factor(sin, cos) {
-      for (k = 0; k < last; ++k) {
-        s[k] = sin[k + 1] * w[k];
-        c[k] = cos[k + 1] * w[k];
-        upper[k] = lower[k] = -c[k];
-      }
-      var e = 0, f = w[last];
-      for (k = 0; k < middle; ++k) {
-        inverse[k] = k === 0 ? p.mass[0] : 1 / (w[k] + e);
-        lower[k] *= inverse[k];
-        e = k === 0 ? s[k] * s[k] * inverse[k] : (w[k] * e + s[k] * s[k]) * inverse[k];
-      }
-      for (k = last; k > middle; --k) {
-        inverse[k] = k === last ? byLast : 1 / (w[k - 1] + f);
-        upper[k - 1] *= inverse[k];
-        f = (w[k - 1] * f + s[k - 1] * s[k - 1]) * inverse[k];
-      }
-      inverse[middle] = 1 / (e + f);
-    }
-    function solve(x) {
-      for (k = 0; k < middle; ++k) x[k + 1] -= lower[k] * x[k];
-      for (k = last; k > middle; --k) x[k - 1] -= upper[k - 1] * x[k];
-      x[middle] *= inverse[middle];
-      for (k = middle; k > 0; --k) x[k - 1] = (x[k - 1] - upper[k - 1] * x[k]) * inverse[k - 1];
-      for (k = middle + 1; k < n; ++k) x[k] = (x[k] - lower[k - 1] * x[k - 1]) * inverse[k];
-    }
+  }, function (p) {  // the tensions of the rods solve a tridiagonal system, eliminated from both ends
+    var m = p.mass[0], l = p.length, g = p.gravity, w0 = 1 / m, w1 = 1 / p.mass[1], w2 = 1 / p.mass[2];
+    var byLast = 1 / (w1 + w2), by0 = 1 / l[0], by1 = 1 / l[1], by2 = 1 / l[2];
     return function (y, sin, cos, dydt) {
-      factor(sin, cos);
-      for (k = 0; k < n; ++k) tension[k] = p.length[k] * y[n + k] * y[n + k];
-      tension[0] += p.gravity * cos[0];
-      solve(tension);
+      var s0 = sin[1] * w0, c0 = cos[1] * w0, s1 = sin[2] * w1, c1 = cos[2] * w1;
+      var pivot = s0 * s0 * m + (w1 * w2 + s1 * s1) * byLast;
+      var t0 = l[0] * y[3] * y[3] + g * cos[0], t1 = l[1] * y[4] * y[4], t2 = l[2] * y[5] * y[5];
+      t1 = ((t1 + c0 * m * t0) + c1 * byLast * t2) * (1 / pivot);
+      t0 = (t0 + c0 * t1) * m;
+      t2 = (t2 + c1 * t1) * byLast;
+      dydt[3] = (-(g * sin[0]) + t1 * s0) * by0;
+      dydt[4] = (-(t0 * s0) + t2 * s1) * by1;
+      dydt[5] = -(t1 * s1) * by2;
+    };
+  }];
+
+  // A function that advances a state by so many steps of length h.
+  function stepper(p, method, h) {
+    var n = p.mass.length, size = 2 * n, accelerate = models[n](p), i, k;
+    var angle = array(n), start = turns(n), now = turns(n), at = array(size);
+    var a = array(size), b = array(size), c = array(size), d = array(size), sixth = h * (1 / 6), third = h * (1 / 3);
+    // dydt at y. In `now` two or three links are turned from `start` where that is little (in C++ chains of a length
+    // known to the compiler).
+    function slope(y, dydt, to) {
       for (k = 0; k < n; ++k) {
-        var across = k === 0 ? -(p.gravity * sin[0]) : -(tension[k - 1] * s[k - 1]);
-        if (k < last) across += tension[k + 1] * s[k];
+        var turned = k === 0 ? y[0] : y[k] - y[k - 1], by = turned - angle[k];
+        if (to === now && n > 1 && Math.abs(by) <= largestTurn) turn(start, to, k, by);
+        else sinCos(turned, to, k);
+        if (to === start) angle[k] = turned;
         dydt[k] = y[n + k];
-        dydt[n + k] = across * byLength[k];
+      }
+      accelerate(y, to.sin, to.cos, dydt);
+    }
+    function stage(y, share, from, dydt) {
+      for (i = 0; i < size; ++i) at[i] = y[i] + share * from[i];
+      slope(at, dydt, now);
+    }
+    var step = {
+      "euler": function (y) {
+        for (i = 0; i < size; ++i) y[i] += h * a[i];
+      },
+      "semi-implicit-euler": function (y) {
+        for (i = n; i < size; ++i) y[i] += h * a[i];
+        for (i = 0; i < n; ++i) y[i] += h * y[n + i];
+      },
+      "rk4": function (y) {
+        stage(y, h * 0.5, a, b);
+        stage(y, h * 0.5, b, c);
+        stage(y, h, c, d);
+        for (i = 0; i < size; ++i) y[i] += sixth * a[i] + third * b[i] + third * c[i] + sixth * d[i];
+      }
+    }[method];
+    return function (y, steps) {
+      for (; steps > 0; --steps) {
+        slope(y, a, start);
+        step(y);
       }
     };
   }
 
-  // A step of length h of the method, as a function of the state.
-  function stepper(p, method, h) {
-    var n = p.mass.length, rates = n === 2 ? pairModel(p) : chainModel(p), i, k;
-    var array = function (size) { return new Float64Array(size); };
-    var angle = array(n), sin0 = array(n), cos0 = array(n), sin = array(n), cos = array(n), at = array(2 * n);
-    var slopes = [array(2 * n), array(2 * n), array(2 * n), array(2 * n)];
-    function turned(y, k) { return k === 0 ? y[0] : y[k] - y[k - 1]; }
-    function start(y) {
-      for (k = 0; k < n; ++k) {
-        sinCos(angle[k] = turned(y, k));
-        sin0[k] = sine;
-        cos0[k] = cosine;
-      }
-      rates(y, sin0, cos0, slopes[0]);
-    }
-    // at ← y + share · slope, and the slope there: sine and cosine by a turn from those at the start, where it is small, of two or
-    // three links (in C++ chains of a length known to the compiler)
-    function stage(y, share, from, to) {
-      for (i = 0; i < 2 * n; ++i) at[i] = y[i] + share * from[i];
-      for (k = 0; k < n; ++k) {
-        var now = turned(at, k), d = now - angle[k], square = d * d;
-        if (n === 1 || !(Math.abs(d) <= largestTurn)) {
-          sinCos(now);
-          sin[k] = sine;
-          cos[k] = cosine;
-          continue;
-        }
-        var t = d * (0.5 + square * (1 / 24)), u = cos0[k] - t * sin0[k];
-        sin[k] = sin0[k] + (d * (1 - square * (1 / 6))) * u;
-        cos[k] = u - t * sin[k];
-      }
-      rates(at, sin, cos, to);
-    }
-    var a = slopes[0], b = slopes[1], c = slopes[2], d = slopes[3], half = h * 0.5, sixth = h * (1 / 6), third = h * (1 / 3);
-    return {
-      "euler": function (y) {
-        start(y);
-        for (i = 0; i < 2 * n; ++i) y[i] += h * a[i];
-      },
-      "semi-implicit-euler": function (y) {
-        start(y);
-        for (i = n; i < 2 * n; ++i) y[i] += h * a[i];
-        for (i = 0; i < n; ++i) y[i] += h * y[n + i];
-      },
-      "rk4": function (y) {
-        start(y);
-        stage(y, half, a, b);
-        stage(y, half, b, c);
-        stage(y, h, c, d);
-        for (i = 0; i < 2 * n; ++i) y[i] += sixth * a[i] + third * b[i] + third * c[i] + sixth * d[i];
-      }
-    }[method];
-  }
-
   // Euler's method of two links with rates as changes h ω of one step, and sine and cosine of θ1 and D = θ2 − θ1 turned
-  // on from step to step (src/integrate/incremental_euler.hpp). Calls visit(sample, θ1, θ2, ω1, ω2).
-  function eulerOfPair(p, h, perSample, samples, visit) {
-    var longer = p.length[1] / p.length[0], masses = p.mass[0] / p.mass[1], square = longer * longer, inverse = 1 / longer;
-    var gravity = h * h * p.gravity / p.length[0], ratio = masses / square, lever = (1 + masses) / square;
-    var largest = largestTurn * largestTurn, q0 = largest + Math.abs(gravity);
-    var slow = largestTurn - 16 * ((4 * largest + q0 * inverse + q0 * lever + 4 * largest * inverse) * longer /
-      Math.sqrt(masses) + Math.abs(gravity));
-    var x1 = p.angle[0], x2 = p.angle[1], d1 = h * p.rate[0], d2 = h * p.rate[1], sin1, cos1, sin2, cos2, taken = 0;
-    function one() { sinCos(x1); sin1 = sine * gravity; cos1 = cosine * gravity; }
-    function two() { sinCos(x2 - x1); sin2 = sine * inverse; cos2 = cosine * inverse; }
-    one();
-    two();
-    visit(0, x1, x2, p.rate[0], p.rate[1]);
-    for (var sample = 1; sample <= samples; ++sample) {
-      for (var left = perSample; left > 0;) {
-        var some = Math.min(left, 16, 256 - taken % 256), fast = !(Math.abs(d1) <= slow && Math.abs(d2 - d1) <= slow);
-        for (var i = 0; i < some; ++i) {
-          var d = d2 - d1, was1 = d1, square1 = d1 * d1, square2 = d2 * d2;
-          var f = sin2 / (ratio + sin2 * sin2), q = square1 + cos1;
-          var a1 = (square2 + q * cos2) * f, a2 = (q * lever + square2 * cos2) * f;
-          x1 += d1;
-          x2 += d2;
-          d1 = (d1 - sin1) + a1;
-          d2 -= a2;
-          var t = was1 * (0.5 + square1 * (1 / 24)), u = cos1 - t * sin1;
-          sin1 += (was1 * (1 - square1 * (1 / 6))) * u;
-          cos1 = u - t * sin1;
-          var turn = d * d;
-          t = d * (0.5 + turn * (1 / 24));
-          u = cos2 - t * sin2;
-          sin2 += (d * (1 - turn * (1 / 6))) * u;
-          cos2 = u - t * sin2;
-          if (fast && !(Math.abs(was1) <= largestTurn)) one();
-          if (fast && !(Math.abs(d) <= largestTurn)) two();
-        }
-        taken += some;
-        left -= some;
-        if (taken % 256 === 0) { one(); two(); }
-      }
-      visit(sample, x1, x2, d1 / h, d2 / h);
+  // on from step to step (src/integrate/incremental_euler.hpp).
+  function eulerOfPair(p, h) {
+    var longer = p.length[1] / p.length[0], masses = p.mass[0] / p.mass[1], square = longer * longer;
+    var ratio = masses / square, lever = (1 + masses) / square, scale = [h * h * p.gravity / p.length[0], 1 / longer];
+    var d1 = h * p.rate[0], d2 = h * p.rate[1], now = turns(2), taken = 0;
+    function update(k, angle) {
+      sinCos(angle, now, k);
+      now.sin[k] *= scale[k];
+      now.cos[k] *= scale[k];
     }
+    update(0, p.angle[0]);
+    update(1, p.angle[1] - p.angle[0]);
+    return function (y, steps) {
+      var x1 = y[0], x2 = y[1];
+      for (; steps > 0; --steps) {
+        var sin = now.sin[1], cos = now.cos[1], f = sin / (ratio + sin * sin), q = d1 * d1 + now.cos[0];
+        var was = d1, d = d2 - d1, square2 = d2 * d2, isExact = ++taken % 256 === 0;
+        x1 += d1;
+        x2 += d2;
+        d1 = (d1 - now.sin[0]) + (square2 + q * cos) * f;
+        d2 -= (q * lever + square2 * cos) * f;
+        if (isExact || !(Math.abs(was) <= largestTurn)) update(0, x1);
+        else turn(now, now, 0, was);
+        if (isExact || !(Math.abs(d) <= largestTurn)) update(1, x2 - x1);
+        else turn(now, now, 1, d);
+      }
+      y.set([x1, x2, d1 / h, d2 / h]);
+    };
   }
 
   // The states at samples 0 … samples, one after the other.
   function run(p, method, h, perSample, samples, progress) {
-    var n = p.mass.length, states = new Float64Array(2 * n * (samples + 1));
-    if (n === 2 && method === "euler") {
-      eulerOfPair(p, h, perSample, samples, function (sample, x1, x2, w1, w2) {
-        states[4 * sample] = x1;
-        states[4 * sample + 1] = x2;
-        states[4 * sample + 2] = w1;
-        states[4 * sample + 3] = w2;
-        progress(sample);
-      });
-      return states;
-    }
-    var step = stepper(p, method, h), y = new Float64Array(p.angle.concat(p.rate));
+    var size = 2 * p.mass.length, states = array(size * (samples + 1)), y = new Float64Array(p.angle.concat(p.rate));
+    var advance = size === 4 && method === "euler" ? eulerOfPair(p, h) : stepper(p, method, h);
     for (var sample = 0; sample <= samples; ++sample) {
-      for (var i = 0; sample > 0 && i < perSample; ++i) step(y);
-      states.set(y, 2 * n * sample);
+      if (sample > 0) advance(y, perSample);
+      states.set(y, size * sample);
       progress(sample);
     }
     return states;
   }
 
-  // The bobs of a state that begins at `from`: [x, y, vx, vy] one after the other; m, m/s.
+  // The bobs of a state that begins at `from`: [mass, x, y, vx, vy] one after the other; kg, m, m/s.
   function bobs(p, states, from) {
-    var n = p.mass.length, x = 0, y = 0, vx = 0, vy = 0, all = [];
+    var n = p.mass.length, x = 0, y = 0, vx = 0, vy = 0, all = [], turned = turns(1);
     for (var i = 0; i < n; ++i) {
       var l = p.length[i], omega = states[from + n + i];
-      sinCos(states[from + i]);
-      x += l * sine;
-      y -= l * cosine;
-      vx += l * omega * cosine;
-      vy += l * omega * sine;
-      all.push(x, y, vx, vy);
+      sinCos(states[from + i], turned, 0);
+      x += l * turned.sin[0];
+      y -= l * turned.cos[0];
+      vx += l * omega * turned.cos[0];
+      vy += l * omega * turned.sin[0];
+      all.push(p.mass[i], x, y, vx, vy);
     }
     return all;
   }
-
   // The distance in state space of two chains of as many links, from their bobs.
-  function distance(p, q, of, other) {
-    var sum = 0;
-    for (var i = 0; i < p.mass.length; ++i) {
-      var m = p.mass[i] - q.mass[i];
-      sum += m * m;
-      for (var k = 4 * i; k < 4 * i + 4; ++k) sum += (of[k] - other[k]) * (of[k] - other[k]);
-    }
-    return Math.sqrt(sum);
+  function distance(of, other) {
+    return Math.sqrt(of.reduce(function (sum, v, i) { return sum + (v - other[i]) * (v - other[i]); }, 0));
   }
-
-  // The energy, J, zero at rest with every mass level with the pivot.
-  function energy(p, of) {
+  // The energy of bobs, J, zero at rest with every mass level with the pivot.
+  function energy(gravity, of) {
     var total = 0;
-    for (var i = 0; i < p.mass.length; ++i)
-      total += p.mass[i] * (0.5 * (of[4 * i + 2] * of[4 * i + 2] + of[4 * i + 3] * of[4 * i + 3]) + p.gravity * of[4 * i + 1]);
+    for (var i = 0; i < of.length; i += 5)
+      total += of[i] * (0.5 * (of[i + 3] * of[i + 3] + of[i + 4] * of[i + 4]) + gravity * of[i + 2]);
     return total;
   }
 

@@ -1,117 +1,88 @@
 // motion.js: what the page shows, from its data: places of bobs at all samples, and the curves of strips.
 "use strict";
-const pageData = JSON.parse(document.getElementById("data").textContent), film = pageData.film ?? pageData;
-const { theme, bodies, layout } = film, count = film.samples + 1, degrees = 180 / Math.PI;
+const { film } = pageData, { theme, bodies, layout } = film, { strips } = film.pictures[0];
+const count = film.samples + 1, degrees = 180 / Math.PI;
 // whether the pendulums can be released anew
 const isLive = bodies.every(body => body.chain && body.mass.length === bodies[0].mass.length);
 const sumOf = list => list.reduce((a, b) => a + b, 0), mostOf = list => list.reduce((a, b) => Math.max(a, b));
+const numbers = of => Float64Array.from({ length: count }, (_, i) => of(i));  // one of each sample
+const still = [numbers(() => 0), numbers(() => 0)];
 
-// The words of so many bytes behind base64 of what zlib made of them: the lowest byte of each, then the next one of each …
-async function unpacked(base64, wordBytes) {
-  const packed = new Blob([Uint8Array.from(atob(base64), c => c.charCodeAt(0))]);
-  const bytes = new Uint8Array(await new Response(packed.stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
-  const words = new Uint32Array(bytes.length / wordBytes);
-  for (let b = 0; b < wordBytes; ++b) for (let i = 0; i < words.length; ++i) words[i] |= bytes[b * words.length + i] << (8 * b);
+// Words as src/film/page.cpp packs them: the lowest byte of all, then the next one …, of differences in time.
+async function unpacked(base64, wordBytes, order) {
+  const bytes = new Uint8Array(await inflated(base64).arrayBuffer()), words = new Uint32Array(bytes.length / wordBytes);
+  bytes.forEach((byte, i) => { words[i % words.length] |= byte << 8 * Math.floor(i / words.length); });
+  for (; order > 0; --order)
+    words.forEach((_, i) => { if (i % count > 0) words[i] += words[i - 1]; });
   return words;
 }
 
-// The curves that the page holds: floats, each the difference of its bits to those of the one before.
-async function embeddedCurves() {
-  const bits = film.curves ? await unpacked(film.curves, 4) : [], curves = [];
-  for (let at = 0; at < bits.length; at += count) {
-    for (let i = at + 1; i < at + count; ++i) bits[i] += bits[i - 1];
-    curves.push(new Float32Array(bits.buffer, 4 * at, count));
-  }
-  return curves;
+// The motion that the page holds: for each pendulum places [xs, ys] of its pivot and its bobs.
+async function embeddedMotion({ bits, low, step, like_last, pendulums, words }) {
+  const steps = await unpacked(words, bits / 8, 2), most = 2 ** bits - 1;
+  for (let i = like_last; like_last && i < steps.length; ++i) steps[i] += steps[i - like_last];
+  let at = 0;
+  const channel = (from, unit) => numbers(() => from + unit * (steps[at++] & most));
+  const place = () => [channel(low, step), channel(low, step)];
+  return { pendulums: pendulums.map(({ turn, length, moves }, k) => {
+    const angle = () => channel(-turn * 2 ** (bits - 1), turn), found = bodies[k].mass.map(turn ? angle : place);
+    const pivot = moves ? place() : still;
+    return { pivot, bobs: turn ? placesOf(found, length, pivot) : found };
+  }) };
+}
+// Places of bobs from the angles of their links.
+function placesOf(angles, length, pivot) {
+  let [xs, ys] = pivot;
+  return angles.map((list, b) => [xs, ys] =
+    [list.map((a, i) => xs[i] + length[b] * Math.sin(a)), list.map((a, i) => ys[i] - length[b] * Math.cos(a))]);
 }
 
-// Places in whole steps, as src/film/page.cpp writes them: for each pendulum [xs, ys] of its bobs, and of a pivot that moves.
-async function embeddedPlaces({ bits, low, high, pendulums, words }) {
-  const steps = await unpacked(words, bits > 16 ? 3 : 2), most = 2 ** bits - 1;
-  let at = 0, before = 0;
-  return pendulums.map((pendulum, k) => {
-    const links = bodies[k].mass.length, first = at, channel = read => {
-      const values = new Float32Array(count);
-      for (let i = 0, last = 0, change = 0; i < count; ++i, ++at) {
-        if (pendulum.like_last) steps[at] += steps[at - before];
-        change = change + steps[at] & most;
-        last = last + change & most;
-        values[i] = read(last);
-      }
-      return values;
-    };
-    const place = () => [0, 1].map(() => channel(step => low + (high - low) * step / most));
-    const angles = pendulum.angles && Array.from({ length: links }, () => channel(step => (step << 32 - bits >> 32 - bits) * pendulum.step));
-    const bobs = angles ? [] : Array.from({ length: links }, place), pivot = pendulum.pivot ? place() : null;
-    for (let b = 0; angles && b < links; ++b) {
-      const [xs, ys] = b > 0 ? bobs[b - 1] : pivot ?? [new Float32Array(count), new Float32Array(count)], l = pendulum.length[b];
-      bobs.push([angles[b].map((a, i) => xs[i] + l * Math.sin(a)), angles[b].map((a, i) => ys[i] - l * Math.cos(a))]);
-    }
-    before = at - first;
-    return { bobs, pivot };
-  });
+// The motion of chains from their states, at one sample or all; with the curves that follow from states, by the kind of
+// the strip; of a phase panel angles, rates and angles of the first link.
+function motionOf(of, states) {
+  const size = 2 * of[0].mass.length, list = (k, from) => states[k].filter((_, i) => i % size === from);
+  const pendulums = of.map(({ length }, k) =>
+    ({ pivot: still, bobs: placesOf(length.map((_, b) => list(k, b)), length, still) }));
+  if (states[0].length === size) return { of, pendulums };
+  const ends = [...new Set([0, of.length - 1])];
+  const bobs = ends.map(k => Array.from(still[0], (_, i) => chains.bobs(of[k], states[k], size * i)));
+  const distance = numbers(i => chains.distance(bobs[0][i], bobs.at(-1)[i]));
+  const growth = distance.map((d, i) => 20 * i >= film.samples && d > 0 && distance[0] > 0
+    ? Math.log(d / distance[0]) / (i * film.sample_s) : NaN);
+  const levels = ({ mass, length }) => sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));
+  const range = mostOf(ends.map(k => 2 * of[k].gravity * levels(of[k])));
+  const energy = ends.map((k, e) => numbers(i => chains.energy(of[k].gravity, bobs[e][i])))
+    .map(total => total.map(now => Math.abs(now - total[0]) / range));
+  const phase = film.phase && ends.map(k => [film.phase.link, size / 2 + film.phase.link, 0].map(i => list(k, i)));
+  const computed = { distance: [distance], exponent: [growth], energy };
+  return { of, pendulums, computed, phase, drift: mostOf(energy.map(mostOf)) };
 }
 
-// A motion of chains from their states, at one sample or more.
-function motionOf(of, states, embedded) {
-  const links = of[0].mass.length, samples = states[0].length / (2 * links);
-  const pendulums = of.map((chain, k) => {
-    const bobs = chain.mass.map(() => [new Float32Array(samples), new Float32Array(samples)]);
-    for (let i = 0; i < samples; ++i) {
-      const now = chains.bobs(chain, states[k], 2 * links * i);
-      bobs.forEach(([xs, ys], b) => { xs[i] = now[4 * b]; ys[i] = now[4 * b + 1]; });
-    }
-    return { bobs, pivot: null };
-  });
-  return samples === 1 ? { pendulums, of } : withCurves({ pendulums, of }, computedCurves(of, states), embedded);
-}
-
-// Those that follow from states, by the kind of the strip; of a phase panel angles, rates and angles of the first link.
-function computedCurves(of, states) {
-  const links = of[0].mass.length, ends = [...new Set([0, of.length - 1])], make = () => new Float64Array(count);
-  const distance = make(), totals = ends.map(make);
-  for (let i = 0; i < count; ++i) {
-    const bobs = ends.map(k => chains.bobs(of[k], states[k], 2 * links * i));
-    if (ends.length > 1) distance[i] = chains.distance(of[0], of[ends[1]], ...bobs);
-    ends.forEach((k, e) => { totals[e][i] = chains.energy(of[k], bobs[e]); });
-  }
-  const range = mostOf(ends.map(k => 2 * of[k].gravity * sumOf(of[k].mass.map((m, i) => m * sumOf(of[k].length.slice(0, i + 1))))));
-  const growth = (d, i) => i > 0 && 20 * i >= film.samples && d > 0 && distance[0] > 0 ? Math.log(d / distance[0]) / (i * film.sample_s) : NaN;
-  const phase = film.phase && ends.map(k => [film.phase.link, links + film.phase.link, 0].map(from => distance.map((_, i) => states[k][2 * links * i + from])));
-  return { distance: [distance], exponent: [distance.map(growth)], energy: totals.map(total => total.map(e => Math.abs(e - total[0]) / range)), phase };
-}
-
-function withCurves(motion, computed, embedded = []) {
-  let next = 0;
-  const held = () => embedded[next++] ?? new Float32Array(count).fill(NaN);
-  motion.curves = film.strips.map(strip => computed[strip.kind] ?? strip.colors.map(held));
-  motion.phase = computed.phase ?? (film.phase && [0, 1].map(() => [held(), held(), held()]));
-  motion.drift = computed.energy && mostOf(computed.energy.map(mostOf));
-  motion.distance = motion.curves[film.strips.findIndex(strip => strip.kind === "distance")]?.[0];
+// Adds the curves of strips: computed ones, and those that the page holds: floats, of a phase panel at the end.
+async function withCurves(motion, isOriginal) {
+  const held = film.curves && isOriginal ? new Float32Array((await unpacked(film.curves, 4, 1)).buffer) : [];
+  let at = 0;
+  const next = () => isOriginal ? held.subarray(at, at += count) : numbers(() => NaN);
+  motion.curves = strips.map(({ kind, pens }) => motion.computed?.[kind] ?? pens.map(next));
+  if (film.phase) motion.phase ??= [0, 1].map(() => [next(), next(), next()]);
+  motion.distance = motion.curves[strips.findIndex(strip => strip.kind === "distance")]?.[0];
   motion.since = motion.distance ? divergence(motion.distance) : NaN;
   return motion;
 }
 
 // From when on two that start as one are apart for a second without a break, s (src/analysis/difference.hpp).
 function divergence(distance) {
-  for (let i = 0, from = NaN; distance[0] < 0.1 && i < count; ++i) {
-    if (!(distance[i] >= 1)) from = NaN;
-    else if (Number.isNaN(from)) from = i * film.sample_s;
-    if (i * film.sample_s - from >= 1) return from;
-  }
+  for (let i = 0, near = -1; distance[0] < 0.1 && i < count; ++i)
+    if (!(distance[i] >= 1)) near = i;
+    else if ((i - near - 1) * film.sample_s >= 1) return (near + 1) * film.sample_s;
   return NaN;
 }
 
-// Computes the states of chains beside the page, and calls done(motion): of several requests that wait, of the last one.
-let worker = null, waiting = null, isBusy = false;
-function compute(of, done, say, embedded) {
-  waiting = [of, done, say, embedded];
-  if (!isBusy) computeNext();
-}
-function computeNext() {
-  const [of, done, say, embedded] = waiting, begun = performance.now();
-  waiting = null;
-  isBusy = true;
+// The motion of chains, computed beside the page. While one is computed the others wait; of these only the last one is
+// computed at all.
+let worker = null, turn = Promise.resolve(), wanted = null;
+function compute(of) {
+  wanted = of;
   worker ??= new Worker(URL.createObjectURL(new Blob([`const chains = (${makeChains})();
     onmessage = ({ data: { of, samples } }) => {
       let last = Date.now();
@@ -120,11 +91,12 @@ function computeNext() {
       }));
       postMessage({ states }, states.map(list => list.buffer));
     };`], { type: "text/javascript" })));
-  worker.onmessage = ({ data: { share, states } }) => {
-    if (!states) return performance.now() - begun > 500 && say(`computing the motion: ${Math.round(100 * share)} %`);
-    isBusy = false;
-    done(motionOf(of, states, embedded));
-    if (waiting) computeNext();
-  };
-  worker.postMessage({ of, samples: film.samples });
+  return turn = turn.then(() => wanted === of && new Promise(done => {
+    const begun = performance.now();
+    worker.onmessage = ({ data: { share, states } }) => {
+      if (states) done(motionOf(of, states));
+      else if (performance.now() - begun > 500) say(`computing the motion: ${Math.round(100 * share)} %`);
+    };
+    worker.postMessage({ of, samples: film.samples });
+  }));
 }

@@ -1,36 +1,33 @@
-// player.js: draws the film at any time. What is drawn, and in what order, is what src/film/pendulum_layer.cpp, strip_layer.cpp and
-// phase_layer.cpp draw; lengths are pixels of the film's picture.
+// player.js: draws the film at any time. What is drawn, and in what order, is what src/film/pendulum_layer.cpp,
+// strip_layer.cpp and phase_layer.cpp draw; lengths are pixels of the film's picture.
 "use strict";
-const canvas = document.querySelector("canvas"), screen = canvas.getContext("2d"), stage = canvas.parentElement;
-const shows = part => film.show.includes(part), clamp = (x, low, high) => Math.min(Math.max(x, low), high);
-const isEnsemble = layout === "ensemble", isSingle = layout === "single";
-let g = screen, backdrop = document.createElement("canvas"), picture = film.pictures[0];
+const canvas = $("canvas"), screen = canvas.getContext("2d"), backdrop = document.createElement("canvas");
+const isEnsemble = layout === "ensemble", isMany = bodies.length > 8, shows = part => film.show.includes(part);
+let g = screen, picture = film.pictures[0];
 let motion = null, original = null;  // what is shown, and the film's own
 let time = 0;                        // s
 
 // Colours, "#rrggbb" or "#rrggbbaa"
 
-const channels = color => [1, 3, 5, 7].map(i => i < color.length ? parseInt(color.slice(i, i + 2), 16) : 255);
-const hex = list => "#" + list.map(c => Math.round(c).toString(16).padStart(2, "0")).join("");
-const mixed = (a, b, share) => hex(channels(a).map((c, i) => c + share * (channels(b)[i] - c)));
-const faded = (color, alpha) => hex([...channels(color).slice(0, 3), 255 * clamp(alpha, 0, 1)]);
+const hex = byte => Math.round(byte).toString(16).padStart(2, "0");
+const byteOf = (color, i) => parseInt(color.slice(2 * i - 1, 2 * i + 1), 16);
+const mixed = (a, b, u) => "#" + [1, 2, 3].map(i => hex((1 - u) * byteOf(a, i) + u * byteOf(b, i))).join("");
+const faded = (color, alpha) => color.slice(0, 7) + hex(255 * clamp(alpha, 0, 1));
 
 // What pictures are made of
 
-function fill(color, trace) {
-  g.fillStyle = color;
+function paint(style, trace) {
+  Object.assign(g, style);
   g.beginPath();
   trace();
-  g.fill();
+  g[style.fillStyle ? "fill" : "stroke"]();
 }
-function stroke(color, width, trace, cap = "round") {
-  Object.assign(g, { strokeStyle: color, lineWidth: width, lineCap: cap, lineJoin: "round" });
-  g.beginPath();
-  trace();
-  g.stroke();
-}
-const polyline = points => points.forEach((point, i) => g[i ? "lineTo" : "moveTo"](...point));
-const rectangle = (left, top, width, height, corner, color) => fill(color, () => g.roundRect(left, top, width, height, corner));
+const fill = (fillStyle, trace) => paint({ fillStyle }, trace);
+const stroke = (strokeStyle, lineWidth, trace) =>
+  paint({ strokeStyle, lineWidth, lineCap: "round", lineJoin: "round" }, trace);
+const polyline = points => points.forEach(([x, y], i) => i ? g.lineTo(x, y) : g.moveTo(x, y));
+const box = (left, top, width, height, corner, color) =>
+  fill(color, () => g.roundRect(left, top, width, height, corner));
 const line = (from, to, radius, color) => stroke(color, 2 * radius, () => polyline([from, to]));
 const ring = ([x, y], radius, width, color) => stroke(color, width, () => g.arc(x, y, radius, 0, 7));
 function disc([x, y], radius, color, glow = 0) {
@@ -39,163 +36,137 @@ function disc([x, y], radius, color, glow = 0) {
   if (glow > 0) fill(light, () => g.arc(x, y, radius + glow, 0, 7));
   fill(color, () => g.arc(x, y, radius, 0, 7));
 }
+const fonts = '"DejaVu Sans", Verdana, system-ui, sans-serif';
 // Narrower than its font has it where it would be wider than `width`: where the reader lacks the film's font.
-function text(words, [x, y], size, align, isBold, color, width = 1e5) {
-  Object.assign(g, { font: `${isBold ? 700 : 400} ${size}px "DejaVu Sans", Verdana, system-ui, sans-serif`, fillStyle: color,
-    textAlign: ["left", "center", "right"][align] });
+function text(words, [x, y], size, align, weight, color, width = 1e5) {
+  Object.assign(g, { fillStyle: color, textAlign: align, font: `${weight} ${size}px ${fonts}` });
   g.fillText(words, x, y, width + 1);
 }
-const drawing = { b: rectangle, c: line, r: ring, t: text };
-const drawAll = items => items.forEach(([kind, ...item]) => drawing[kind](...item));
-const drawLabel = ([, , at, size, align, isBold, color], words) => text(words, at, size, align, isBold, color);
+const isIn = ([x, y], [left, top, right, bottom]) => x >= left && x <= right && y >= top && y <= bottom;
+const drawAll = items => items.forEach(([kind, ...item]) => ({ box, line, ring, text }[kind](...item)));
+const drawLabel = (label, words) => text(words, ...label.slice(2, 7));
 
 // The moment
 
 const sampleNow = () => clamp(Math.floor(time / film.sample_s + 1e-6), 0, film.samples);
-const isBetween = () => time - sampleNow() * film.sample_s > 1e-6;
 // Between samples by a cubic through four of them (Catmull & Rom 1974).
 function value(list) {
-  const s = clamp(time / film.sample_s, 0, film.samples), i = Math.floor(s + 1e-6), u = s - i;
+  const s = clamp(time / film.sample_s, 0, film.samples), i = sampleNow(), u = s - i;
   if (Math.abs(u) < 1e-5) return list[i];
-  const [p, a, b, q] = [Math.max(i - 1, 0), i, i + 1, Math.min(i + 2, film.samples)].map(k => list[k]);
+  const [p, a, b, q] = [i - 1, i, i + 1, i + 2].map(k => list[clamp(k, 0, film.samples)]);
   return a + 0.5 * u * (b - p + u * (2 * p - 5 * a + 4 * b - q + u * (3 * (a - b) + q - p)));
 }
 const speedAt = t => film.speed.reduce((last, entry) => entry[0] <= t + 1e-9 ? entry : last);
 
 // Pendulums as they are now: places, m, and masses, kg.
 const posesNow = () => motion.pendulums.map(({ bobs, pivot }, k) => ({
-  bobs: bobs.map(place => place.map(value)), pivot: pivot ? pivot.map(value) : [0, 0], mass: motion.of?.[k].mass ?? bodies[k].mass }));
-const reachOf = of => mostOf(of.map(chain => sumOf(chain.length)));
+  bobs: bobs.map(place => place.map(value)), pivot: pivot.map(value), mass: (motion.of ?? bodies)[k].mass }));
+const reachOf = chains => mostOf(chains.map(chain => sumOf(chain.length)));
 
 // A panel's way from metres to pixels. Where the view follows a mass, that stays in the middle.
-function viewOf({ center, origin, scale, sides }, poses) {
+function viewOf({ center, origin, scale, shown }, poses) {
   if (motion !== original) scale *= reachOf(bodies.map(body => body.chain)) / reachOf(motion.of);
   const still = ([x, y]) => [center[0] + scale * (x - origin[0]), center[1] - scale * (y - origin[1])];
-  const seen = film.follow ? still(poses[isEnsemble ? 0 : sides[0]].bobs[film.follow - 1]) : center;
+  const seen = film.follow ? still(poses[shown[0]].bobs[film.follow - 1]) : center;
   return place => still(place).map((c, i) => c + center[i] - seen[i]);
 }
 
 // A path of points [x, y, age, s] that fades and narrows with its age, in pieces of even light; broken where it jumps.
-function fadingPath(points, width, color, glow, jump = Infinity) {
-  const pieces = Math.max(8, 20 * film.trail_s), middle = (p, q) => [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
-  const pieceOf = i => Math.floor(pieces * points[i][2] / film.trail_s), jumps = i => Math.abs(points[i + 1][0] - points[i][0]) > jump;
-  for (let i = 0; i + 1 < points.length;) {
-    const piece = pieceOf(i), fresh = clamp(1 - points[i][2] / film.trail_s, 0, 1), light = fresh ** 1.6, reach = glow * fresh ** 4;
-    const begin = i > 0 && !jumps(i - 1) ? middle(points[i - 1], points[i]) : points[i], curve = new Path2D();
-    curve.moveTo(begin[0], begin[1]);
-    for (let goesOn = true; goesOn; ++i) {
-      const [x, y] = points[i], isLast = jumps(i) || i + 2 === points.length;
-      if (!jumps(i)) curve.quadraticCurveTo(x, y, ...middle(points[i], points[i + 1]));
-      if (isLast) curve.lineTo(...points[jumps(i) ? i : i + 1].slice(0, 2));
-      goesOn = !isLast && pieceOf(i + 1) === piece;
-    }
-    for (const [share, part] of reach > 1 ? [[0.7, 0.05], [0.4, 0.1], [0.15, 0.15], [0, 1]] : [[0, 1]]) {
-      Object.assign(g, { strokeStyle: faded(color, channels(color)[3] / 255 * light * part), lineCap: "butt", lineJoin: "round",
+function fadingPath(points, width, color, jump = Infinity) {
+  const pieces = new Map(), shares = Math.max(8, 20 * film.trail_s) / film.trail_s;
+  points.forEach(([x, y, age], i) => {
+    const [from, to] = [points[i - 1], points[i + 1]].map(next =>
+      next && Math.abs(next[0] - x) <= jump ? [(x + next[0]) / 2, (y + next[1]) / 2] : [x, y]);
+    const piece = Math.floor(shares * age);
+    if (!pieces.has(piece)) pieces.set(piece, { age, curve: new Path2D() });
+    const { curve } = pieces.get(piece);
+    curve.moveTo(...from);
+    curve.quadraticCurveTo(x, y, ...to);
+  });
+  for (const { age, curve } of pieces.values()) {
+    const fresh = clamp(1 - age / film.trail_s, 0, 1), reach = picture.glow * fresh ** 4;
+    for (const [share, light] of reach > 1 ? [[0.7, 0.05], [0.4, 0.1], [0.15, 0.15], [0, 1]] : [[0, 1]]) {
+      Object.assign(g, { strokeStyle: color, globalAlpha: light * fresh ** 1.6, lineCap: "butt", lineJoin: "round",
         lineWidth: width * (0.55 + 0.45 * fresh) + 2 * share * reach });
       g.stroke(curve);
     }
   }
+  g.globalAlpha = 1;
 }
-// The samples that a trail shows, with their age, s.
-const trailSamples = () => {
-  const first = Math.max(0, Math.ceil((time - film.trail_s) / film.sample_s)), last = motion.isStill ? -1 : sampleNow();
-  return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => [first + k, time - (first + k) * film.sample_s]);
-};
-
-function drawTrail(k, at, color, width) {
-  const [xs, ys] = motion.pendulums[k].bobs.at(-1), points = trailSamples().map(([i, age]) => [...at([xs[i], ys[i]]), age]);
-  if (film.trail_s > 0 && width > 0) fadingPath([...points, [...at([value(xs), value(ys)]), 0]], width, color, picture.glow);
+// Where `at` finds a trail's samples, and it now, with their age, s.
+function trailOf(at, lists) {
+  const first = Math.max(0, Math.ceil((time - film.trail_s) / film.sample_s)), points = [];
+  for (let i = first; i <= sampleNow() && !motion.isStill; ++i)
+    points.push([...at(lists.map(list => list[i])), time - i * film.sample_s]);
+  return [...points, [...at(lists.map(value)), 0]];
 }
 
-// Rods, and springs as zigzags.
-function drawLines(k, { bobs, pivot }, at, radius, color) {
-  const end = of => at(typeof of === "number" ? bobs[of] : [of[0] + pivot[0], of[1] + pivot[1]]);
-  for (const [kind, from, to, width] of shows("rods") && radius > 0 ? bodies[k].lines : []) {
-    if (kind === 0) line(end(from), end(to), width * radius, color);
-    if (kind !== 1) continue;
-    const turns = 16, [a, b] = [end(from), end(to)], along = [b[0] - a[0], b[1] - a[1]], swing = 0.5 * picture.bob / Math.max(Math.hypot(...along), 1);
-    const zigzag = Array.from({ length: turns }, (_, i) => {
-      const share = (i + 0.5) / turns, aside = i % 2 ? swing : -swing;
-      return [a[0] + share * along[0] - aside * along[1], a[1] + share * along[1] + aside * along[0]];
+// Rods, springs as zigzags, and pivots where ends are fixed.
+function drawLines(k, { bobs, pivot }, at, radius, color, hasPivots = true) {
+  const lines = shows("rods") && radius > 0 ? bodies[k].lines : [], { bob, last_bob, reach } = picture;
+  const place = end => at(end.length ? [end[0] + pivot[0], end[1] + pivot[1]] : bobs[end]);
+  for (const [kind, from, to, width] of lines) {
+    const [a, b] = [place(from), place(to)], [x, y] = [b[0] - a[0], b[1] - a[1]];
+    const swing = 0.5 * bob / Math.max(Math.hypot(x, y), 1), turns = Array.from({ length: 16 }, (_, i) => {
+      const share = (i + 0.5) / 16, aside = i % 2 ? swing : -swing;
+      return [a[0] + share * x - aside * y, a[1] + share * y + aside * x];
     });
-    stroke(color, 0.9 * radius, () => polyline([a, ...zigzag, b]));
+    if (kind === "rod") line(a, b, width * radius, color);
+    if (kind === "spring") stroke(color, 0.9 * radius, () => polyline([a, ...turns, b]));
+  }
+  const fixed = { rod: 2, spring: 2, anchor: 1 };
+  const pivots = lines.flatMap(([kind, ...ends]) => ends.slice(0, fixed[kind] ?? 0));
+  for (const end of hasPivots ? pivots.filter(end => end.length) : [])
+    disc(place(end), Math.max(0.4 * bob, 0.5 * last_bob, 0.012 * reach), theme.pivot);
+}
+
+// Bobs from `first` on, the last one in a colour of its own, where they are in the panel.
+function drawBobs(k, poses, at, [left, top, right, bottom], { first = 0, last, others, least = 0, glow = 0, rim = 0 }) {
+  const { bobs, mass } = poses[k], end = bobs.length - 1;
+  const heaviest = mostOf([1e-300, ...poses.flatMap(pose => pose.mass)]);
+  for (let i = shows("bobs") && picture.bob > 0 ? first : end + 1; i <= end; ++i) {
+    const smallest = Math.max(bodies[k].least_bob * picture.rod, i === end ? least : 0), [x, y] = at(bobs[i]);
+    const radius = Math.max(picture.bob * Math.sqrt(mass[i] / heaviest), smallest), edge = film.view ? radius : 0;
+    if (!isIn([x, y], [left + edge, top + edge, right - edge, bottom - edge])) continue;
+    if (rim > 0 && !film.transparent) disc([x, y], radius + Math.min(rim, 0.3 * radius), theme.panel);
+    disc([x, y], radius, i === end ? last : others, i === end ? glow : 0);
   }
 }
 
-// Where the fixed ends are.
-function drawPivots(k, { pivot }, at) {
-  const radius = Math.max(0.4 * picture.bob, 0.5 * picture.lastBob, 0.012 * picture.reach);
-  for (const [kind, ...ends] of shows("rods") && picture.rod > 0 ? bodies[k].lines : [])
-    for (const end of kind > 2 ? [] : ends.slice(0, kind === 2 ? 1 : 2))
-      if (typeof end === "object") disc(at([end[0] + pivot[0], end[1] + pivot[1]]), radius, theme.pivot);
-}
-
+// The pendulums of a panel; of one alone the other as a shadow behind it. The more members an ensemble has, the more
+// they let through.
 function drawPanel(panel, poses) {
-  const at = viewOf(panel, poses), [left, top, right, bottom] = panel.area, heaviest = mostOf([1e-300, ...poses.flatMap(pose => pose.mass)]);
-  const put = (k, i, color, { least = 0, glow = 0, hasRim = false } = {}) => {
-    const thickest = mostOf([1, ...bodies[k].lines.map(item => item[3])]), place = at(poses[k].bobs[i]);
-    const smallest = Math.max(least, (thickest > 1 ? 0.5 * thickest : 1.6) * picture.rod);
-    const radius = Math.max(picture.bob * Math.sqrt(poses[k].mass[i] / heaviest), smallest), edge = film.view ? radius : 0;
-    const isInside = place[0] >= left + edge && place[0] <= right - edge && place[1] >= top + edge && place[1] <= bottom - edge;
-    if (!isInside || !shows("bobs") || !(picture.bob > 0)) return;
-    if (hasRim && !film.transparent) disc(place, radius + Math.min(Math.max(2 * picture.unit, 0.75), 0.3 * radius), theme.panel);
-    disc(place, radius, color, glow);
-  };
-  const putAll = (k, ofLast, ofOthers, least) => poses[k].mass.forEach((_, i, { length }) => i + 1 < length
-    ? put(k, i, ofOthers, { hasRim: true }) : put(k, i, ofLast, { least, glow: picture.glow, hasRim: true }));
+  const at = viewOf(panel, poses), { area, shown } = panel, fromBehind = [...shown].reverse(), { rod, glow } = picture;
+  const isAlone = !isEnsemble && shown.length === 1, other = 1 - shown[0], root = Math.sqrt(bodies.length);
+  const hue = (k, opacity) => isMany ? faded(bodies[k].color, clamp(opacity * 14 / root, 0.16, 0.9)) : bodies[k].color;
+  const hued = (k, color, share) => isAlone ? color : mixed(color, bodies[k].color, share);
   g.save();
   g.beginPath();
-  g.rect(left, top, right - left, bottom - top);
+  g.rect(area[0], area[1], area[2] - area[0], area[3] - area[1]);
   g.clip();
   if (film.follow && picture.reach > 0 && shows("circle")) ring(at([0, 0]), picture.reach, picture.grid, theme.grid);
-  if (isEnsemble) drawMembers(at, poses, put, putAll);
-  else drawSides(panel.sides, at, poses, put, putAll);
+  if (isAlone && poses.length > 1 && shows("twin")) {
+    const { color } = bodies[other], shadow = film.transparent ? faded(color, 0.4) : mixed(theme.panel, color, 0.26);
+    drawLines(other, poses[other], at, 0.7 * rod, shadow, false);
+    drawBobs(other, poses, at, area, { last: shadow, others: shadow });
+  }
+  const trail = picture.trail * (isMany ? clamp(Math.sqrt(8) / root, 0.4, 1) : 1);
+  for (const k of film.trail_s > 0 && trail > 0 ? fromBehind : [])
+    fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), trail, hue(k, 0.5));
+  for (const k of fromBehind) {
+    const { color: last } = bodies[k], others = hued(k, theme.bob, 0.4), least = isEnsemble ? 0 : picture.last_bob;
+    drawLines(k, poses[k], at, rod, isEnsemble ? hue(k, 0.43) : hued(k, theme.rod, 0.55));
+    if (!isMany) drawBobs(k, poses, at, area, { last, others, least, glow, rim: Math.max(2 * picture.unit, 0.75) });
+  }
+  for (const k of isMany ? fromBehind : [])
+    drawBobs(k, poses, at, area, { first: poses[k].bobs.length - 1, last: bodies[k].color });
   g.restore();
 }
 
-// The members of an ensemble, the last one behind; the more they are, the more they let through.
-function drawMembers(at, poses, put, putAll) {
-  const isFew = bodies.length <= 8, root = Math.sqrt(bodies.length), order = bodies.map((_, k) => k).reverse();
-  const hue = (k, opacity) => isFew ? bodies[k].color : faded(bodies[k].color, clamp(opacity * 14 / root, 0.16, 0.9));
-  for (const k of order) drawTrail(k, at, hue(k, 0.5), picture.trail * clamp(Math.sqrt(8) / root, 0.4, 1));
-  for (const k of order) {
-    drawLines(k, poses[k], at, picture.rod, hue(k, 0.43));
-    if (isFew) putAll(k, bodies[k].color, mixed(theme.bob, bodies[k].color, 0.4), 0);
-  }
-  drawPivots(0, poses[0], at);
-  for (const k of isFew ? [] : order) put(k, poses[k].mass.length - 1, bodies[k].color);
-}
+// Strips and phase panels
 
-// The pendulums of a panel; of one alone the other as a shadow behind it, but where nobody can tell the two apart.
-function drawSides(sides, at, poses, put, putAll) {
-  const isAlone = sides.length === 1, other = 1 - sides[0], behind = [...sides].reverse();
-  const areOne = () => poses[0].mass.length === poses[1].mass.length && poses[0].mass.every((m, i) => {
-    const [p, q] = poses.map(pose => at(pose.bobs[i]));
-    return m === poses[1].mass[i] && Math.hypot(p[0] - q[0], p[1] - q[1]) < 0.1;
-  });
-  if (isAlone && !isSingle && shows("twin") && !areOne()) {
-    const ghost = film.transparent ? faded(theme.sides[other], 0.4) : mixed(theme.panel, theme.sides[other], 0.26);
-    drawLines(other, poses[other], at, 0.7 * picture.rod, ghost);
-    poses[other].mass.forEach((_, i) => put(other, i, ghost));
-  }
-  for (const k of behind) drawTrail(k, at, theme.sides[k], picture.trail);
-  for (const k of behind) {
-    const hued = (color, share) => isAlone ? color : mixed(color, theme.sides[k], share);
-    drawLines(k, poses[k], at, picture.rod, hued(theme.rod, 0.55));
-    drawPivots(k, poses[k], at);
-    putAll(k, theme.sides[k], hued(theme.bob, 0.4), picture.lastBob);
-  }
-}
-
-// Strips: axes are [low, high, from, to, logarithmic]
-
-function along([low, high, from, to, isLogarithmic], v) {
-  const share = !isLogarithmic ? (v - low) / (high - low) : v > 0 ? Math.log(v / low) / Math.log(high / low) : 0;
-  return from + (to - from) * clamp(share, 0, 1);
-}
-const raised = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
-const powerOfTen = e => e === 0 ? "1" : e === 1 ? "10" : "10" + [...String(e)].map(c => raised[c]).join("");
-const minus = v => String(v).replace("-", "−");
+const along = (axis, v) => pixelAt(axis, clamp(axisShare(axis, v), 0, 1));
+const powerOfTen = e => ["1", "10"][e] ?? "10" + [...String(e)].map(c => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("");
 function scientific(v) {
   if (!(v > 0)) return "0";
   if (v >= 0.1 && v < 1000) return String(Number(v.toPrecision(2)));
@@ -204,79 +175,87 @@ function scientific(v) {
 }
 
 // Of a release by hand: where a logarithmic axis does not hold the curve, whole decades that do, drawn over the film's.
-function decadesOf(strip, list) {
-  const [low, high, from, to] = strip.axis, positive = [...list].filter(v => v > 0), most = mostOf([low, ...positive]);
-  const least = -mostOf([-most, ...positive.map(v => -v)]), [left, top, right, bottom] = strip.area, em = picture.em;
-  if (least >= low && most <= high) return strip.axis;
-  const first = Math.floor(Math.log10(least)), last = Math.max(Math.ceil(Math.log10(most)), first + 1);
-  const axis = [10 ** first, 10 ** last, from, to, true], every = Math.ceil((last - first) * 2.2 * em / (bottom - top));
-  rectangle(left, top, right - left, bottom - top, 0, theme.background);
-  rectangle(0, top - 0.6 * em, left, bottom - top + 1.2 * em, 0, theme.background);
+function decadesOf({ axis, area: [left, top, right, bottom] }, list) {
+  const decades = [...list].filter(v => v > 0).map(Math.log10), em = picture.em;
+  if (!axis.logarithmic || decades.every(e => e >= Math.log10(axis.from) && e <= Math.log10(axis.to))) return axis;
+  const first = Math.floor(-mostOf(decades.map(e => -e))), last = Math.max(Math.ceil(mostOf(decades)), first + 1);
+  const made = { ...axis, from: 10 ** first, to: 10 ** last };
+  const every = Math.ceil((last - first) * 2.2 * em / (bottom - top));
+  box(left, top, right - left, bottom - top, 0, theme.background);
+  box(0, top - 0.6 * em, left, bottom - top + 1.2 * em, 0, theme.background);
   for (let e = first; e <= last; e += every) {
-    rectangle(left, along(axis, 10 ** e), right - left, Math.max(1, picture.grid), 0, theme.grid);
-    text(powerOfTen(e), [left - 0.55 * em, along(axis, 10 ** e) + 0.36 * em], em, 2, false, theme.quiet_text);
+    const y = along(made, 10 ** e);
+    box(left, y, right - left, Math.max(1, picture.grid), 0, theme.grid);
+    text(powerOfTen(e), [left - 0.55 * em, y + 0.36 * em], em, "right", 400, theme.quiet_text);
   }
-  return axis;
+  return made;
 }
 
+function verticalLine(x, top, bottom, color) {
+  const width = Math.max(1, Math.round(picture.mark));
+  if (picture.mark > 0) box(Math.round(x - width / 2), top, width, bottom - top, 0, color);
+}
 // A dashed line, and beside it at its foot, above what stands there, what it marks.
-function drawMark(strip, at, words) {
-  const [left, top, right, bottom] = strip.area, x = along(strip.time, at), t = picture.text, size = picture.font, wide = Math.max(1, Math.round(picture.mark));
-  for (let y = top; picture.mark > 0 && y < bottom; y += 10 * t) rectangle(Math.round(x - wide / 2), y, wide, Math.min(5 * t, bottom - y), 0, theme.quiet_text);
-  text("", [0, 0], size, 0, false, theme.text);
-  const width = g.measureText(words).width, isRight = right - x - 20 * t >= Math.min(width, x - left - 20 * t);
-  const from = clamp(isRight ? x + 10 * t : x - 10 * t - width, left + 2 * t, Math.max(left + 2 * t, right - width - 2 * t));
-  const notes = motion === original ? strip.backdrop.filter(item => item[0] === "t" && item[6] === theme.text) : [];
+function drawMark({ area: [left, top, right, bottom], backdrop, time }, at, words) {
+  const x = along(time, at), t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
+  for (let y = top; y < bottom; y += 10 * t) verticalLine(x, y, Math.min(y + 5 * t, bottom), theme.quiet_text);
+  text("", [0, 0], ...style);
+  const { width } = g.measureText(words), isRight = right - x - 20 * t >= Math.min(width, x - left - 20 * t);
+  const from = Math.max(Math.min(isRight ? x + 10 * t : x - 10 * t - width, right - width - 2 * t), left + 2 * t);
+  const notes = motion === original ? backdrop.filter(item => item[0] === "text" && item[6] === theme.text) : [];
   const foot = Math.min(bottom - 0.45 * size, ...notes.map(item => item[2][1] - 1.2 * size));
-  if (!film.transparent) rectangle(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
-  text(words, [from, foot], size, 0, false, theme.text);
+  const behind = film.transparent ? "#0000" : faded(theme.background, 0.85);
+  box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, behind);
+  text(words, [from, foot], ...style);
 }
+const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
-const stripOfPair = Math.max(0, film.strips.findIndex(strip => strip.kind === "distance"));
+const stripOfPair = Math.max(0, strips.findIndex(strip => strip.kind === "distance"));
 function drawStrip(strip, index) {
-  const { kind, colors } = film.strips[index], curves = motion.curves[index], now = motion.isStill ? film.samples : sampleNow();
-  const axis = motion === original || !strip.axis[4] ? strip.axis : decadesOf(strip, curves[0]), x = along(strip.time, time);
-  const goesOn = !motion.isStill && isBetween(), end = list => goesOn ? value(list) : list[now];
+  const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[index];
+  const axis = motion === original ? strip.axis : decadesOf(strip, curves[0]), at = t => along(strip.time, t);
+  const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   drawAll(strip.words);
-  if (strip.value && !motion.isStill) drawLabel(strip.value, kind === "distance" ? scientific(end(curves[0])) : Number.isNaN(end(curves[0])) ? "" : minus(end(curves[0]).toFixed(2)));
-  if ((motion.isStill || time >= motion.since + 1 - 1e-6) && motion.since >= 0 && index === stripOfPair)
-    drawMark(strip, motion.since, `diverged at ${motion.since.toFixed(1)} s`);
-  const wide = Math.max(1, Math.round(picture.mark)), [, top, , bottom] = strip.area;
-  if (picture.mark > 0) rectangle(Math.round(x - wide / 2), top, wide, bottom - top, 0, theme.cursor);
-  curves.forEach((list, c) => {
-    const points = [];
-    for (let i = 0; i <= now; ++i) if (!Number.isNaN(list[i])) points.push([along(strip.time, i * film.sample_s), along(axis, list[i])]);
-    if (goesOn && !Number.isNaN(end(list))) points.push([x, along(axis, end(list))]);
-    if (picture.trace > 0) stroke(colors[c], strip.widths[c], () => polyline(points));
-    if (picture.trace > 0 && curves.length === 1 && points.length && !motion.isStill) disc(points.at(-1), Math.max(2.3 * picture.trace, 2), colors[c]);
-  });
+  if (strip.value && !isStill && !Number.isNaN(now))
+    drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
+  if (index === stripOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6))
+    drawMark(strip, since, `diverged at ${since.toFixed(1)} s`);
+  verticalLine(x, area[1], area[3], theme.cursor);
+  for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
+    const [color, width] = pens[c];
+    const points = Array.from(list.subarray(0, last + 1), (v, i) => [at(i * film.sample_s), along(axis, v)]);
+    if (!isStill) points.push([x, along(axis, value(list))]);
+    const known = points.filter(([, y]) => y >= 0);
+    stroke(color, width, () => polyline(known));
+    if (curves.length === 1 && known.length && !isStill) drawHead(known.at(-1), color);
+  }
 }
 
 // Rates over angles: paths, or the points at which θ1 passes a whole number of turns upwards.
 function drawPhase({ area, angle, rate }) {
-  const at = (a, w) => [along(angle, (a - 2 * Math.PI * Math.round(a / (2 * Math.PI))) * degrees), along(rate, w * degrees)];
+  const turn = 2 * Math.PI, wrapped = a => a - turn * Math.round(a / turn);
+  const at = ([a, w]) => [along(angle, wrapped(a) * degrees), along(rate, w * degrees)];
   for (const k of [1, 0]) {
-    const [angles, rates, first] = motion.phase[k], color = theme.sides[k], head = at(value(angles), value(rates)), turns = i => Math.floor(first[i] / (2 * Math.PI));
-    if (film.phase.kind === "section") {
-      for (let i = 1; i <= sampleNow(); ++i) {
-        const share = (2 * Math.PI * turns(i) - first[i - 1]) / (first[i] - first[i - 1]), passed = list => list[i - 1] + share * (list[i] - list[i - 1]);
-        if (turns(i) > turns(i - 1)) disc(at(passed(angles), passed(rates)), 1.2 * picture.trace, faded(color, 0.8));
-      }
-      continue;
+    const [angles, rates, first] = motion.phase[k], { color } = bodies[k], points = trailOf(at, [angles, rates]);
+    for (let i = 1; i <= sampleNow() && film.phase.kind === "section"; ++i) {
+      const whole = turn * Math.floor(first[i] / turn), share = (whole - first[i - 1]) / (first[i] - first[i - 1]);
+      const passed = [angles, rates].map(list => list[i - 1] + share * (list[i] - list[i - 1]));
+      if (share > 0 && share <= 1) disc(at(passed), 1.2 * picture.trace, faded(color, 0.8));
     }
-    const points = trailSamples().map(([i, age]) => [...at(angles[i], rates[i]), age]);
-    fadingPath([...points, [...head, 0]], picture.trail, color, picture.glow, (area[2] - area[0]) / 2);
-    disc(head, Math.max(2.3 * picture.trace, 2), color);
+    if (film.phase.kind === "section") continue;
+    fadingPath(points, picture.trail, color, (area[2] - area[0]) / 2);
+    drawHead(points.at(-1), color);
   }
 }
 
 // Of a release by hand the angles above the pendulums, in place of the film's words.
 function drawWords() {
   if (motion === original) return drawAll(picture.words);
-  if (shows("title") && picture.words.length) text("Released anew", ...picture.words[0].slice(2, 7));
-  for (const { area, sides } of picture.panels) {
-    const k = isEnsemble ? 0 : sides[0], words = motion.of[k].angle.map(a => `${minus(Number((a * degrees).toPrecision(8)))}°`).join("   ");
-    text(words, [area[0], area[1] - 12 * picture.text], picture.font, 0, true, isEnsemble ? theme.text : theme.sides[k]);
+  if (shows("title") && picture.words.length) drawLabel(picture.words[0], "Released anew");
+  for (const { area, shown } of picture.panels) {
+    const { angle } = motion.of[shown[0]], color = isEnsemble ? theme.text : bodies[shown[0]].color;
+    const words = angle.map(a => `${written(Number((a * degrees).toPrecision(8)))}°`).join("   ");
+    text(words, [area[0], area[1] - 12 * picture.text], picture.font, "left", 700, color);
   }
 }
 
@@ -287,7 +266,7 @@ function draw() {
   g.drawImage(backdrop, 0, 0);
   if (!motion) return;
   const scale = canvas.width / picture.size[0], poses = posesNow();
-  g.setTransform(scale, 0, 0, scale, 0, 0);
+  g.scale(scale, scale);
   drawWords();
   for (const panel of picture.panels) drawPanel(panel, poses);
   if (picture.phase && motion.phase) drawPhase(picture.phase);
@@ -296,16 +275,15 @@ function draw() {
   if (picture.speed) drawLabel(picture.speed, speedAt(time)[2]);
 }
 
-// The picture that fits the page, upright ones into upright pages, at the screen's density.
+// The picture that fits the page, upright ones into upright pages.
 function resize() {
-  const { width, height } = stage.getBoundingClientRect();
-  picture = film.pictures[1] && height > 1.2 * width ? film.pictures[1] : film.pictures[0];
-  const [w, h] = picture.size, scale = Math.min(width / w, height / h), density = devicePixelRatio || 1;
+  const { width, height } = canvas.parentElement.getBoundingClientRect();
+  picture = film.pictures[height > 1.2 * width ? 1 : 0] ?? film.pictures[0];
+  const [w, h] = picture.size, scale = Math.min(width / w, height / h);
   Object.assign(canvas.style, { width: `${scale * w}px`, height: `${scale * h}px` });
-  for (const of of [canvas, backdrop]) of.width = Math.max(1, Math.round(scale * w * density)), of.height = Math.max(1, Math.round(scale * h * density));
+  for (const of of [canvas, backdrop]) setSize(of, scale * w, scale * h);
   g = backdrop.getContext("2d");
-  g.setTransform(canvas.width / w, 0, 0, canvas.width / w, 0, 0);
-  drawAll(picture.backdrop);
-  for (const strip of picture.strips) drawAll(strip.backdrop);
+  g.scale(canvas.width / w, canvas.width / w);
+  drawAll([...picture.backdrop, ...picture.strips.flatMap(strip => strip.backdrop)]);
   draw();
 }

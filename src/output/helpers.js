@@ -1,0 +1,42 @@
+// helpers.js: what the scripts of pages share.
+"use strict";
+const $ = selector => document.querySelector(selector), pageData = JSON.parse($("#data").textContent);
+const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+const written = value => String(value).replace("-", "−");
+function element(tag, attributes, ...inner) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...inner);
+  return made;
+}
+
+// Values along an axis: from its start, 0, to its end, 1; and pixels.
+const axisValue = ({ from, to, logarithmic }, share) =>
+  logarithmic ? from * (to / from) ** share : from + (to - from) * share;
+const axisShare = ({ from, to, logarithmic }, value) =>
+  logarithmic ? Math.log(value / from) / Math.log(to / from) : (value - from) / (to - from);
+const pixelAt = ({ start, end }, share) => start + (end - start) * share;
+const shareAt = ({ start, end }, pixel) => (pixel - start) / (end - start);
+
+// The address ends with numbers: #x=1&y=2.
+const addressNumbers = () => Object.fromEntries([...new URLSearchParams(location.hash.slice(1))]
+  .map(([key, text]) => [key, Number(text)]).filter(([, number]) => Number.isFinite(number)));
+function keepAddress(numbers) {
+  const hash = `#${new URLSearchParams(numbers)}`;
+  try { history.replaceState(null, "", hash); } catch { /* a frame that has no address */ }
+}
+
+// Gives a canvas so many pixels of the page, at the screen's density.
+function setSize(canvas, width, height) {
+  [canvas.width, canvas.height] = [width, height].map(length => Math.max(1, Math.round(length * devicePixelRatio)));
+}
+
+// Keys with their actions, where no control has the focus.
+function onKeys(actions, target = window) {
+  target.addEventListener("keydown", event => {
+    const isOfControl = event.target.matches("input, select, textarea, button");
+    if (isOfControl || event.defaultPrevented || event.ctrlKey || event.metaKey || !actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key](event);
+  });
+}
