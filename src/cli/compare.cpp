@@ -284,7 +284,7 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
             pairs = pairs_of(options.expected, draw_frames(scene, options, run_options, task, report), true);
         } else {
             const auto at = seconds_of_option("--at", options.at);
-            pairs = {single_picture(options, still_name(scene, still_moment(scene, at), PictureFormat::png))};
+            pairs = {single_picture(options, still_name(scene, at, PictureFormat::png))};
             const auto drawn = draw_still(scene, at, PictureFormat::png, run_options, task.stop, report);
             pairs.front().actual = drawn.files.front();
         }
