@@ -62,15 +62,18 @@ std::string base_of(const fs::path& name) {
     return name.stem().stem().string();
 }
 
-/// A picture NAME.png and its variants NAME.VARIANT.png, as far as they exist.
-std::vector<fs::path> goldens_of(const fs::path& picture) {
-    std::vector<fs::path> goldens;
-    const auto folder = picture.parent_path();
-    for (const auto& name : png_names(folder.empty() ? "." : folder))
-        if (name == picture.filename())
-            goldens.insert(goldens.begin(), picture);
-        else if (base_of(name) == picture.stem())
-            goldens.push_back(folder / name);
+/// The PNGs of a folder as goldens of the pictures NAME.png: each the golden of its own name, or the variant
+/// NAME.VARIANT.png of one that is there or among `drawn`. Those of `drawn` without a golden are included.
+std::map<std::string, std::vector<fs::path>> goldens_in(const fs::path& folder, const std::set<std::string>& drawn) {
+    const auto names = png_names(folder.empty() ? "." : folder);
+    std::map<std::string, std::vector<fs::path>> goldens;
+    for (const auto& name : drawn) goldens[name];
+    for (const auto& name : names) {
+        const auto base = base_of(name) + ".png";
+        const bool is_variant = !drawn.contains(name) && (names.contains(base) || drawn.contains(base));
+        auto& all = goldens[is_variant ? base : name];
+        all.insert(is_variant ? all.end() : all.begin(), folder / name);
+    }
     return goldens;
 }
 
@@ -192,18 +195,11 @@ std::optional<Error> compare_all(Comparison& comparison, const Task& task, bool 
 
 /// Every picture in either folder; those that cannot be compared are missing.
 std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& actual, bool is_drawn) {
-    const auto wanted = png_names(expected), found = png_names(actual);
-    if (wanted.empty() && !is_drawn) throw bad_input("{}: there is no PNG to compare with", expected.string());
-    std::map<std::string, std::vector<fs::path>> goldens;
-    for (const auto& name : found) goldens[name];
-    for (const auto& name : wanted) {
-        const auto base = base_of(name) + ".png";
-        const bool is_variant = !found.contains(name) && (wanted.contains(base) || found.contains(base));
-        auto& all = goldens[is_variant ? base : name];
-        all.insert(is_variant ? all.end() : all.begin(), expected / name);
-    }
+    const auto found = png_names(actual);
+    if (png_names(expected).empty() && !is_drawn)
+        throw bad_input("{}: there is no PNG to compare with", expected.string());
     std::vector<ComparedPicture> pairs;
-    for (const auto& [name, all] : goldens) {
+    for (const auto& [name, all] : goldens_in(expected, found)) {
         auto& pair = pairs.emplace_back(
             ComparedPicture{.name = name, .expected = expected / name, .actual = actual / name, .goldens = all});
         if (found.contains(name) && (is_drawn || !all.empty())) continue;
@@ -220,7 +216,9 @@ ComparedPicture single_picture(const CompareOptions& options, const std::string&
     const fs::path expected = options.expected;
     const bool is_folder = fs::is_directory(expected, ignored) || expected.extension() != ".png";
     const auto golden = is_folder ? expected / name : expected;
-    ComparedPicture picture{.name = golden.filename(), .expected = golden, .actual = {}, .goldens = goldens_of(golden)};
+    const std::string file = golden.filename();
+    ComparedPicture picture{
+        .name = file, .expected = golden, .actual = {}, .goldens = goldens_in(golden.parent_path(), {file})[file]};
     if (!options.update && picture.goldens.empty())
         throw bad_input("{}: there is no such golden picture; --update makes it", golden.string());
     return picture;
@@ -286,7 +284,7 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
             pairs = pairs_of(options.expected, draw_frames(scene, options, run_options, task, report), true);
         } else {
             const auto at = seconds_of_option("--at", options.at);
-            pairs = {single_picture(options, still_name(scene, still_moment(scene, at), PictureFormat::png))};
+            pairs = {single_picture(options, still_name(scene, at, PictureFormat::png))};
             const auto drawn = draw_still(scene, at, PictureFormat::png, run_options, task.stop, report);
             pairs.front().actual = drawn.files.front();
         }

@@ -212,12 +212,10 @@ void add_still(CLI::App& app) {
         if (!options->size.empty()) more.push_back(size_override("video.size", options->size));
         const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
-        for (const auto& scene : scenes) still_moment(scene, at);
-        if (options->list_outputs) {
-            for (const auto& scene : scenes)
-                list_outputs(*options, scene.preset.name, {still_name(scene, still_moment(scene, at), format)});
-            return;
-        }
+        for (const auto& scene : scenes)
+            if (const auto name = still_name(scene, at, format); options->list_outputs)
+                list_outputs(*options, scene.preset.name, {name});
+        if (options->list_outputs) return;
         const Destination to(options->out, scenes.size(), "." + options->format);
         const RunOptions run{.out = to.folder(),
                              .gl = gl_named(options->gl),

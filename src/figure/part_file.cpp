@@ -137,14 +137,14 @@ fs::path new_part_path(fs::path path) {
 
 }  // namespace
 
-PartHeader header_of(const FigurePreset& figure, int shard, int of) {
+PartHeader header_of(const FigurePreset& figure, const Shard& shard) {
     return {figure.name,
             std::string(version()),
             std::string(revision()),
             sha256_of_text(figure.resolved_work()),
             figure.experiment->trials(),
-            shard,
-            of};
+            shard.number,
+            shard.of};
 }
 
 std::string shard_name(const PartHeader& header) {

@@ -24,7 +24,7 @@ struct PartHeader {
     std::size_t last() const { return trials * static_cast<std::size_t>(shard) / static_cast<std::size_t>(of); }
 };
 
-PartHeader header_of(const FigurePreset& figure, int shard = 1, int of = 1);
+PartHeader header_of(const FigurePreset& figure, const Shard& shard = {});
 
 /// "fig8.3-of-8.shard": the file with the results of a part, for a merge.
 std::string shard_name(const PartHeader& header);

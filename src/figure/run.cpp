@@ -175,10 +175,6 @@ RunResult write_figure(const FigurePreset& figure, const KnownTrials& trials, Fi
     return result;
 }
 
-PartHeader header_for(const FigurePreset& figure, const FigureOptions& options) {
-    return options.shard ? header_of(figure, options.shard->number, options.shard->of) : header_of(figure);
-}
-
 ComputationReport report_of(const FigureReport& report, std::size_t k) {
     return {[&report, k](const FigureProgress& p) { report.progress(k, p); },
             [&report, k](const std::string& s) { report.note(k, s); }};
@@ -194,7 +190,7 @@ public:
         : stop_(stop) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const auto& figure = figures[k];
-            const auto header = header_for(figure, options);
+            const auto header = header_of(figure, options.shard.value_or(Shard{}));
             const auto& folder = files[k]->folder();
             require_room(figure, header, options.tiles, folder);
             if (const auto others = other_resumes(folder, header);
@@ -255,7 +251,7 @@ private:
 
 std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options) {
     const auto& name = figure.name;
-    if (options.shard) return {shard_name(header_for(figure, options))};
+    if (options.shard) return {shard_name(header_of(figure, *options.shard))};
     if (options.tiles) return {name + ".tiles/", name + ".html", name + ".tiles.json"};
     return {fmt::format("{}.{}", name, name_of(figure.chart.format)), name + ".csv", name + ".json"};
 }

@@ -101,8 +101,8 @@ VideoOptions video_options(const Scene& scene) {
     return options;
 }
 
-Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, Transaction& parts,
-           RunRecord& record, const std::atomic<bool>& stop)
+Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, long last,
+           Transaction& parts, RunRecord& record, const std::atomic<bool>& stop)
     : scene_(scene),
       options_(options),
       parts_(parts),
@@ -112,6 +112,8 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       drawn_(drawn_frames(scene, options, first)),
       begin_(schedule_.range(first, schedule_.motion).first),
       next_(begin_),
+      frame_(first),
+      last_(last),
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     if (options.merge) joined_ = parts_in(scene, parts.folder());
@@ -171,14 +173,18 @@ const Picture& Film::take(const DisplayList& list) {
     return *picture;
 }
 
-void Film::write_frame(long number) {
-    for (const long end = schedule_.range(number, number + 1).last; next_ < end; ++next_) {
+bool Film::add(const Snapshot& snapshot) {
+    composer_.add(snapshot);
+    if (frame_ == last_ || snapshot.pair.moment() != scene_.frames.at(frame_)) return false;
+    ++frame_;
+    for (const long end = schedule_.range(0, frame_).last; next_ < end; ++next_) {
         const bool is_drawn = drawn_.contains(next_), is_poster = next_ == poster_at_;
         if (!is_drawn && !is_poster) continue;
         const auto list = list_of(next_);
         const auto& picture = is_drawn ? take(list) : canvas_->draw(list);
         if (is_poster) poster_ = picture;
     }
+    return true;
 }
 
 void Film::finish(const std::vector<FilmEvent>& events) {

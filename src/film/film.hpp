@@ -96,17 +96,14 @@ private:
 /// the frames of the part; when it joins parts, only the poster.
 class Film {
 public:
-    /// Begins with frame `first`, and adds the film's files to `parts`. All functions may throw Error (exit 130) soon
-    /// after `stop` is set.
-    Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, Transaction& parts,
-         RunRecord& record, const std::atomic<bool>& stop);
+    /// Shows the frames first … last − 1 of the motion, and adds the film's files to `parts`. All functions may throw
+    /// Error (exit 130) soon after `stop` is set.
+    Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, long last,
+         Transaction& parts, RunRecord& record, const std::atomic<bool>& stop);
 
-    /// Adds a snapshot; all samples and frames from 0 on are required.
-    void add(const Snapshot& snapshot) { composer_.add(snapshot); }
-
-    /// Writes the last snapshot as frame `number`. The title card precedes the first frame, the end card follows the
-    /// last.
-    void write_frame(long number);
+    /// Adds a snapshot; all samples and frames from 0 on are required. If it is the next frame, writes it, and returns
+    /// true. The title card precedes the first frame, the end card follows the last.
+    bool add(const Snapshot& snapshot);
 
     /// Completes the film, with these events as chapters, and writes the poster.
     void finish(const std::vector<FilmEvent>& events);
@@ -130,6 +127,7 @@ private:
     const FrameRange drawn_;  // frames are counted in the whole film
     const long begin_;        // the first frame of the file
     long next_;
+    long frame_, last_;  // of the motion
     long poster_at_ = -1;
     std::vector<std::filesystem::path> joined_;  // parts, for a merge
     Composer composer_;

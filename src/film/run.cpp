@@ -119,8 +119,13 @@ Part part_of_frames(const Scene& scene, const RunOptions& options) {
     return {first, last, frames.at(first), last == frames.count ? Moment{scene.samples + 1} : frames.at(last)};
 }
 
-/// Throws Error (exit 2) as the two above, and if the poster's frame is not included.
+/// Throws Error (exit 2) as the two above, and if the poster's frame is not included. Of a part of the film, all frames up
+/// to its last one.
 Part part_of(const Scene& scene, const RunOptions& options) {
+    if (options.is_part()) {
+        const long last = schedule_of(scene).motion_frame(drawn_frames(scene, options, 0).last - 1) + 1;
+        return part_of_frames(scene, {.last = last});
+    }
     const bool by_time = options.from_s || options.to_s;
     const auto part = by_time ? part_between(scene, options) : part_of_frames(scene, options);
     const bool is_page = options.pictures && scene.preset.video.format == FilmFormat::html;
@@ -158,94 +163,59 @@ std::vector<std::string> run_files(const Scene& scene, const RunOptions& options
     return files;
 }
 
-namespace {
-
-/// Draws one part of a film, or some of its pictures.
-RunResult run_part(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
-    const double start = seconds_of(CLOCK_MONOTONIC);
-    const auto& shard = options.shard;
-    Transaction parts(options.out / scene.preset.name,
-                      shard ? fmt::format("shard-{}-of-{}", shard->number, shard->of) : "run", "film",
-                      options.replacing);
-    RunRecord record;
-    if (shard && is_part_complete(scene, *shard, parts.folder())) {
-        record.files = {parts.folder() / part_name(scene, *shard)};
-        return record;
-    }
-    const auto schedule = schedule_of(scene);
-    const auto drawn = drawn_frames(scene, options, 0);
-    const long last = schedule.motion_frame(drawn.last - 1) + 1;
-    const Moment end = last == schedule.motion ? Moment{scene.samples + 1} : scene.frames.at(last);
-    Recording recording(scene, end, true, stop, options.recording);
-    std::optional<Film> film;
-    if (!recording.fails()) film.emplace(scene, recording.bounds(), options, 0, parts, record, stop);
-    long frame = 0;
-    recording.play([&](const Snapshot& snapshot) {
-        throw_if_set(stop);
-        if (!film) return;  // play() throws at the end
-        film->add(snapshot);
-        if (frame == last || snapshot.pair.moment() != scene.frames.at(frame)) return;
-        film->write_frame(frame++);
-        report({record.frames, drawn.count()});
-    });
-    const auto finish = [&] {
-        film->finish({});
-        throw_if_set(stop);
-        return parts.publish();
-    };
-    record.files = parts.keeping_finished(finish);
-    record.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
-    return std::move(static_cast<RunResult&>(record));
-}
-
-}  // namespace
-
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
-    if (options.is_part()) return run_part(scene, options, stop, report);
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const auto& name = scene.preset.name;
+    const auto& shard = options.shard;
     const auto part = part_of(scene, options);
-    RunRecord record;
-    record.first_sample = part.first_sample();
-    record.last_sample = part.last_sample();
-    record.samples = record.last_sample - record.first_sample + 1;
     const bool is_page = options.pictures && scene.preset.video.format == FilmFormat::html;
-    const bool is_film = options.pictures && !is_page;
-    const long total = is_film ? part.last - part.first : record.samples;
-    Transaction parts(options.out / scene.preset.name, "run", "film", options.replacing);
+    const bool is_film = options.pictures && !is_page, is_recorded = !options.record_to.empty();
+    Transaction parts(options.out / name, shard ? fmt::format("shard-{}-of-{}", shard->number, shard->of) : "run",
+                      "film", options.replacing);
+    if (shard && is_part_complete(scene, *shard, parts.folder()))
+        return {.files = {parts.folder() / part_name(scene, *shard)}};
     for (const auto& file : run_files(scene, options)) parts.require(file);  // before the simulation
     if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
-    const bool is_recorded = !options.record_to.empty();
+    RunRecord record;
     Recording recording(scene, part.end, options.pictures || is_recorded, stop, options.recording);
     std::optional<RecordingWriter> recorder;
     if (is_recorded) recorder.emplace(options.record_to, scene);
     std::optional<Film> film;
     std::optional<FilmPage> page;
     if (is_film && !recording.fails())
-        film.emplace(scene, recording.bounds(), options, part.first, parts, record, stop);
+        film.emplace(scene, recording.bounds(), options, part.first, part.last, parts, record, stop);
     if (is_page && !recording.fails()) page.emplace(scene, recording.bounds(), parts);
-    const auto csv_name = scene.preset.name + ".csv";
-    PairTable table(parts.file(csv_name), scene, options.columns);
+    const auto csv_name = name + ".csv";
+    std::optional<PairTable> table;
+    if (!options.is_part()) {
+        record.first_sample = part.first_sample();
+        record.last_sample = part.last_sample();
+        record.samples = record.last_sample - record.first_sample + 1;
+        table.emplace(parts.file(csv_name), scene, options.columns);
+    }
     FlipFinder flips(scene);
-    long frame = part.first, done = 0;
+    long done = 0;
+    const long total = !table    ? drawn_frames(scene, options, 0).count()
+                       : is_film ? part.last - part.first
+                                 : record.samples;
+    const auto add = [&](const Snapshot& snapshot) {
+        const auto& state = snapshot.pair;
+        throw_if_set(stop);
+        if (recorder) recorder->add(snapshot, recording.record());
+        if (page) page->add(snapshot);
+        if (state.share == 0) flips.add(state);
+        if (table && state.share == 0 && state.sample >= record.first_sample) {
+            table->add(snapshot, recording.record().outcome.start_distance);
+            if (!is_film) report({++done, total});
+        }
+        if (film && film->add(snapshot)) report({table ? ++done : record.frames, total});
+    };
     try {
-        recording.play([&](const Snapshot& snapshot) {
-            const auto& state = snapshot.pair;
-            throw_if_set(stop);
-            if (recorder) recorder->add(snapshot, recording.record());
-            if (film) film->add(snapshot);
-            if (page) page->add(snapshot);
-            if (state.share == 0) flips.add(state);
-            if (state.share == 0 && state.sample >= record.first_sample) {
-                table.add(snapshot, recording.record().outcome.start_distance);
-                if (!is_film) report({++done, total});
-            }
-            if (!film || frame == part.last || state.moment() != scene.frames.at(frame)) return;
-            film->write_frame(frame++);
-            report({++done, total});
-        });
+        recording.play(add);
     } catch (const RunFailure& failure) {
+        if (!table) throw;
         record.motion = recording.record();
-        table.finish();
+        table->finish();
         film.reset();  // its threads use what is destroyed next
         keep_failed(scene, failure, record, parts, stop);
     }
@@ -255,19 +225,21 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         if (recorder) recorder->finish();
         if (film) film->finish(record.events);
         if (page) page->finish();
-        if (film && scene.preset.video.contact_sheet)
+        if (film && table && scene.preset.video.contact_sheet)
             film->write(".contact.png", contact_sheet_of(scene, recording, part.first, part.last, options.gl, stop));
-        table.finish();
-        parts.finished(csv_name);
-        record.simulate_cpu_s = recording.cpu_s();
         record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
-        add_warnings(scene, record, stop);
-        record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
-        record.encode_cpu_s =
-            std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
-        // files of an earlier run that failed
-        for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(scene.preset.name, ending));
-        write_manifest(parts, scene.preset.name + ".json", scene, record);
+        if (table) {
+            table->finish();
+            parts.finished(csv_name);
+            record.simulate_cpu_s = recording.cpu_s();
+            add_warnings(scene, record, stop);
+            record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
+            record.encode_cpu_s =
+                std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
+            // files of an earlier run that failed
+            for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(name, ending));
+            write_manifest(parts, name + ".json", scene, record);
+        }
         throw_if_set(stop);
         return parts.publish();
     };

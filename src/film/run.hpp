@@ -48,10 +48,8 @@ struct RunResult {
 /// Throws Error as run(), and exit 2 if the scene ends earlier.
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
                      const std::atomic<bool>& stop, const Report& report);
-/// The sample or time between samples for such a picture. Throws Error (exit 2) if the scene ends earlier.
-Moment still_moment(const Scene& scene, const Rational& time);
-/// The file name of such a picture: "NAME.14s.png".
-std::string still_name(const Scene& scene, const Moment& moment, PictureFormat format);
+/// The file name of such a picture: "NAME.14s.png". Throws Error (exit 2) if the scene ends earlier.
+std::string still_name(const Scene& scene, const Rational& time, PictureFormat format);
 
 /// Throws Error (exit 2) if the scene lacks some of the frames or columns in `options`, or cannot be split as they say.
 void check_run(const Scene& scene, const RunOptions& options);

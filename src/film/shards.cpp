@@ -12,16 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws if parts are missing; names the first ones.
-void check_complete(const std::vector<fs::path>& parts, const fs::path& folder) {
+/// "2/8, 5/8": the missing parts, or the first ones.
+std::string missing_parts(const std::vector<fs::path>& parts) {
     constexpr std::size_t max_named = 5;
-    const auto missing = static_cast<std::size_t>(std::ranges::count(parts, fs::path()));
-    if (missing == 0) return;
-    std::vector<std::string> named;
-    for (std::size_t i = 0; named.size() < std::min(missing, max_named); ++i)
-        if (parts[i].empty()) named.push_back(fmt::format("{}/{}", i + 1, parts.size()));
-    throw try_again("{}: missing parts: {}{}", folder.string(), fmt::join(named, ", "),
-                    missing > max_named ? fmt::format(" … {} in all", missing) : "");
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (parts[i].empty()) missing.push_back(fmt::format("{}/{}", i + 1, parts.size()));
+    const auto count = missing.size();
+    missing.resize(std::min(count, max_named));
+    return fmt::format("{}{}", fmt::join(missing, ", "), count > max_named ? fmt::format(" … {} in all", count) : "");
 }
 
 }  // namespace
@@ -35,7 +34,7 @@ void check_identity(const fs::path& path, const Json& header, const Json& wanted
         const bool is_hash = key == "preset_sha256";
         const auto text = [&](const Json& value) {
             const auto words = value.is_string() ? value.get<std::string>() : value.dump();
-            return is_hash ? words.substr(0, hash_digits) : words;
+            return words.substr(0, is_hash ? hash_digits : words.size());
         };
         throw bad_input("{} was made with another {}: {}, not {}; {} it again with --shard {}/{}", path.string(),
                         is_hash ? "preset, or other --set" : key, text(theirs), text(ours), verb, shard.number,
@@ -66,7 +65,8 @@ std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
     if (parts.empty())
         throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
                         folder.string(), name);
-    check_complete(parts, folder);
+    if (const auto missing = missing_parts(parts); !missing.empty())
+        throw try_again("{}: missing parts: {}", folder.string(), missing);
     return parts;
 }
 

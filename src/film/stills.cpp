@@ -29,16 +29,18 @@ std::string seconds_text(double seconds) {
     return text;
 }
 
-}  // namespace
-
+/// The sample or time between samples for a picture.
 Moment still_moment(const Scene& scene, const Rational& time) {
     const double end = scene.preset.duration_s.value();
     if (time.value() > end) throw bad_input("--at {}: {} ends at {} s", time.value(), scene.preset.name, end);
     return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 
-std::string still_name(const Scene& scene, const Moment& moment, PictureFormat format) {
-    return fmt::format("{}.{}s.{}", scene.preset.name, seconds_text(scene.time(moment)), name_of(format));
+}  // namespace
+
+std::string still_name(const Scene& scene, const Rational& time, PictureFormat format) {
+    return fmt::format("{}.{}s.{}", scene.preset.name, seconds_text(scene.time(still_moment(scene, time))),
+                       name_of(format));
 }
 
 RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat format, const RunOptions& options,
@@ -46,7 +48,7 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     const double start = seconds_of(CLOCK_MONOTONIC);
     const auto moment = still_moment(scene, time);
     const auto text = seconds_text(scene.time(moment));
-    const auto name = still_name(scene, moment, format);
+    const auto name = still_name(scene, time, format);
     Transaction parts(options.out / scene.preset.name, "still", "film", options.replacing);
     const auto place = parts.file(name);
     auto alone = scene;  // with a single frame

@@ -134,7 +134,7 @@ TEST(Computation, RejectsImpossibleNumbers) {
         EXPECT_TRUE(resumed.said.has("40 % is done; line 6 is damaged"));
     }
     // a record with the numbers of another part
-    auto header = header_of(figure, 2, 2);
+    auto header = header_of(figure, {2, 2});
     PartWriter(folder / resume_name(header), header, expected).close();
     EXPECT_EQ(Resumed(figure, header, folder).computed_units, 5);
 }
@@ -142,7 +142,7 @@ TEST(Computation, RejectsImpossibleNumbers) {
 TEST(Computation, ComputesOnlyItsPart) {
     const auto figure = small_sweep();
     const auto expected = computed(figure);
-    const auto header = header_of(figure, 2, 3);
+    const auto header = header_of(figure, {2, 3});
     const Resumed part(figure, header, {});
     for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_EQ(part.trials[i], i >= header.first() && i < header.last() ? expected[i] : TrialNumbers{}) << i;

@@ -107,7 +107,7 @@ TEST_F(Merge, RejectsAChangedDigit) {
     // lines of another part, and numbers of no trial
     write_bytes(part(2), bytes + bytes_of(part(1)).substr(bytes_of(part(1)).find('\n') + 1));
     expect_damaged("is damaged in line 5");
-    PartWriter(part(2), header_of(small_sweep(), 2, 3), KnownTrials(10, {1, 2})).close();
+    PartWriter(part(2), header_of(small_sweep(), {2, 3}), KnownTrials(10, {1, 2})).close();
     expect_damaged("is damaged in line 2");
 }
 

@@ -274,7 +274,7 @@ TEST(PartHeader, IsThatOfTheNumbersAlone) {
                other = figure_of("fig2-right", {"grid.difference=0.004"});
     EXPECT_EQ(header_of(figure), header_of(drawn));
     EXPECT_NE(header_of(figure).preset, header_of(other).preset);
-    EXPECT_NE(header_of(figure, 1, 2), header_of(figure));
+    EXPECT_NE(header_of(figure, {1, 2}), header_of(figure));
 }
 
 }  // namespace part_file_test

@@ -242,7 +242,7 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     const auto folder = out / "fig2-right";
     fs::create_directory(folder);
     const auto large = small_sweep({"grid.x.step=0.5"});
-    const auto record = folder / resume_name(header_of(large)), other = folder / resume_name(header_of(large, 2, 3));
+    const auto record = folder / resume_name(header_of(large)), other = folder / resume_name(header_of(large, {2, 3}));
     for (const auto& path : {record, other}) PartWriter(path, header_of(large), KnownTrials(19, {1})).close();
     const auto bytes = bytes_of(record);
     Said said;

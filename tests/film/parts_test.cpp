@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 using namespace test;
 
 /// 12 s in 145 frames: eight segments of 18 frames, the last of 19.
-Scene film(std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {"video.size=[96, 64]", "scene.duration_s=12", "video.fps=12"});
+Scene film(std::vector<std::string> more = {}, const std::string& duration_s = "12") {
+    more.insert(more.begin(), {"video.size=[96, 64]", "scene.duration_s=" + duration_s, "video.fps=12"});
     return scene_of("butterfly", more);
 }
 
@@ -53,11 +53,12 @@ TEST(FilmParts, JoinedAreTheBytesOfOneRun) {
         {"video.format=webm", "video.transparent=true"},
         {"video.format=webm", "video.codec=av1"},
         {"video.format=png"},
-        {"video.title_card_s=1", "video.hold_end_s=1", "video.end_card_s=2", "video.poster_s=3",
+        {"video.title_card_s=1", "video.hold_end_s=1", "video.end_card_s=2", "video.poster_s=1.5",
          "video.contact_sheet=[2, 1]"},
-        {"video.speed=[[0, 1], [4, 0.5]]"}};
+        {"video.speed=[[0, 1], [1, 0.5]]"}};
     for (const auto& more : cases) {
-        const auto scene = film(more);
+        const auto scene = film(more, "2");  // two segments, more with cards and with slow motion
+        EXPECT_GE(max_shards(scene), 2);
         const auto folder = fresh_folder();
         render(scene, {.out = folder / "one"});
         render_in_parts(scene, {.out = folder / "parts"});
