@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <stdexcept>
 #include <vector>
 
 namespace doppel {
@@ -170,7 +171,8 @@ private:
     Bound remainder(const Node& node, const Bound& tail) const {
         const Bounds constant{.size = bound_of(node.constant)};
         const auto &a = node.a < 0 ? constant : bounds(node.a), &b = node.b < 0 ? constant : bounds(node.b);
-        if (node.operation != Operation::product) return a.rest + b.rest;  // a sum or a difference
+        if (node.operation == Operation::sum || node.operation == Operation::difference) return a.rest + b.rest;
+        if (node.operation != Operation::product) throw std::logic_error("no remainder of this operation is known");
         SumOfProducts<Bound> sum;
         sum.add(a.size, b.rest);
         sum.add(a.rest, b.size + b.rest);

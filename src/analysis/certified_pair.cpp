@@ -6,6 +6,7 @@
 #include "base/threads.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <numeric>
 
@@ -13,8 +14,8 @@ namespace doppel {
 namespace {
 
 template <class Scalar>
-CertifiedPair enclosed_pair(const std::vector<EnclosedSystem>& sides, const CertifiedPairSpec& spec,
-                            double largest_radius, const std::atomic<bool>& stop) {
+Certificate enclosed_pair(const std::vector<EnclosedSystem>& sides, const CertifiedPairSpec& spec,
+                          double largest_radius, const std::atomic<bool>& stop) {
     const bool are_same = sides.size() == 2 && sides[0] == sides[1];
     std::vector<std::vector<EnclosedState<Scalar>>> motions(are_same ? 1 : sides.size());
     std::vector<long> done(motions.size());
@@ -33,7 +34,7 @@ CertifiedPair enclosed_pair(const std::vector<EnclosedSystem>& sides, const Cert
     if (are_same) motions.push_back(motions[0]);
     std::vector<Pendulum<Ball<Scalar>>> chains;
     for (const auto& side : sides) chains.push_back(side.chain.cast<Ball<Scalar>>());
-    CertifiedPair pair;
+    Certificate pair;
     for (std::size_t n = 0; n < std::min(motions.front().size(), motions.back().size()); ++n) {
         auto& row = pair.rows.emplace_back();
         for (const auto& motion : motions) {
@@ -50,16 +51,16 @@ CertifiedPair enclosed_pair(const std::vector<EnclosedSystem>& sides, const Cert
 }
 
 /// Whether the distance is known to 1 % at all samples but the first, where it may be 0.
-bool is_sharp(const CertifiedPair& pair) {
-    return std::all_of(pair.rows.begin() + 1, pair.rows.end(), [](const CertifiedPair::Row& row) {
+bool is_sharp(const Certificate& pair) {
+    return std::all_of(pair.rows.begin() + 1, pair.rows.end(), [](const Certificate::Row& row) {
         return row.distance.high - row.distance.low <= 0.01 * row.distance.high;
     });
 }
 
 }  // namespace
 
-CertifiedPair certified_pair(const std::vector<EnclosedSystem>& sides, const CertifiedPairSpec& spec,
-                             const std::atomic<bool>& stop) {
+Certificate certified_pair(const std::vector<EnclosedSystem>& sides, const CertifiedPairSpec& spec,
+                           const std::atomic<bool>& stop) {
     constexpr double sufficient = 1e-6, lost = 0.5;  // rad or rad/s
     constexpr std::array with_bits{enclosed_pair<double>, enclosed_pair<Quad>, enclosed_pair<Wide>};
     for (std::size_t i = 0;; ++i) {
@@ -70,6 +71,12 @@ CertifiedPair certified_pair(const std::vector<EnclosedSystem>& sides, const Cer
         const bool is_whole = static_cast<long>(pair.rows.size()) == spec.samples + 1;
         if (is_last || (is_whole && is_sharp(pair))) return pair;
     }
+}
+
+double Certificate::run_until_s() const {
+    double least = INFINITY;
+    for (const auto& run : runs) least = std::min(least, run.until_s.value_or(0));
+    return least;
 }
 
 }  // namespace doppel

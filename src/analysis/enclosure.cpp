@@ -3,8 +3,8 @@
 #include "analysis/ball_series.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace doppel {
@@ -86,13 +86,10 @@ private:
     Number coefficient_;
 };
 
-/// The order of the series.
+/// The order of the series: 24, 38 or 70.
 template <class Scalar>
-constexpr int order_of = 24;
-template <>
-constexpr int order_of<Quad> = 38;
-template <>
-constexpr int order_of<Wide> = 70;
+constexpr int order_of = 12 + (5 * std::numeric_limits<Scalar>::digits + 11) / 22;
+static_assert(order_of<double> == 24 && order_of<Quad> == 38 && order_of<Wide> == 70);
 
 using Box = Eigen::Array4d;  // radii
 

@@ -37,17 +37,17 @@ std::vector<std::string> certified_columns(const Scene& scene) {
     return columns;
 }
 
-void write_rows(const Scene& scene, const CertifiedPair& pair, const std::filesystem::path& place) {
+void write_rows(const Scene& scene, const Certificate& proved, const std::filesystem::path& place) {
     Csv table(place, certified_columns(scene));
     const auto add = [&](const Interval& bounds) {
         table.add(bounds.low);
         table.add(bounds.high);
     };
-    for (std::size_t n = 0; n < pair.rows.size(); ++n) {
+    for (std::size_t n = 0; n < proved.rows.size(); ++n) {
         table.add(static_cast<long>(n));
         table.add(scene.time(static_cast<long>(n)));
-        for (const auto& side : pair.rows[n].sides) std::for_each(side.begin(), side.end(), add);
-        if (pair.has_distance()) add(pair.rows[n].distance);
+        for (const auto& side : proved.rows[n].sides) std::for_each(side.begin(), side.end(), add);
+        if (proved.has_distance()) add(proved.rows[n].distance);
         table.end_row();
     }
     table.finish();
@@ -67,7 +67,7 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
                                        [&](long done, long total) {
                                            report({done, total});
                                        });
-    write_rows(scene, proved.pair, place);
+    write_rows(scene, proved, place);
     parts.finished(files[0]);
     RunResult result;
     result.samples = proved.last() + 1;

@@ -162,9 +162,9 @@ inline Ball<Wide> ball_of_decimal(std::string_view text) {
 /// π, from its first 80 digits.
 template <class B>
 B pi_ball() {
-    static const typename B::InWide pi(
+    static const typename B::InWide known(
         Wide("3.1415926535897932384626433832795028841971693993751058209749445923078164062862089"), 1e-76);
-    return B(pi);
+    return B(known);
 }
 
 template <class Scalar, class Count>

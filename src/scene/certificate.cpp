@@ -57,14 +57,14 @@ void follow_runs(const Scene& scene, Certificate& proved, const std::atomic<bool
     std::vector<bool> has_left(proved.runs.size());
     PairRun run(scene);
     try {
-        for (const auto& row : proved.pair.rows) {
+        for (const auto& row : proved.rows) {
             const auto state = run.next(stop);
             for (std::size_t i = 0; i < proved.runs.size(); ++i) {
                 const auto error = error_of(i == 0 ? state.a : state.b, row.sides[i]);
                 auto& [until, beyond] = proved.runs[i];
-                has_left[i] = has_left[i] || !(error.high <= proved.radius);
+                has_left[i] = has_left[i] || !(error.high <= proved.run_radius);
                 if (!has_left[i]) until = scene.time(state.sample);
-                if (!beyond && error.low > proved.radius) beyond = scene.time(state.sample);
+                if (!beyond && error.low > proved.run_radius) beyond = scene.time(state.sample);
             }
         }
     } catch (const RunFailure&) {  // the run ends there
@@ -72,12 +72,12 @@ void follow_runs(const Scene& scene, Certificate& proved, const std::atomic<bool
 }
 
 /// A pair of larger distances diverges no later.
-std::optional<Interval> divergence_of(const Scene& scene, const CertifiedPair& pair) {
+std::optional<Interval> divergence_of(const Scene& scene, const Certificate& proved) {
     Divergence earliest, latest;
-    for (std::size_t n = 0; n < pair.rows.size(); ++n) {
+    for (std::size_t n = 0; n < proved.rows.size(); ++n) {
         const double time = scene.time(static_cast<long>(n));
-        earliest.add(time, pair.rows[n].distance.high);
-        latest.add(time, pair.rows[n].distance.low);
+        earliest.add(time, proved.rows[n].distance.high);
+        latest.add(time, proved.rows[n].distance.low);
     }
     if (!earliest.since() || !latest.since()) return std::nullopt;
     return Interval{*earliest.since(), *latest.since()};
@@ -106,9 +106,10 @@ Certificate certificate_of(const Scene& scene, double radius, int jobs, const st
                            const std::function<void(long, long)>& report) {
     const CertifiedPairSpec spec{
         .interval = scene.a.motion.sample_interval, .samples = scene.samples, .jobs = jobs, .report = report};
-    Certificate all{certified_pair(systems_of(scene), spec, stop), radius};
+    auto all = certified_pair(systems_of(scene), spec, stop);
+    all.run_radius = radius;
     follow_runs(scene, all, stop);
-    all.diverged_s = divergence_of(scene, all.pair);
+    all.diverged_s = divergence_of(scene, all);
     return all;
 }
 
@@ -120,28 +121,22 @@ std::vector<double> certified_radii(const Scene& scene, int bits, const std::ato
     return radii;
 }
 
-double Certificate::run_until_s() const {
-    double least = runs.front().until_s.value_or(0);
-    for (const auto& run : runs) least = std::min(least, run.until_s.value_or(0));
-    return least;
-}
-
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved) {
     std::vector<std::string> all{fmt::format("the true motion is proved until {:.6g} s in {}: angles within {:.1e} rad",
-                                             scene.time(proved.last()), bits_words(proved.pair.bits),
-                                             proved.pair.rows.back().radius)};
+                                             scene.time(proved.last()), bits_words(proved.bits),
+                                             proved.rows.back().radius)};
     for (std::size_t i = 0; i < proved.runs.size(); ++i) {
         const auto& run = proved.runs[i];
         auto words = run.until_s ? fmt::format("proved within {:g} rad of the true motion until {:.6g} s",
-                                               proved.radius, *run.until_s)
-                                 : fmt::format("not proved within {:g} rad of the true motion", proved.radius);
+                                               proved.run_radius, *run.until_s)
+                                 : fmt::format("not proved within {:g} rad of the true motion", proved.run_radius);
         if (run.beyond_s) words += fmt::format(", and farther from it at {:.6g} s", *run.beyond_s);
         all.push_back(fmt::format("side {}: its run is {}", scene.letters()[i], words));
     }
-    if (proved.pair.has_distance())
+    if (proved.has_distance())
         all.push_back(fmt::format("the true distance at {:.6g} s is between {:.10g} and {:.10g}",
-                                  scene.time(proved.last()), proved.pair.rows.back().distance.low,
-                                  proved.pair.rows.back().distance.high));
+                                  scene.time(proved.last()), proved.rows.back().distance.low,
+                                  proved.rows.back().distance.high));
     if (const auto& time = proved.diverged_s)
         all.push_back(fmt::format("the true motions diverge at {:.6g} s{}", time->low,
                                   time->low == time->high ? "" : fmt::format(" to {:.6g} s", time->high)));
@@ -151,15 +146,15 @@ std::vector<std::string> certificate_words(const Scene& scene, const Certificate
 Json certificate_json(const Scene& scene, const Certificate& proved) {
     const auto number = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
     const auto interval = [](const Interval& x) { return Json{x.low, x.high}; };
-    Json json{{"bits", proved.pair.bits},
+    Json json{{"bits", proved.bits},
               {"until_s", scene.time(proved.last())},
               {"to_the_end", proved.last() == scene.samples},
-              {"largest_radius_rad", proved.pair.rows.back().radius},
-              {"run_radius_rad", proved.radius}};
+              {"largest_radius_rad", proved.rows.back().radius},
+              {"run_radius_rad", proved.run_radius}};
     for (std::size_t i = 0; i < proved.runs.size(); ++i)
         json[std::string(1, scene.letters()[i])] = {{"run_proved_until_s", number(proved.runs[i].until_s)},
                                                     {"run_proved_beyond_s", number(proved.runs[i].beyond_s)}};
-    json["distance"] = proved.pair.has_distance() ? interval(proved.pair.rows.back().distance) : Json(nullptr);
+    json["distance"] = proved.has_distance() ? interval(proved.rows.back().distance) : Json(nullptr);
     json["diverged_s"] = proved.diverged_s ? interval(*proved.diverged_s) : Json(nullptr);
     return json;
 }

@@ -1,5 +1,6 @@
 #include "analysis/enclosure.hpp"
 
+#include "analysis/ball_series.hpp"
 #include "integrate/motion.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 namespace doppel {
@@ -104,6 +106,28 @@ std::array<double, 4> corner(unsigned index, double radius) {
     std::array<double, 4> shift;
     for (unsigned i = 0; i < 4; ++i) shift[i] = (index >> i & 1u) != 0 ? radius : -radius;
     return shift;
+}
+
+TEST(BallSeries, ContainsAClosedFormAndRefusesWhatItCannotBound) {
+    using B = Ball<Quad>;
+    BallSeries<B> series(20);
+    const auto y = series.state(B(1));
+    series.set_rate(y, y * y);  // y = 1/(1 − t)
+    series.expand(B(1) / B(4));
+    ASSERT_TRUE(series.find_remainders());
+    const auto error = [&](bool has_remainder) {
+        const B end = series.value(y.node(), B(1), has_remainder);
+        return abs(Quad(end.center - Quad(4) / 3)) / Quad(end.radius);
+    };
+    EXPECT_LE(error(true), 1);
+    EXPECT_GT(error(false), 1e6);
+    series.expand(B(2));  // beyond the singularity
+    EXPECT_FALSE(series.find_remainders());
+    series.clear();
+    const auto root = series.state(B(1));
+    series.set_rate(root, B(1) / root);
+    series.expand(B(1) / B(4));
+    EXPECT_THROW(series.find_remainders(), std::logic_error);
 }
 
 TEST(Enclosure, ContainsTheReferenceInQuad) {
