@@ -210,7 +210,8 @@ std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& 
     return pairs;
 }
 
-/// A picture NAME to draw, and its goldens: EXPECTED, or in the folder EXPECTED. Throws Error (exit 2) if there is none.
+/// A picture NAME to draw, and its goldens: EXPECTED, or in the folder EXPECTED. Throws Error (exit 2) if there are
+/// none.
 ComparedPicture single_picture(const CompareOptions& options, const std::string& name) {
     std::error_code ignored;
     const fs::path expected = options.expected;

@@ -18,8 +18,8 @@ struct SimulationEstimate {
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop);
 
 /// What it takes to render a scene; each shard simulates the motion again. The process's memory counts from
-/// reset_peak_memory() on. Draws and writes some frames in a temporary folder, for about a second. Throws as run() does,
-/// for example if there is no OpenGL.
+/// reset_peak_memory() on. Draws and writes some frames in a temporary folder, for about a second. Throws as run()
+/// does, for example if there is no OpenGL.
 Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop);
 
 }  // namespace doppel

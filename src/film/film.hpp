@@ -65,8 +65,8 @@ struct Schedule {
 
 Schedule schedule_of(const Scene& scene);
 
-/// The frames of the film that a run draws: those of its part, none for a merge, otherwise all from frame `first` of the
-/// motion on.
+/// The frames of the film that a run draws: those of its part, none for a merge, otherwise all from frame `first` of
+/// the motion on.
 FrameRange drawn_frames(const Scene& scene, const RunOptions& options, long first);
 
 /// The opacity of a card on frame `k` of `count`. It fades out over its last half second (or in over its first), but at

@@ -79,7 +79,7 @@ bool is_part_complete(const Scene& scene, const Shard& shard, const fs::path& fo
 }
 
 std::vector<fs::path> parts_in(const Scene& scene, const fs::path& folder) {
-    return all_parts(folder, scene.preset.name, [&](const fs::path& path) {
+    return all_parts(folder, scene.preset.name, ExitCode::try_again, [&](const fs::path& path) {
         const auto shard = shard_in(BlockFile(path, film_part), path, scene);
         frames_of(scene, shard);
         return shard;

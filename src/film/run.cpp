@@ -119,8 +119,8 @@ Part part_of_frames(const Scene& scene, const RunOptions& options) {
     return {first, last, frames.at(first), last == frames.count ? Moment{scene.samples + 1} : frames.at(last)};
 }
 
-/// Throws Error (exit 2) as the two above, and if the poster's frame is not included. Of a part of the film, all frames up
-/// to its last one.
+/// Throws Error (exit 2) as the two above, and if the poster's frame is not included. Of a part of the film, all frames
+/// up to its last one.
 Part part_of(const Scene& scene, const RunOptions& options) {
     if (options.is_part()) {
         const long last = schedule_of(scene).motion_frame(drawn_frames(scene, options, 0).last - 1) + 1;

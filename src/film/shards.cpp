@@ -1,6 +1,5 @@
 #include "film/shards.hpp"
 
-#include "base/error.hpp"
 #include "output/files.hpp"
 
 #include <fmt/ranges.h>
@@ -42,7 +41,7 @@ void check_identity(const fs::path& path, const Json& header, const Json& wanted
     }
 }
 
-std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
+std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name, ExitCode none,
                                 const std::function<Shard(const fs::path&)>& take) {
     std::vector<fs::path> parts;  // by number; empty if not seen yet
     fs::path first;
@@ -63,8 +62,10 @@ std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
             seen = path;
         }
     if (parts.empty())
-        throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
-                        folder.string(), name);
+        throw Error(none,
+                    fmt::format("{} contains no part of {}; make them with the same command, --shard I/N in place "
+                                "of --merge",
+                                folder.string(), name));
     if (const auto missing = missing_parts(parts); !missing.empty())
         throw try_again("{}: missing parts: {}", folder.string(), missing);
     return parts;

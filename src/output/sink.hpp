@@ -27,7 +27,8 @@ public:
     /// order. Only for formats with parts.
     virtual void add(BlockFile& /*part*/) { throw std::logic_error("this format has no parts"); }
 
-    /// A chapter of the film that begins with this frame, after the chapter before; where the file can contain none, it is left out.
+    /// A chapter of the film that begins with this frame, after the chapter before; where the file can contain none, it
+    /// is left out.
     virtual void add_chapter(long /*frame*/, const std::string& /*title*/) {}
 
     /// Writes all frames and completes the file.
