@@ -96,17 +96,8 @@ void certify_all(const CertifyOptions& options) {
         return;
     }
     const Destination to(options.out, scenes.size(), ".csv");
-    const auto style = progress_style(options.progress);
-    ignore_sigpipe();
-    for (const auto& scene : scenes) {
-        ProgressReport report(style, scene.preset.name, "samples", to.streamed());
-        try {
-            certify(scene, options, to.folder(), report);
-        } catch (...) {
-            report.clear();
-            throw;
-        }
-    }
+    work_on_all(scenes, options.progress, "samples", to.streamed(),
+                [&](const Scene& scene, ProgressReport& report) { certify(scene, options, to.folder(), report); });
 }
 
 }  // namespace

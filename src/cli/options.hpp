@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/terminal.hpp"
 #include "film/run.hpp"
 #include "output/files.hpp"
 #include "scene/preset.hpp"
@@ -9,6 +10,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -83,6 +85,10 @@ void check_names(const std::vector<std::string>& names, const std::vector<std::s
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
 /// The files that these runs read.
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
+
+/// Calls work(scene, report) for each scene, with progress in `unit`. `streamed` as for ProgressReport.
+void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work);
 
 /// The values of --set.
 std::vector<Override> overrides_of(const PresetOptions& options);

@@ -72,24 +72,22 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
     return inputs;
 }
 
-namespace {
-
-/// Calls work(scene, report) for each scene and reports progress in `unit`. `streamed` as for ProgressReport.
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
-                 const std::string& streamed,
-                 const std::function<RunResult(const Scene&, const std::function<void(const Progress&)>&)>& work) {
+                 const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work) {
     const auto style = progress_style(progress);
     ignore_sigpipe();
     for (const auto& scene : scenes) {
         ProgressReport report(style, scene.preset.name, unit, streamed);
         try {
-            report.done(work(scene, std::ref(report)));
+            work(scene, report);
         } catch (...) {
             report.clear();
             throw;
         }
     }
 }
+
+namespace {
 
 void add_recording_option(CLI::App& command, std::string& file, const std::string& help) {
     refuse_dash(add_value(command, "--recording", file, "FILE", help));
@@ -117,7 +115,9 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
         options.out == "-" && run_options.pictures && !run_options.merge && video.format_row().is_streamed();
     const bool counts_frames = run_options.pictures && video.format != FilmFormat::html;
     work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed(),
-                [&](const Scene& scene, const auto& report) { return run(scene, run_options, stop, report); });
+                [&](const Scene& scene, ProgressReport& report) {
+                    report.done(run(scene, run_options, stop, std::ref(report)));
+                });
 }
 
 /// Sets the range from --frames, or from --from and --to.
@@ -221,8 +221,8 @@ void add_still(CLI::App& app) {
                              .gl = gl_named(options->gl),
                              .replacing = {inputs_of(options->presets, scenes), options->force}};
         const auto& stop = watch_interrupts();
-        work_on_all(scenes, options->progress, "samples", to.streamed(), [&](const Scene& scene, const auto& report) {
-            return draw_still(scene, at, format, run, stop, report);
+        work_on_all(scenes, options->progress, "samples", to.streamed(), [&](const Scene& scene, auto& report) {
+            report.done(draw_still(scene, at, format, run, stop, std::ref(report)));
         });
     });
 }

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/shared_library.hpp"
+#include "output/blocks.hpp"
 #include "output/libav_encoder.hpp"
 #include "output/workers.hpp"
 
@@ -15,7 +16,7 @@ extern "C" {
 #include <fmt/ranges.h>
 #include <libdeflate.h>
 
-#include <cerrno>
+#include <filesystem>
 #include <new>
 #include <system_error>
 #include <utility>
@@ -89,77 +90,9 @@ private:
     const std::unique_ptr<AVFilterGraph, Free> graph_;
 };
 
-/// Stores the frames of a film on disk between two passes: the changed areas of each as compressed RGBA. The file has
-/// no name and is deleted with this object. All functions throw Error (exit 4) with the path and the reason.
-class Spool {
-public:
-    /// The file is on the same file system as `film`.
-    explicit Spool(const std::filesystem::path& film)
-        : path_(film.string()),
-          file_(create_file(path_ + ".spool")),
-          compressor_(checked(libdeflate_alloc_compressor(1))),
-          decompressor_(checked(libdeflate_alloc_decompressor())) {
-        std::filesystem::remove(path_ + ".spool");
-    }
-
-    void write(const SampledAreas& frame) {
-        const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas),
-                          bound = libdeflate_deflate_compress_bound(compressor_.get(), size);
-        std::uint8_t* packed = packed_.make_room(bound);
-        const Header header{frame.areas.size(),
-                            libdeflate_deflate_compress(compressor_.get(), frame.bytes.data(), size, packed, bound)};
-        put(&header, sizeof header);
-        put(frame.areas.data(), frame.areas.size() * sizeof(Rect));
-        put(packed, header.packed);
-        ++frames_;
-    }
-
-    /// Ends the writing; read() begins with the first frame.
-    void rewind() {
-        if (std::fflush(file_.get()) != 0) fail("cannot be written");
-        if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail("cannot be read");
-    }
-
-    /// Reads the next frame, in the order of writing.
-    void read(SampledAreas& frame) {
-        Header header{};
-        get(&header, sizeof header);
-        frame.areas.resize(header.areas);
-        get(frame.areas.data(), header.areas * sizeof(Rect));
-        std::uint8_t* packed = packed_.make_room(header.packed);
-        get(packed, header.packed);
-        const std::size_t size = byte_count(AV_PIX_FMT_RGBA, frame.areas);
-        if (libdeflate_deflate_decompress(decompressor_.get(), packed, header.packed, frame.bytes.make_room(size), size,
-                                          nullptr) != LIBDEFLATE_SUCCESS)
-            fail("is damaged");
-    }
-
-    long frames() const { return frames_; }
-
-private:
-    /// Precedes each frame; its areas and their compressed bytes follow.
-    struct Header {
-        std::size_t areas, packed;
-    };
-
-    void put(const void* bytes, std::size_t count) {
-        if (count > 0 && std::fwrite(bytes, 1, count, file_.get()) != count) fail("cannot be written");
-    }
-    void get(void* bytes, std::size_t count) {
-        if (count > 0 && std::fread(bytes, 1, count, file_.get()) != count) fail("cannot be read");
-    }
-    [[noreturn]] void fail(const char* what) const {
-        throw Error(code_of_errno(errno), fmt::format("{}: its frames on the disk: {}: {}", path_, what,
-                                                      std::generic_category().message(errno)));
-    }
-
-    const std::string path_;
-    Stream file_;
-    Owned<libdeflate_compressor, libdeflate_free_compressor> compressor_;
-    Owned<libdeflate_decompressor, libdeflate_free_decompressor> decompressor_;
-    Buffer packed_;
-    long frames_ = 0;
-};
+/// The frames of a film wait on the disk between two passes: a block contains the changed areas of one, and their
+/// bytes, compressed.
+constexpr BlockKind waiting_frames{R"({"file":"doppel frames"})", "has no frames", "is damaged"};
 
 /// Converts RGBA to opaque BGRA in place.
 void make_opaque_bgra(std::uint8_t* pixels, std::size_t bytes) {
@@ -190,12 +123,19 @@ public:
     GifSink(const std::filesystem::path& place, const VideoOptions& options, const std::atomic<bool>& stop)
         : options_(options),
           encoder_(place, encoding_of(options), stop),
-          spool_(place),
           path_(place.string()),
+          waiting_(path_ + ".frames"),
+          written_(waiting_, std::string(waiting_frames.start)),
           frame_(make_frame(options.size, AV_PIX_FMT_BGRA)),
           colours_(path_, source("film", options.size) + ",palettegen=stats_mode=full"),
           counting_(1, affordable(byte_count(AV_PIX_FMT_BGRA, all_of(options.size)), 8),
                     [this](SampledAreas& changes) { count(changes); }) {}
+    GifSink(const GifSink&) = delete;
+    GifSink& operator=(const GifSink&) = delete;
+    ~GifSink() override {
+        std::error_code ignored;
+        std::filesystem::remove(waiting_, ignored);
+    }
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
         SampledAreas changes = spare_.take();
@@ -205,15 +145,21 @@ public:
 
     void finish() override {
         counting_.finish();
+        written_.finish();
         encode();
         encoder_.finish(comment_and_end(options_.metadata), 1);
     }
 
 private:
     void count(SampledAreas& changes) {
-        make_opaque_bgra(changes.bytes.data(), byte_count(AV_PIX_FMT_RGBA, changes.areas));
-        show(changes, spool_.frames(), colours_);
-        spool_.write(changes);
+        const auto size = byte_count(AV_PIX_FMT_RGBA, changes.areas);
+        make_opaque_bgra(changes.bytes.data(), size);
+        show(changes, frames_++, colours_);
+        packed_.resize(libdeflate_deflate_compress_bound(compressor_.get(), size));
+        packed_.resize(
+            libdeflate_deflate_compress(compressor_.get(), changes.bytes.data(), size, packed_.data(), packed_.size()));
+        written_(changes.areas, packed_);
+        written_.end_block();
         spare_.give_back(std::move(changes));
     }
 
@@ -235,10 +181,15 @@ private:
         palette->pts = 0;
         indices.give("buffer@palette", palette.get());
         indices.give("buffer@palette", nullptr);
-        spool_.rewind();
+        BlockFile frames(waiting_, waiting_frames);
+        std::filesystem::remove(waiting_);
         SampledAreas changes = spare_.take();
-        for (long k = 0; k < spool_.frames(); ++k) {
-            spool_.read(changes);
+        for (long k = 0; frames.next(); ++k) {
+            frames(changes.areas, packed_);
+            const auto size = byte_count(AV_PIX_FMT_RGBA, changes.areas);
+            if (libdeflate_deflate_decompress(decompressor_.get(), packed_.data(), packed_.size(),
+                                              changes.bytes.make_room(size), size, nullptr) != LIBDEFLATE_SUCCESS)
+                throw frames.damaged();
             show(changes, k, indices);
             indices.take(encoder_.frame());
             const std::int64_t start = time_of(k), duration = time_of(k + 1) - start;
@@ -253,8 +204,13 @@ private:
 
     const VideoOptions options_;
     Encoder encoder_;
-    Spool spool_;
-    const std::string path_;
+    const std::string path_, waiting_;
+    BlockFile written_;
+    long frames_ = 0;
+    std::string packed_;
+    const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor_{checked(libdeflate_alloc_compressor(1))};
+    const Owned<libdeflate_decompressor, libdeflate_free_decompressor> decompressor_{
+        checked(libdeflate_alloc_decompressor())};
     Libav<AVFrame> frame_;
     Filters colours_;
     Pool<SampledAreas> spare_;
