@@ -17,7 +17,8 @@ inline constexpr double usual_run_radius = 0.5;
 /// Throws Error (exit 2) unless the sides are two ideal links, with or without droplets.
 void check_provable(const Scene& scene);
 
-/// What is proved about a scene. Throws Error: as check_provable(); exit 130 soon after `stop` is set. `report`: samples done and to do.
+/// What is proved about a scene. `report`: samples done and to do. Throws Error: as check_provable(); exit 130 soon
+/// after `stop` is set.
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
                            const std::function<void(long, long)>& report = {});
 
