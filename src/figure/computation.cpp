@@ -47,21 +47,19 @@ bool Computation::take(const std::filesystem::path& path, bool must_be) {
                         path.string());
     part.take(*figure_.experiment, known_);
     has_record_ = true;
+    is_whole_ = !part.is_damaged;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
     kept_units_ = done_units_;
-    report_.note(
-        fmt::format("resuming from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
-                    part.damaged_line == 0
-                        ? ""
-                        : fmt::format("; line {} is damaged, and what follows is computed again", part.damaged_line)));
+    report_.note(fmt::format("resuming from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
+                             part.is_damaged ? "; the rest is damaged or incomplete, and computed again" : ""));
     return true;
 }
 
 std::filesystem::path Computation::publish_shard() {
-    if (groups_.empty() && type_of(record_) == std::filesystem::file_type::not_found && has_record_) return shard();
+    if (groups_.empty() && type_of(record_) == std::filesystem::file_type::not_found && is_whole_) return shard();
     if (!writer_) writer_.emplace(record_, header_, known_);
-    writer_->close();
+    writer_->finish();
     rename_file(record_, shard());
     return shard();
 }

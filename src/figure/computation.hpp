@@ -25,8 +25,8 @@ struct ComputationReport {
 /// results in a file (resume_name). If it is destroyed before it is complete, the file stays.
 class Computation {
 public:
-    /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to the first damaged
-    /// line. `threads` is only used in messages. Throws Error (exit 4) if the record is something else; it is then left
+    /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to a damaged
+    /// one. `threads` is only used in messages. Throws Error (exit 4) if the record is something else; it is then left
     /// unchanged.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
                 int threads, ComputationReport report);
@@ -67,7 +67,7 @@ private:
     std::mutex mutex_;  // guards all members below
     KnownTrials known_;
     std::optional<PartWriter> writer_;
-    bool has_record_ = false;
+    bool has_record_ = false, is_whole_ = false;  // results in a file, and that file is not damaged
     std::size_t groups_done_ = 0;
     double start_s_ = 0, flushed_s_ = 0, cpu_s_ = 0;
     double done_units_ = 0, kept_units_ = 0, total_units_ = 0, computed_units_ = 0;

@@ -5,54 +5,18 @@
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
 
-#include <algorithm>
-#include <charconv>
-#include <cstdio>
-#include <memory>
-#include <string_view>
+#include <utility>
 
 namespace doppel {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view mark = "doppel trials";  // the kind of file
-constexpr int format = 2;                           // of the lines; format 1 had no checksums
-constexpr std::size_t longest_header = 1 << 16, longest_line = std::size_t{1} << 32;
-constexpr std::size_t max_trials = 100'000'000;
-constexpr std::size_t checksum_digits = 16, name_digits = 12;
-
-/// Reads a regular file line by line; follows no link.
-class LineReader {
-public:
-    explicit LineReader(const fs::path& path) : path_(path) {
-        const auto type = type_of(path);
-        if (type == fs::file_type::symlink) throw error("is a symbolic link");
-        if (type != fs::file_type::regular && type != fs::file_type::not_found) throw error("is no regular file");
-        file_ = open_file(path);
-    }
-
-    /// Reads the next line, without its end. Returns false after the last line, and for an incomplete line (its writer
-    /// was killed) or one longer than `maximum` bytes; `line` then contains its beginning. Throws Error (exit 4).
-    bool next(std::string& line, std::size_t maximum) {
-        line.clear();
-        for (int c = 0; (c = getc_unlocked(file_.get())) != EOF && line.size() <= maximum;) {
-            if (c == '\n') return true;
-            line += static_cast<char>(c);
-        }
-        if (std::ferror(file_.get())) throw cannot(path_, "read");
-        return false;
-    }
-
-    /// "PATH: WHY; what to do about it" (exit 4).
-    Error error(std::string_view why) const {
-        return io_failed("{}: {}; remove it, or give another folder with --out", path_.string(), why);
-    }
-
-private:
-    fs::path path_;
-    Stream file_;
-};
+constexpr BlockKind trials_file{R"({"file":"doppel trials","format":3,)",
+                                "is no file of trials of this version, or its first line is damaged; remove it, or "
+                                "give another folder with --out",
+                                "is damaged or incomplete"};
+constexpr std::size_t max_trials = 100'000'000, name_digits = 12;
 
 /// What all parts of a figure agree on.
 Json identity(const PartHeader& header) {
@@ -64,62 +28,23 @@ Json identity(const PartHeader& header) {
 }
 
 Json json_of(const PartHeader& header) {
-    Json json{{"file", mark}, {"format", format}};
+    Json json{{"file", "doppel trials"}, {"format", 3}};
     json.update(identity(header));
     json.update({{"shard", header.shard}, {"of", header.of}});
     return json;
 }
 
-/// The checksum of a line in the file with this header.
-std::string checksum(const std::string& header, std::string_view line) {
-    return sha256_of_text(fmt::format("{}\n{}", header, line)).substr(0, checksum_digits);
-}
-
-/// Parses "TRIAL,a,b,c;CHECKSUM"; returns false if the line is invalid.
-bool read_line(std::string_view line, const std::string& header, PartFile::Trial& trial) {
-    if (line.size() <= checksum_digits) return false;
-    const auto text = line.substr(0, line.size() - checksum_digits - 1);
-    if (line[text.size()] != ';' || line.substr(text.size() + 1) != checksum(header, text)) return false;
-    const char *at = text.data(), *const end = at + text.size();
-    auto result = std::from_chars(at, end, trial.number);
-    if (result.ec != std::errc()) return false;
-    while (result.ptr != end) {
-        if (*result.ptr != ',') return false;
-        double value = 0;
-        result = std::from_chars(result.ptr + 1, end, value);
-        if (result.ec != std::errc()) return false;
-        trial.numbers.push_back(value);
-    }
-    return true;
-}
-
-/// A whole number from 1 to `maximum`; otherwise throws as the JSON library does.
-std::size_t count(const Json& json, const char* key, std::size_t maximum) {
-    const auto& value = json.at(key);
-    if (!value.is_number_unsigned() || value.get<std::size_t>() < 1 || value.get<std::size_t>() > maximum)
-        throw Json::other_error::create(0, "out of range", nullptr);
-    return value.get<std::size_t>();
-}
-
-PartHeader header_from(const Json& json) {
-    const auto of = count(json, "of", max_parts);
-    return {json.at("figure"),
-            json.at("version"),
-            json.at("revision"),
-            json.at("preset_sha256"),
-            count(json, "trials", max_trials),
-            static_cast<int>(count(json, "shard", of)),
-            static_cast<int>(of)};
-}
-
-PartHeader read_header(const std::string& line, const LineReader& file) {
+/// Throws Error (exit 4) if it is invalid.
+PartHeader read_header(const BlockFile& file) {
     try {
-        const auto json = Json::parse(line);
-        if (json.at("file") != mark) throw Json::other_error::create(0, "another file", nullptr);
-        if (json.value("format", Json(1)) != format) throw file.error("was written by another version of Doppel");
-        return header_from(json);
+        const auto json = Json::parse(file.header());
+        const auto shard = shard_of(json);
+        const auto& trials = json.at("trials");
+        if (!shard || !trials.is_number_unsigned() || trials < 1 || trials > max_trials) throw file.other();
+        return {json.at("figure"), json.at("version"), json.at("revision"), json.at("preset_sha256"), trials,
+                shard->number,     shard->of};
     } catch (const nlohmann::json::exception&) {
-        throw file.error("is no file of trials, or its first line is damaged");
+        throw file.other();
     }
 }
 
@@ -165,10 +90,9 @@ std::vector<fs::path> other_resumes(const fs::path& folder, const PartHeader& he
 }
 
 void PartFile::take(const Experiment& experiment, KnownTrials& into) {
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-        auto& [number, numbers] = trials[i];
+    for (auto& [number, numbers] : trials) {
         if (number < header.first() || number >= header.last() || !experiment.fits(number, numbers)) {
-            damaged_line = i + 2;
+            is_damaged = true;
             break;
         }
         into[number] = std::move(numbers);
@@ -177,35 +101,30 @@ void PartFile::take(const Experiment& experiment, KnownTrials& into) {
 }
 
 PartFile read_part_file(const fs::path& path) {
-    LineReader file(path);
-    PartFile part;
-    std::string header, line;
-    file.next(header, longest_header);
-    part.header = read_header(header, file);
-    for (std::size_t number = 2; file.next(line, longest_line); ++number) {
-        PartFile::Trial trial{};
-        if (!read_line(line, header, trial)) {
-            part.damaged_line = number;
-            break;
-        }
-        part.trials.push_back(std::move(trial));
+    if (type_of(path) == fs::file_type::symlink)
+        throw io_failed("{} is a symbolic link; remove it, or give another folder with --out", path.string());
+    BlockFile file(path, trials_file);
+    PartFile part{.header = read_header(file)};
+    try {
+        for (PartFile::Trial trial{}; !file.is_read() && file.next(); part.trials.push_back(trial))
+            file(trial.number, trial.numbers);
+    } catch (const DamagedFile&) {
+        part.is_damaged = true;
     }
     return part;
 }
 
 PartWriter::PartWriter(const fs::path& path, const PartHeader& header, const KnownTrials& known)
-    : file_(new_part_path(path)), header_(json_of(header).dump()) {
-    file_.write(header_ + "\n");
+    : file_(new_part_path(path), json_of(header).dump()) {
     for (std::size_t trial = 0; trial < known.size(); ++trial)
         if (!known[trial].empty()) add(trial, known[trial]);
     flush();
-    rename_file(file_.path(), path);
+    rename_file(path.string() + ".part", path);
 }
 
-void PartWriter::add(std::size_t trial, const TrialNumbers& numbers) {
-    auto line = fmt::format("{}", trial);
-    for (const double x : numbers) fmt::format_to(std::back_inserter(line), ",{}", x);
-    file_.write(fmt::format("{};{}\n", line, checksum(header_, line)));
+void PartWriter::add(std::size_t trial, TrialNumbers numbers) {
+    file_(trial, numbers);
+    file_.end_block();
 }
 
 KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, const std::atomic<bool>& stop) {
@@ -218,12 +137,11 @@ KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, con
         const Shard shard{header.shard, header.of};
         check_identity(path, identity(header), identity(wanted), shard, "compute");
         part.take(*figure.experiment, all);
-        const auto refuse = [&](const std::string& why) {
-            throw io_failed("{} {}; compute it again with --shard {}/{}", path.string(), why, shard.number, shard.of);
-        };
-        if (part.damaged_line > 0) refuse(fmt::format("is damaged in line {}", part.damaged_line));
         for (std::size_t trial = header.first(); trial < header.last(); ++trial)
-            if (all[trial].empty()) refuse(fmt::format("is not whole: trial {} is missing", trial));
+            part.is_damaged = part.is_damaged || all[trial].empty();
+        if (part.is_damaged)
+            throw io_failed("{} is damaged or incomplete; compute it again with --shard {}/{}", path.string(),
+                            shard.number, shard.of);
         return shard;
     });
     return all;

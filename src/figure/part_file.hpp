@@ -2,7 +2,7 @@
 
 #include "figure/preset.hpp"
 #include "film/shards.hpp"
-#include "output/files.hpp"
+#include "output/blocks.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -42,34 +42,30 @@ struct PartFile {
         TrialNumbers numbers;
     };
     PartHeader header;
-    std::vector<Trial> trials;     // one for each line, up to the first damaged one
-    std::size_t damaged_line = 0;  // number of the damaged line, the header being 1; 0 = none
+    std::vector<Trial> trials = {};  // in the file's order, up to a damaged or incomplete one
+    bool is_damaged = false;         // or incomplete: its writer was killed
 
-    /// Moves the numbers to their trials. A trial with invalid numbers (Experiment::fits) counts as a damaged line.
+    /// Moves the numbers to their trials. A trial with invalid numbers (Experiment::fits) counts as damaged.
     /// `into` must have the size of all trials.
     void take(const Experiment& experiment, KnownTrials& into);
 };
 
-/// Reads a file that PartWriter wrote. An incomplete last line (the writer was killed) is left out. Each line has a
-/// checksum, so that every number is the one that was written. Throws Error (exit 4) if the file cannot be read or is
-/// something else.
+/// Reads a file that PartWriter wrote, or is writing. Throws Error (exit 4) if it cannot be read or is something else.
 PartFile read_part_file(const std::filesystem::path& path);
 
-/// Writes trials when they are done, so that a run can be resumed: a line of JSON, then for each trial a line "TRIAL,
-/// NUMBERS;CHECKSUM". Throws Error (exit 4).
+/// Writes trials when they are done, each a block, so that a run can be resumed. Throws Error (exit 4).
 class PartWriter {
 public:
     /// Begins the file with the known trials. An older file is replaced once these are written.
     PartWriter(const std::filesystem::path& path, const PartHeader& header, const KnownTrials& known);
 
-    void add(std::size_t trial, const TrialNumbers& numbers);
+    void add(std::size_t trial, TrialNumbers numbers);
     /// Makes all trials up to now readable for others.
     void flush() { file_.flush(); }
-    void close() { file_.close(); }
+    void finish() { file_.finish(); }
 
 private:
-    OutputFile file_;
-    std::string header_;
+    BlockFile file_;
 };
 
 /// Merges the results of a figure's shards in `folder`. Each must exist once, complete and of this figure. Throws

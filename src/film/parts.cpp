@@ -24,13 +24,10 @@ Json identity(const Scene& scene) {
 /// Reads the header of a part. Throws if it does not belong to the film.
 Shard shard_in(const BlockFile& part, const fs::path& path, const Scene& scene) {
     const auto header = Json::parse(part.header(), nullptr, false);
-    const auto number = [&](const char* key) { return header.is_object() ? header.value(key, Json()) : Json(); };
-    const auto shard = number("shard"), of = number("of");
-    if (!shard.is_number_integer() || !of.is_number_integer() || shard < 1 || of < shard)
-        throw io_failed("{} is damaged; remove it", path.string());
-    const Shard result{shard, of};
-    check_identity(path, header, identity(scene), result, "render");
-    return result;
+    const auto shard = shard_of(header);
+    if (!shard) throw io_failed("{} is damaged; remove it", path.string());
+    check_identity(path, header, identity(scene), *shard, "render");
+    return *shard;
 }
 
 }  // namespace

@@ -24,6 +24,14 @@ std::string missing_parts(const std::vector<fs::path>& parts) {
 
 }  // namespace
 
+std::optional<Shard> shard_of(const Json& header) {
+    const auto number = [&](const char* key) { return header.is_object() ? header.value(key, Json()) : Json(); };
+    const auto shard = number("shard"), of = number("of");
+    if (!shard.is_number_integer() || !of.is_number_integer() || shard < 1 || of < shard || of > max_parts)
+        return std::nullopt;
+    return Shard{shard, of};
+}
+
 void check_identity(const fs::path& path, const Json& header, const Json& wanted, const Shard& shard,
                     std::string_view verb) {
     constexpr std::size_t hash_digits = 12;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ struct Shard {
 
 /// The largest number of parts that a run can be split into.
 inline constexpr int max_parts = 100'000;
+
+/// The keys "shard" and "of" of a header, if they are valid.
+std::optional<Shard> shard_of(const Json& header);
 
 /// Throws Error (exit 2) if a part belongs to another film, figure, preset or version: if its header differs from
 /// `wanted` in one of these keys. `verb` = how a part is made, "render".

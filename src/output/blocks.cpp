@@ -1,7 +1,5 @@
 #include "output/blocks.hpp"
 
-#include "base/error.hpp"
-
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -29,7 +27,7 @@ BlockFile::BlockFile(std::filesystem::path path, const BlockKind& kind)
     constexpr std::size_t longest_header = 1 << 16;
     for (int c = 0; header_.size() < longest_header && (c = getc_unlocked(read_.get())) != EOF && c != '\n';)
         header_ += static_cast<char>(c);
-    if (!header_.starts_with(kind_.start)) throw io_failed("{} {}", path_.string(), kind_.other);
+    if (!header_.starts_with(kind_.start)) throw other();
     left_ -= std::min<std::uintmax_t>(left_, header_.size() + 1);
 }
 
@@ -50,7 +48,7 @@ bool BlockFile::next() {
     read_block(sizeof(head));
     pass(head);
     read_block(head.bytes);
-    if (checksum(block_) != head.checksum) throw damaged();
+    if (checksum(block_) != head.checksum || (block_.empty() && !is_read())) throw damaged();
     return !block_.empty();
 }
 
@@ -60,8 +58,9 @@ void BlockFile::read_block(std::uint64_t bytes) {
     block_.resize(bytes);
     at_ = 0;
     left_ -= bytes;
-    if (std::fread(block_.data(), 1, bytes, read_.get()) != bytes)
-        throw std::ferror(read_.get()) ? cannot(path_, "read") : damaged();
+    if (std::fread(block_.data(), 1, bytes, read_.get()) == bytes) return;
+    if (std::ferror(read_.get())) throw cannot(path_, "read");
+    throw damaged();
 }
 
 /// The number of elements of a vector, each of at least a byte.
@@ -76,10 +75,6 @@ void BlockFile::pass_bytes(void* bytes, std::size_t size) {
     if (size > block_.size() - at_) throw damaged();
     std::memcpy(bytes, block_.data() + at_, size);
     at_ += size;
-}
-
-Error BlockFile::damaged() const {
-    return io_failed("{} {}", path_.string(), kind_.damaged);
 }
 
 }  // namespace doppel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "output/files.hpp"
 
 #include <cstddef>
@@ -24,8 +25,14 @@ inline constexpr BlockKind film_part{R"({"file":"doppel film shard")",
                                      "is no part of a film; remove it, and render this part again",
                                      "is damaged or incomplete; remove it, and render this part again"};
 
+/// A file that is damaged or incomplete (exit 4).
+struct DamagedFile : Error {
+    using Error::Error;
+};
+
 /// Such a file, written or read: the header, a line of JSON; then blocks with checksums; then an empty block, the end.
-/// All functions throw Error (exit 4): if the file cannot be written or read, is damaged, or is something else.
+/// All functions throw Error (exit 4): if the file cannot be written or read, or is something else; DamagedFile if it
+/// is damaged.
 class BlockFile {
 public:
     /// Begins a file.
@@ -41,11 +48,16 @@ public:
         (pass(values), ...);
     }
     void end_block();
+    /// Makes all blocks up to now readable for others.
+    void flush() { written_->flush(); }
     void finish();
     /// Reads the next block. False at the end.
     bool next();
-    /// "PATH is damaged …"
-    Error damaged() const;
+    /// Whether no bytes are left: after a block, its writer has not finished.
+    bool is_read() const { return left_ == 0; }
+    /// "PATH is damaged …", "PATH is no …"
+    DamagedFile damaged() const { return {ExitCode::io_failed, fmt::format("{} {}", path_.string(), kind_.damaged)}; }
+    Error other() const { return io_failed("{} {}", path_.string(), kind_.other); }
 
 private:
     template <class T>

@@ -43,7 +43,7 @@ TEST(Computation, ComputesOnlyWhatARecordDoesNotHave) {
     KnownTrials known(10);
     for (const std::size_t trial : {0u, 1u, 4u, 9u})
         known[trial] = {100.0 + static_cast<double>(trial)};  // numbers that no computation gives
-    PartWriter(record, header_of(figure), known).close();
+    PartWriter(record, header_of(figure), known).finish();
 
     const Resumed resumed(figure, header_of(figure), folder);
     EXPECT_EQ(resumed.computed_units, 6);
@@ -60,7 +60,7 @@ TEST(Computation, ComputesNothingForACompleteRecord) {
     const auto figure = small_sweep();
     const auto record = folder / resume_name(header_of(figure));
     const auto expected = computed(figure);
-    PartWriter(record, header_of(figure), expected).close();
+    PartWriter(record, header_of(figure), expected).finish();
     const Resumed resumed(figure, header_of(figure), folder);
     EXPECT_EQ(resumed.trials, expected);
     EXPECT_EQ(resumed.computed_units, 0);
@@ -80,7 +80,7 @@ TEST(Computation, KeepsARecordOfAnotherRun) {
     headers[5].trials = 11;
     std::set<std::string> names{resume_name(header_of(figure))};
     for (const auto& header : headers) {
-        PartWriter(record, header, wrong).close();
+        PartWriter(record, header, wrong).finish();
         const auto bytes = bytes_of(record);
         expect_error(ExitCode::io_failed, {record.string() + " belongs to another preset or version"},
                      [&] { Resumed(figure, header_of(figure), folder); });
@@ -93,27 +93,27 @@ TEST(Computation, KeepsARecordOfAnotherRun) {
     EXPECT_EQ(bytes_of(record), "my diary");
 }
 
-/// A run is killed at any byte, or a line is damaged: complete trials are kept, all others are computed again.
+/// A run is killed at any byte, or a block is damaged: complete trials are kept, all others are computed again.
 TEST(Computation, ResumesFromARecordTruncatedOrDamagedAtAnyByte) {
     const auto folder = fresh_folder();
     const auto figure = figure_of("fig2-right", {"grid.x.to=3", "scene.duration_s=0.05"});
     const auto record = folder / resume_name(header_of(figure));
     const auto expected = computed(figure);
-    PartWriter(record, header_of(figure), expected).close();
+    PartWriter(record, header_of(figure), expected).finish();
     const auto bytes = bytes_of(record);
-    for (auto at = bytes.find('\n') + 1; at < bytes.size(); ++at) {
-        const auto lines_before = std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    const std::size_t start = bytes.find('\n') + 1, head = 16, block = head + 16 + 8;  // a trial has one number
+    ASSERT_EQ(bytes.size(), start + block * expected.size() + head);
+    for (auto at = start; at < bytes.size(); ++at) {
+        const auto whole = std::min((at - start) / block, expected.size());
         auto damaged = bytes;
-        damaged[at] = damaged[at] == '7' ? '3' : '7';
+        damaged[at] = static_cast<char>(damaged[at] ^ 1);
         for (const auto& text : {bytes.substr(0, at), damaged}) {
             write_bytes(record, text);
             const Resumed resumed(figure, header_of(figure), folder);
             EXPECT_EQ(resumed.trials, expected) << at;
-            EXPECT_EQ(resumed.computed_units,
-                      static_cast<double>(expected.size() + 1) - static_cast<double>(lines_before))
-                << at;
-            const bool cut = text.size() < bytes.size() || at + 1 == bytes.size();
-            EXPECT_EQ(resumed.said.has("is damaged, and what follows is computed again"), !cut) << at;
+            EXPECT_EQ(resumed.computed_units, static_cast<double>(expected.size() - whole)) << at;
+            const bool cut_between_blocks = text.size() < bytes.size() && (at - start) % block == 0;
+            EXPECT_EQ(resumed.said.has("the rest is damaged or incomplete"), !cut_between_blocks) << at;
         }
     }
 }
@@ -127,15 +127,15 @@ TEST(Computation, RejectsImpossibleNumbers) {
     for (const auto& numbers : std::vector<TrialNumbers>{{1, 2}, {infinity}, {-infinity}}) {
         auto known = expected;
         known[4] = numbers;
-        PartWriter(record, header_of(figure), known).close();
+        PartWriter(record, header_of(figure), known).finish();
         const Resumed resumed(figure, header_of(figure), folder);
         EXPECT_EQ(resumed.trials, expected);
         EXPECT_EQ(resumed.computed_units, 6);
-        EXPECT_TRUE(resumed.said.has("40 % is done; line 6 is damaged"));
+        EXPECT_TRUE(resumed.said.has("40 % is done; the rest is damaged or incomplete"));
     }
     // a record with the numbers of another part
     auto header = header_of(figure, {2, 2});
-    PartWriter(folder / resume_name(header), header, expected).close();
+    PartWriter(folder / resume_name(header), header, expected).finish();
     EXPECT_EQ(Resumed(figure, header, folder).computed_units, 5);
 }
 
@@ -154,7 +154,7 @@ TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
     const auto record = folder / resume_name(header_of(figure));
     KnownTrials known(10);
     known[3] = {1};
-    PartWriter(record, header_of(figure), known).close();
+    PartWriter(record, header_of(figure), known).finish();
     Said said;
     Computation computation(figure, header_of(figure), folder, 1, said.report());
     const std::atomic<bool> stop = true;

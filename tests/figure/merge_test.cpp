@@ -57,9 +57,12 @@ TEST_F(Merge, TakesFinishedPartsAsTheyAre) {
     const auto time = fs::last_write_time(part(2));
     EXPECT_EQ(run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 3}}).samples, 0);
     EXPECT_EQ(fs::last_write_time(part(2)), time);
-    write_bytes(part(2), bytes.substr(0, bytes.size() - 2));
-    EXPECT_EQ(run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 3}}).samples, 1);
-    EXPECT_EQ(bytes_of(part(2)), bytes);
+    // without the last bytes of the end, and of the last trial before it
+    for (const auto& [missing, trials] : {std::pair(2, 0), {18, 1}}) {
+        write_bytes(part(2), bytes.substr(0, bytes.size() - static_cast<std::size_t>(missing)));
+        EXPECT_EQ(run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 3}}).samples, trials);
+        EXPECT_EQ(bytes_of(part(2)), bytes);
+    }
     EXPECT_EQ(names_in(folder_).size(), 3u);
     // the part of another preset
     EXPECT_EQ(run_figure(small_sweep({"grid.difference=0.004"}), {.out = out_, .shard = Shard{2, 3}}).samples, 3);
@@ -96,19 +99,23 @@ TEST_F(Merge, RefusesAPartThatIsThereTwice) {
 
 TEST_F(Merge, RejectsAChangedDigit) {
     const auto bytes = bytes_of(part(2));
-    const auto expect_damaged = [&](const std::string& why) {
-        expect_refused(ExitCode::io_failed, {part(2).string(), why, "--shard 2/3"}, small_sweep());
+    const auto expect_damaged = [&] {
+        expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged or incomplete", "--shard 2/3"},
+                       small_sweep());
     };
     auto digit = bytes;
-    const auto at = bytes.find(',', bytes.find('\n')) + 4;
-    digit[at] = digit[at] == '4' ? '5' : '4';
+    const auto start = bytes.find('\n') + 1, number = start + 16 + 16;  // after the block's head, trial and size
+    digit[number] = static_cast<char>(digit[number] ^ 1);
     write_bytes(part(2), digit);
-    expect_damaged("is damaged in line 2");
-    // lines of another part, and numbers of no trial
-    write_bytes(part(2), bytes + bytes_of(part(1)).substr(bytes_of(part(1)).find('\n') + 1));
-    expect_damaged("is damaged in line 5");
-    PartWriter(part(2), header_of(small_sweep(), {2, 3}), KnownTrials(10, {1, 2})).close();
-    expect_damaged("is damaged in line 2");
+    expect_damaged();
+    // blocks of another part, after the end and in its place, and numbers of no trial
+    const auto other = bytes_of(part(1)), blocks = other.substr(other.find('\n') + 1);
+    for (const auto& whole : {bytes, bytes.substr(0, bytes.size() - 16)}) {
+        write_bytes(part(2), whole + blocks);
+        expect_damaged();
+    }
+    PartWriter(part(2), header_of(small_sweep(), {2, 3}), KnownTrials(10, {1, 2})).finish();
+    expect_damaged();
 }
 
 TEST_F(Merge, RefusesPartsOfAnotherPreset) {
@@ -135,7 +142,7 @@ TEST_F(Merge, RefusesPartsOfDifferentNumbers) {
 TEST_F(Merge, RefusesAPartThatIsCut) {
     const auto bytes = bytes_of(part(2));
     write_bytes(part(2), bytes.substr(0, bytes.size() - 1));
-    expect_refused(ExitCode::io_failed, {part(2).string(), "not whole", "--shard 2/3"}, small_sweep());
+    expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged or incomplete", "--shard 2/3"}, small_sweep());
     write_bytes(part(2), "my diary");
     expect_refused(ExitCode::io_failed, {part(2).string()}, small_sweep());
 }

@@ -1,15 +1,16 @@
 #include "figure/part_file.hpp"
 
 #include "figure/support.hpp"
-#include "output/written.hpp"
 
 #include <gtest/gtest.h>
+#include <libdeflate.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <fstream>
 #include <random>
 
@@ -65,9 +66,9 @@ TEST(PartFile, KeepsEveryNumberToTheBit) {
     const PartHeader header{"some \"figure\"", "0.1.0", "abc-dirty", "cafe", trials.size(), 2, 3};
     PartWriter writer(path, header, {});
     for (std::size_t i = trials.size(); i-- > 0;) writer.add(i, trials[i]);  // in reverse order
-    writer.close();
+    writer.finish();
     EXPECT_EQ(read_part_file(path).header, header);
-    EXPECT_EQ(read_part_file(path).damaged_line, 0u);
+    EXPECT_FALSE(read_part_file(path).is_damaged);
     const auto read = trials_in(path);
     ASSERT_EQ(read.size(), trials.size());
     for (std::size_t i = 0; i < trials.size(); ++i) expect_same_bits(read[i], trials[i]);
@@ -86,48 +87,59 @@ TEST(PartFile, BeginsWithWhatIsKnownAndReplacesAnOlderOne) {
     expect_same_bits(trials_in(path)[1], {7});
 }
 
-TEST(PartFile, StopsAtAnInvalidLine) {
+/// A block with its checksum, of the bytes of trial, size and numbers.
+std::string block_of(std::string_view bytes) {
+    std::string block(16, '\0');
+    const std::uint64_t size = bytes.size(), sum = libdeflate_crc32(0, bytes.data(), bytes.size());
+    std::memcpy(block.data(), &size, 8);
+    std::memcpy(block.data() + 8, &sum, 8);
+    return block.append(bytes);
+}
+
+TEST(PartFile, StopsAtAnInvalidBlock) {
     const auto path = fresh_folder() / "some.resume";
-    PartWriter(path, some_header(9), {{1}, {2}}).close();
-    const auto good = bytes_of(path);
-    const auto header = good.substr(0, good.find('\n'));
-    for (const char* line :
-         {"x", "2,", "2,1e", "2,1,x", "2;1", "-1,1", "2,1 ", ",1", "", "99999999999999999999,1", "2,1e999"}) {
-        // without a checksum, with that of another line, and with its own
-        const auto signed_line = fmt::format("{};{}", line, sha256_of_text(header + "\n" + line).substr(0, 16));
-        for (const auto& damaged : {std::string(line), line + good.substr(good.find(';'), 17), signed_line}) {
-            write_bytes(path, good + damaged + "\n" + good.substr(header.size() + 1));
-            const auto read = trials_in(path);
-            EXPECT_EQ(read_part_file(path).damaged_line, 4u) << damaged;
-            expect_same_bits(read[0], {1});
-            expect_same_bits(read[1], {2});
-            for (std::size_t i = 2; i < read.size(); ++i) EXPECT_TRUE(read[i].empty()) << damaged;
-        }
+    PartWriter(path, some_header(9), {{1}, {2}}).finish();
+    const auto whole = bytes_of(path), good = whole.substr(0, whole.size() - 16);  // without the end
+    const auto blocks = good.substr(good.find('\n') + 1), third = std::string(1, 2) + blocks.substr(17, 23);
+    const auto longer = third.substr(0, 8) + "\x02" + third.substr(9),
+               endless = third.substr(0, 8) + std::string(8, '\xff');
+    for (const auto& damaged : {std::string("x"), third, block_of("x"), block_of(third.substr(0, 23)), block_of(longer),
+                                block_of(endless), blocks.substr(0, 16) + third}) {
+        write_bytes(path, good + damaged + blocks);
+        const auto read = trials_in(path);
+        EXPECT_TRUE(read_part_file(path).is_damaged) << damaged;
+        expect_same_bits(read[0], {1});
+        expect_same_bits(read[1], {2});
+        for (std::size_t i = 2; i < read.size(); ++i) EXPECT_TRUE(read[i].empty()) << damaged;
     }
+    write_bytes(path, good + block_of(third));
+    EXPECT_FALSE(read_part_file(path).is_damaged);
+    expect_same_bits(trials_in(path)[2], {1});
 }
 
 TEST(PartFile, RejectsAChangedByte) {
     const auto path = fresh_folder() / "some.resume";
     const KnownTrials trials{{1.25, -2e-300}, {none, 12345}, {infinite, 3}};
-    PartWriter(path, some_header(3), trials).close();
+    PartWriter(path, some_header(3), trials).finish();
     const auto bytes = bytes_of(path);
-    const auto header = bytes.find('\n') + 1;
+    const std::size_t start = bytes.find('\n') + 1, block = 16 + 16 + 16;
     for (std::size_t at = 0; at < bytes.size(); ++at)
         for (const int change : {1, 2, 4, 8, 0x20, 0x80}) {
             auto changed = bytes;
             changed[at] = static_cast<char>(changed[at] ^ change);
             write_bytes(path, changed);
-            const auto line = static_cast<std::size_t>(
-                std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
             try {
                 const auto part = read_part_file(path);
-                const bool last_end = at + 1 == bytes.size();  // as if the last line were incomplete
-                EXPECT_EQ(part.damaged_line, last_end ? 0 : std::max<std::size_t>(line, 1) + 1) << at;
-                EXPECT_EQ(part.trials.size(), std::max<std::size_t>(line, 1) - 1) << at;
+                if (at < start) {
+                    EXPECT_FALSE(part.header == some_header(3)) << at;
+                    continue;
+                }
+                EXPECT_TRUE(part.is_damaged) << at;
+                EXPECT_EQ(part.trials.size(), std::min<std::size_t>((at - start) / block, 3)) << at;
                 for (const auto& trial : part.trials) expect_same_bits(trial.numbers, trials[trial.number]);
             } catch (const Error& error) {
                 EXPECT_EQ(error.code(), ExitCode::io_failed);
-                EXPECT_LT(at, header) << error.what();
+                EXPECT_LT(at, start) << error.what();
             }
         }
 }
@@ -135,16 +147,20 @@ TEST(PartFile, RejectsAChangedByte) {
 /// Editors and file systems change line ends.
 TEST(PartFile, RejectsOtherLineEnds) {
     const auto path = fresh_folder() / "some.resume";
-    PartWriter(path, some_header(2), {{1}, {2}}).close();
+    PartWriter(path, some_header(2), {{1}, {2}}).finish();
     auto bytes = bytes_of(path);
-    for (std::size_t at = 0; (at = bytes.find('\n', at)) != std::string::npos; at += 2) bytes.insert(at, "\r");
+    bytes.insert(bytes.find('\n'), "\r");
     write_bytes(path, bytes);
-    EXPECT_EQ(read_part_file(path).damaged_line, 2u);
+    EXPECT_EQ(trials_in(path).size(), 2u);  // space in JSON
+    bytes = bytes_of(path);
+    bytes.insert(bytes.find('\n') + 1, "\r");
+    write_bytes(path, bytes);
+    EXPECT_TRUE(read_part_file(path).is_damaged);
 }
 
 TEST(PartFile, ReadsRegularFilesAlone) {
     const auto folder = fresh_folder();
-    PartWriter(folder / "whole", some_header(1), {{1}}).close();
+    PartWriter(folder / "whole", some_header(1), {{1}}).finish();
     fs::create_symlink(folder / "whole", folder / "link");
     fs::create_symlink("/dev/zero", folder / "endless");
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
@@ -155,9 +171,9 @@ TEST(PartFile, ReadsRegularFilesAlone) {
     EXPECT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0) << address.sun_path;
     for (const auto& [name, why] : std::vector<std::pair<const char*, const char*>>{{"link", "is a symbolic link"},
                                                                                     {"endless", "is a symbolic link"},
-                                                                                    {"pipe", "is no regular file"},
-                                                                                    {"folder", "is no regular file"},
-                                                                                    {"socket", "; remove it"}})
+                                                                                    {"pipe", "is not a regular file"},
+                                                                                    {"folder", "is not a regular file"},
+                                                                                    {"socket", "cannot be read"}})
         expect_error(ExitCode::io_failed, {(folder / name).string(), why}, [&] { read_part_file(folder / name); });
     close(listener);
 }
@@ -171,8 +187,9 @@ TEST(PartFile, ReadsNoEndlessHeader) {
 
 /// A header's JSON with one key changed.
 std::string with_key(const std::string& key, const std::string& value) {
-    std::string text = "{\"file\":\"doppel trials\"";
-    for (const auto& [name, usual] : std::vector<std::pair<std::string, std::string>>{{"format", "2"},
+    std::string text;
+    for (const auto& [name, usual] : std::vector<std::pair<std::string, std::string>>{{"file", "\"doppel trials\""},
+                                                                                      {"format", "3"},
                                                                                       {"figure", "\"some\""},
                                                                                       {"version", "\"0.1.0\""},
                                                                                       {"revision", "\"abc\""},
@@ -180,8 +197,9 @@ std::string with_key(const std::string& key, const std::string& value) {
                                                                                       {"trials", "3"},
                                                                                       {"shard", "1"},
                                                                                       {"of", "1"}})
-        if (name != key || !value.empty()) text += fmt::format(",\"{}\":{}", name, name == key ? value : usual);
-    return text + "}\n0,1\n";
+        if (name != key || !value.empty())
+            text += fmt::format("{}\"{}\":{}", text.empty() ? "{" : ",", name, name == key ? value : usual);
+    return text + "}\n";
 }
 
 TEST(PartFile, RefusesWhatIsSomethingElse) {
@@ -197,12 +215,14 @@ TEST(PartFile, RefusesWhatIsSomethingElse) {
                                           "{}\n",
                                           "{\"file\":\"a table\"}\n",
                                           "\x89PNG\r\n\x1a\n",
+                                          with_key("file", ""),
+                                          with_key("file", "\"doppel film shard\""),
                                           with_key("figure", ""),
                                           with_key("figure", "3"),
                                           with_key("trials", "\"many\""),
                                           with_key("trials", "null"),
-                                          with_key("format", "\"2\""),
-                                          with_key("format", "3"),
+                                          with_key("format", "\"3\""),
+                                          with_key("format", "2"),
                                           with_key("format", ""),
                                           with_key("preset_sha256", "")};
     for (const auto& other : others) {
@@ -246,7 +266,7 @@ TEST(PartFile, ReportsWhereItCannotBeWritten) {
     expect_error(ExitCode::io_failed, {(folder / "full").string()}, [&] {
         PartWriter writer(folder / "full", some_header(1), {});
         for (int i = 0; i < 10'000; ++i) writer.add(0, {0.1234567});
-        writer.close();
+        writer.finish();
     });
 }
 

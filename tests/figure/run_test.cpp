@@ -213,7 +213,7 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
         // a record of its trials, as a slow run leaves it
         const auto header = header_of(figure);
         fs::create_directories(out / figure.name);
-        PartWriter(out / figure.name / resume_name(header), header, KnownTrials(header.trials)).close();
+        PartWriter(out / figure.name / resume_name(header), header, KnownTrials(header.trials)).finish();
         expect_error(ExitCode::method_failed, {figure.name + ": ", words}, [&] { run_figure(figure, {.out = out}); });
         EXPECT_TRUE(!fs::exists(out / figure.name) || names_in(out / figure.name).empty());
     }
@@ -243,7 +243,7 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     fs::create_directory(folder);
     const auto large = small_sweep({"grid.x.step=0.5"});
     const auto record = folder / resume_name(header_of(large)), other = folder / resume_name(header_of(large, {2, 3}));
-    for (const auto& path : {record, other}) PartWriter(path, header_of(large), KnownTrials(19, {1})).close();
+    for (const auto& path : {record, other}) PartWriter(path, header_of(large), KnownTrials(19, {1})).finish();
     const auto bytes = bytes_of(record);
     Said said;
     run_figure(small_sweep(), {.out = out}, said);

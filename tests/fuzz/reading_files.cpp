@@ -11,10 +11,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace doppel::test {
 namespace {
@@ -111,18 +114,32 @@ void show(const FigurePreset& figure, PartFile& part) {
     }
 }
 
-/// Lines that end in ";?" with their checksums, as PartWriter makes them.
-std::string with_checksums(std::string_view input) {
+template <class T>
+void append(std::string& bytes, T number) {
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+/// The file that PartWriter makes of lines "TRIAL,NUMBERS;?": each becomes a block. Other lines stay.
+std::string with_blocks(std::string_view input) {
     std::istringstream lines{std::string(input)};
-    std::string header, text;
-    std::getline(lines, header);
-    text = header + (lines.eof() ? "" : "\n");
-    for (std::string line; std::getline(lines, line);) {
-        if (line.ends_with(";?")) {
-            line.pop_back();
-            line += sha256_of_text(header + "\n" + line.substr(0, line.size() - 1)).substr(0, 16);
+    std::string line, text;
+    std::getline(lines, line);
+    text = line + (lines.eof() ? "" : "\n");
+    while (std::getline(lines, line)) {
+        if (!line.ends_with(";?")) {
+            text += line + (lines.eof() ? "" : "\n");
+            continue;
         }
-        text += line + (lines.eof() ? "" : "\n");
+        std::istringstream words(line.substr(0, line.size() - 2));
+        std::vector<std::string> numbers;
+        for (std::string word; std::getline(words, word, ',');) numbers.push_back(word);
+        std::string block;
+        append<std::uint64_t>(block, numbers.empty() ? 0 : std::strtoull(numbers[0].c_str(), nullptr, 10));
+        append<std::uint64_t>(block, numbers.empty() ? 0 : numbers.size() - 1);
+        for (std::size_t i = 1; i < numbers.size(); ++i) append(block, std::strtod(numbers[i].c_str(), nullptr));
+        append<std::uint64_t>(text, block.size());
+        append<std::uint64_t>(text, libdeflate_crc32(0, block.data(), block.size()));
+        text += block;
     }
     return text;
 }
@@ -130,7 +147,7 @@ std::string with_checksums(std::string_view input) {
 }  // namespace
 
 std::string read_part(std::string_view input) {
-    return refusal_of(with_checksums(input), [](const fs::path& path) {
+    return refusal_of(with_blocks(input), [](const fs::path& path) {
         auto part = read_part_file(path);
         const auto figure = figures().find(part.header.figure);
         if (figure != figures().end() && part.header.trials == figure->second.experiment->trials())
