@@ -82,7 +82,7 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
          {"time", {{"wall_s", result.wall_s}, {"cpu_s", seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start}}}});
     throw_if_set(stop);
     result.files = parts.publish();
-    for (const auto& sentence : certificate_words(scene, proved)) report.note(sentence);
+    for (const auto& sentence : certificate_words(scene, proved)) report.warn(sentence);
     report.done(result);
     if (proved.last() < scene.samples)
         throw method_failed("{}: nothing is proved after {:.6g} s of {:g} s; the rows end there", name,
@@ -90,6 +90,8 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
 }
 
 void certify_all(const CertifyOptions& options) {
+    if (!(options.radius >= 1e-12 && options.radius <= 1e3))
+        throw bad_input("--radius must be from 1e-12 to 1000 rad; it is {:g}", options.radius);
     const auto scenes = read_scenes(options);
     if (options.list_outputs) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, certified_files(scene.preset.name));
@@ -117,7 +119,6 @@ void add_certify(CLI::App& app) {
     add_run_options(command, *options, "Threads; default: one a core; same bytes for any N");
     add_value(command, "--radius", options->radius, "RAD",
               "Finds how long the preset's own run stays this near the true motion, rad")
-        ->check(CLI::Range(1e-12, 1e3))
         ->capture_default_str();
     command.callback([options] { certify_all(*options); });
 }

@@ -231,8 +231,9 @@ void print(const SceneCheck& check) {
     const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
                video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(scene));
-    print_line("  takes  {} {:.2g} s to simulate, {}", estimate.at_least ? "more than" : "about", estimate.seconds,
-               check.render ? fmt::format("{:.2g} s to render", check.render->seconds)
+    print_line("  takes  {} {} to simulate, {}", estimate.at_least ? "more than" : "about",
+               duration_text(estimate.seconds),
+               check.render ? duration_text(check.render->seconds) + " to render"
                             : "time to render unknown: " + check.why_not);
     if (check.render) print_needs(*check.render);
 }
@@ -339,8 +340,8 @@ void print(const FigureCheck& check) {
                    figure.chart.theme);
     else
         print_line("  chart  {}×{} px, {}", layout.picture.width, layout.picture.height, figure.chart.theme);
-    print_line("  takes  {} {:.2g} s on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
-               estimate.seconds, threads, threads == 1 ? "" : "s", two_digits(units / estimate.seconds),
+    print_line("  takes  {} {} on {} thread{}, {} {}/s", estimate.at_least ? "more than" : "about",
+               duration_text(estimate.seconds), threads, threads == 1 ? "" : "s", two_digits(units / estimate.seconds),
                figure.experiment->unit());
     print_needs(estimate);
 }

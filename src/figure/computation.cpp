@@ -17,6 +17,10 @@ constexpr std::size_t many_groups = 200, groups_ahead = 16;
 double now() {
     return seconds_of(CLOCK_MONOTONIC);
 }
+/// CPU time of this thread, s.
+double cpu_now() {
+    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+}
 
 }  // namespace
 
@@ -91,13 +95,13 @@ bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
             if (start_s_ == 0) start_s_ = flushed_s_ = now();
         }
         const auto [first, last] = groups_[group];
-        const double cpu_start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        const double cpu_start = cpu_now();
         std::vector<TrialNumbers> numbers(last - first);
         figure_.experiment->compute(first, numbers, stop);
         for (std::size_t i = 0; i < numbers.size(); ++i)
             if (!figure_.experiment->fits(first + i, numbers[i]))
                 throw method_failed("{}: the result of trial {} is infinite or NaN", figure_.name, first + i);
-        return keep(groups_[group], std::move(numbers), seconds_of(CLOCK_THREAD_CPUTIME_ID) - cpu_start);
+        return keep(groups_[group], std::move(numbers), cpu_now() - cpu_start);
     } catch (const Error& error) {
         throw with_record(error);
     }
@@ -152,7 +156,7 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     const std::size_t trials = experiment.trials(), together = experiment.together();
     double total = 0;
     std::size_t counted = 0;
-    const double before = now();
+    const double before = cpu_now();
     for (std::size_t trial = 0; trial < trials; ++trial) {
         const double units = experiment.units(trial);
         // trials of 0 units are prerequisites: computed first and not timed
@@ -161,7 +165,7 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
         if (units > 0) ++counted;
         total += units;
     }
-    const double start = now(), needed_s = start - before;
+    const double needed_s = cpu_now() - before;
     // evenly spaced groups, until the time is over
     const TimeLimit limit(allowed_s, stop);
     const std::size_t all_groups = (trials + together - 1) / together;
@@ -174,9 +178,9 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
             place += golden - std::floor(place + golden);
             if (experiment.units(first) == 0) continue;
             std::vector<TrialNumbers> numbers(std::min(together, trials - first));
-            from = now();
+            from = cpu_now();
             experiment.compute(first, numbers, limit.reached());
-            seconds += now() - from;
+            seconds += cpu_now() - from;
             for (std::size_t k = 0; k < numbers.size(); ++k) {
                 done += experiment.units(first + k);
                 numbers_done += numbers[k].size();
@@ -186,7 +190,7 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
         // a group that takes longer than all others before counts as done
-        const double cut_s = now() - from;
+        const double cut_s = cpu_now() - from;
         estimate.at_least = cut_s > seconds;
         for (std::size_t k = first; estimate.at_least && k < std::min(first + together, trials); ++k)
             done += experiment.units(k);

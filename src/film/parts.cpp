@@ -25,7 +25,7 @@ Json identity(const Scene& scene) {
 Shard shard_in(const BlockFile& part, const fs::path& path, const Scene& scene) {
     const auto header = Json::parse(part.header(), nullptr, false);
     const auto shard = shard_of(header);
-    if (!shard) throw io_failed("{} is damaged; remove it", path.string());
+    if (!shard) throw part.damaged();
     check_identity(path, header, identity(scene), *shard, "render");
     return *shard;
 }

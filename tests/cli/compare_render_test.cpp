@@ -166,6 +166,9 @@ TEST_F(CompareRender, ComparesStillsAndFigures) {
         const auto missing = run(with(command, {"kept"}));
         EXPECT_EQ(missing.err, fmt::format("doppel: {}: there is no such golden picture; --update makes it\n", file));
         EXPECT_EQ(run(with(command, {"kept/other.png"})).code, 0);
+        fs::rename(folder_ / "kept/other.png", folder_ / "kept/other.egl.png");
+        EXPECT_EQ(run(with(command, {"kept/other.png"})).code, 0);  // a variant alone
+        fs::rename(folder_ / "kept/other.egl.png", folder_ / "kept/other.png");
         spoil(folder_ / "kept/other.png");
         EXPECT_EQ(run(with(command, {"kept/other.png"})).code, 1);
         fs::remove(folder_ / "kept/other.png");

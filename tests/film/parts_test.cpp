@@ -130,7 +130,8 @@ TEST(FilmParts, AreRefusedIfTheirHeaderIsDamaged) {
          {"", ",\"shard\":0,\"of\":0", ",\"shard\":2,\"of\":1", ",\"shard\":\"1\",\"of\":1"}) {
         write_bytes(part, std::string(film_part.start) + numbers + "}\nend\n");
         EXPECT_EQ(thrown_by([&] { render(film(), {.out = folder, .merge = true}); }),
-                  (Thrown{ExitCode::io_failed, part.string() + " is damaged; remove it"}))
+                  (Thrown{ExitCode::io_failed,
+                          part.string() + " is damaged or incomplete; remove it, and render this part again"}))
             << numbers;
     }
 }
