@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace doppel {
@@ -42,13 +41,8 @@ PendulumPanel still_panel(const Layout& layout) {
     panel.area = {panel.center.x - width / 2, panel.center.y - height / 2, panel.center.x + width / 2,
                   panel.center.y + height / 2};
     panel.px_per_m *= scale;
-    if (layout.panels.size() > 1) panel.sides = {0, 1};
+    if (layout.panels.size() > 1) panel.shown = {0, 1};
     return panel;
-}
-
-Label with_text(Label label, std::string text) {
-    label.text = std::move(text);
-    return label;
 }
 
 }  // namespace
@@ -87,9 +81,11 @@ DisplayList Composer::frame() const {
     DisplayList list;
     for (const auto& layer : layers_) layer->frame(list);
     const auto& layout = state_.layout;
-    const double time = state_.time();
-    if (layout.clock) list.push_back(with_text(*layout.clock, clock_text(state_.scene, time)));
-    if (layout.speed) list.push_back(with_text(*layout.speed, speed_text(state_.scene, time)));
+    for (auto [label, text_at] : {std::pair{layout.clock, &clock_text}, {layout.speed, &speed_text}}) {
+        if (!label) continue;
+        label->text = text_at(state_.scene, state_.time());
+        list.push_back(*label);
+    }
     return list;
 }
 

@@ -75,7 +75,7 @@ void FilmPage::add(const Snapshot& snapshot) {
     }
     for (const auto kind : video.strips)
         if (!computes_ || !page_computes(kind))
-            for (const auto& curve : strip_curves(kind, scene_, pair, start_distance_, themes[0], 1))
+            for (const auto& curve : strip_curves(kind, scene_, pair, start_distance_))
                 curves.push_back(curve.value.value_or(NAN));
     for (const auto* seen : {&pair.a, &pair.b}) {
         if (video.layout != Arrangement::phase || computes_) break;
@@ -97,8 +97,8 @@ Json FilmPage::motion_json() const {
     std::vector<double> turns;  // the step of a channel of angles, rad; 0: of coordinates
     Json pendulums = Json::array();
     std::size_t channels = 0;  // of the last pendulum
-    for (const auto& [motion, side] : shown_pendulums(scene_)) {
-        const auto links = side.mass.size(), before = turns.size();
+    for (const auto& [motion, side, mass, color] : shown_pendulums(scene_)) {
+        const auto links = mass.size(), before = turns.size();
         const double turn = is_by_angles(side) ? std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(links)) : 0;
         turns.resize(before + (turn > 0 ? links : 2 * links), turn);
         if (side.pivot_reach > 0) turns.resize(turns.size() + 2, 0);
@@ -152,10 +152,9 @@ double estimated_page_bytes(const Scene& scene) {
     const auto& video = scene.preset.video;
     const bool computes = page_computes(scene);
     double per_sample = !computes && video.layout == Arrangement::phase ? 6 * number : 0;
-    for (const auto& [motion, side] : shown_pendulums(scene))
+    for (const auto& [motion, side, mass, color] : shown_pendulums(scene))
         if (!computes)
-            per_sample +=
-                place * video.position_bits * static_cast<double>(side.mass.size()) * (is_by_angles(side) ? 1 : 2);
+            per_sample += place * video.position_bits * static_cast<double>(mass.size()) * (is_by_angles(side) ? 1 : 2);
     for (const auto kind : video.strips)
         if (!computes || !page_computes(kind))
             per_sample += number * (kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2);

@@ -251,6 +251,13 @@ TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
     }
 }
 
+TEST(Page, SaysTheLimitsThatTheFilmMarks) {
+    const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
+    EXPECT_EQ(data_of(page_of(text)).at("limits"), Json::array());
+    EXPECT_EQ(data_of(page_of(text + "model_limit_s = 0.5\n")).at("limits").dump(),
+              R"([[0.5,"predictability limit of the model 0.5 s"]])");
+}
+
 /// A wide film also has an upright picture; the pictures equal those of the film.
 TEST(Page, HasThePicturesOfTheFilm) {
     const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
