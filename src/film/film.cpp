@@ -15,17 +15,6 @@ namespace doppel {
 
 namespace {
 
-/// Adds the CPU time that this thread spends during its lifetime, s.
-class Stopwatch {
-public:
-    explicit Stopwatch(double& total) : total_(total), start_(seconds_of(CLOCK_THREAD_CPUTIME_ID)) {}
-    ~Stopwatch() { total_ += seconds_of(CLOCK_THREAD_CPUTIME_ID) - start_; }
-
-private:
-    double& total_;
-    double start_;
-};
-
 Metadata film_metadata(const Preset& preset) {
     return metadata_of(preset.title, preset.name, fmt::format("how it was made is in {}.json", preset.name));
 }
@@ -162,15 +151,14 @@ DisplayList Film::list_of(long number) const {
 }
 
 const Picture& Film::take(const DisplayList& list) {
-    const Picture* picture = nullptr;
-    {
-        Stopwatch watch(record_.draw_cpu_s);
-        picture = &canvas_->draw(list);
-    }
-    Stopwatch watch(record_.write_cpu_s);
-    sink_->take(*picture, canvas_->changed());
+    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    const auto& picture = canvas_->draw(list);
+    const double drawn = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    sink_->take(picture, canvas_->changed());
+    record_.draw_cpu_s += drawn - start;
+    record_.write_cpu_s += seconds_of(CLOCK_THREAD_CPUTIME_ID) - drawn;
     ++record_.frames;
-    return *picture;
+    return picture;
 }
 
 bool Film::add(const Snapshot& snapshot) {

@@ -145,8 +145,6 @@ std::vector<std::vector<double>> channels_of(const Json& motion, std::size_t cou
     for (int order = 0; order < 2; ++order)
         for (std::size_t i = 0; i < words.size(); ++i)
             if (i % count > 0) words[i] += words[i - 1];
-    for (std::size_t i = motion.at("like_last"); i < words.size(); ++i)
-        words[i] += words[i - motion.at("like_last").get<std::size_t>()];
     std::vector<std::vector<double>> channels;
     std::size_t at = 0;
     const auto add = [&](double low, double step) {
