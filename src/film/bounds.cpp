@@ -9,15 +9,13 @@
 namespace doppel {
 namespace {
 
-/// Whether the circle of the outstretched chain contains all that is drawn. Droplets are far away and not drawn.
-bool stays_in_circle(const SideSpec& side) {
-    return side.particles.empty() && side.constraints.empty() &&
-           std::all_of(side.forces.begin(), side.forces.end(),
-                       [](const PartSpec& force) { return force.kind == PartKind::droplet; });
-}
-
+/// Whether the circle of the outstretched chains contains all that is drawn. Droplets are far away and not drawn.
 bool has_circle(const Scene& scene) {
-    return stays_in_circle(scene.preset.a) && stays_in_circle(scene.preset.b);
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
+    for (const auto* side : {&scene.preset.a, &scene.preset.b})
+        if (!side->particles.empty() || !side->constraints.empty() || !std::ranges::all_of(side->forces, is_droplet))
+            return false;
+    return true;
 }
 
 /// The range with a margin of a tenth; includes zero.

@@ -60,10 +60,11 @@ Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind k
     still_ = make_pendulum_layer(state_, still_panel_);
 }
 
-DisplayList Composer::backdrop() const {
+DisplayList Composer::backdrop(std::optional<Color> page) const {
     DisplayList list;
     const auto& video = state_.scene.preset.video;
-    if (!video.transparent) list.push_back(filled(video.size, page_color()));
+    if (!video.transparent && !page) page = page_color();
+    if (page) list.push_back(filled(video.size, *page));
     for (const auto& layer : layers_) layer->backdrop(list);
     list.insert(list.end(), state_.layout.words.begin(), state_.layout.words.end());
     return list;

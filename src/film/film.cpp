@@ -19,23 +19,16 @@ Metadata film_metadata(const Preset& preset) {
     return metadata_of(preset.title, preset.name, fmt::format("how it was made is in {}.json", preset.name));
 }
 
-DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
-    DisplayList list{filled(size, page)};
-    list.insert(list.end(), backdrop.begin(), backdrop.end());
-    return list;
-}
-
 }  // namespace
 
 Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop) : stop_(stop) {
     const auto& video = scene.preset.video;
-    auto backdrop = composer.backdrop();
     if (video.transparent) {
-        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), gl, stop, video.typeface);
-        backdrop = on_page(backdrop, video.size, rgb(0x000000));
+        on_white_.emplace(video.size, composer.backdrop(rgb(0xffffff)), gl, stop, video.typeface);
         matted_ = Picture(video.size);
     }
-    renderer_.emplace(video.size, backdrop, gl, stop, video.typeface);
+    const auto page = video.transparent ? rgb(0x000000) : composer.page_color();
+    renderer_.emplace(video.size, composer.backdrop(page), gl, stop, video.typeface);
 }
 
 const Picture& Canvas::draw(const DisplayList& list) {
