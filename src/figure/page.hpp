@@ -2,7 +2,6 @@
 
 #include "figure/preset.hpp"
 #include "image/color.hpp"
-#include "scene/resolved.hpp"
 
 #include <string>
 

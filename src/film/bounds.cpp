@@ -4,21 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <variant>
 
 namespace doppel {
 namespace {
 
-/// Whether the circle of the outstretched chain contains all that is drawn. Droplets are far away and not drawn.
-bool stays_in_circle(const SideSpec& side) {
-    return side.particles.empty() && side.constraints.empty() &&
-           std::all_of(side.forces.begin(), side.forces.end(),
-                       [](const PartSpec& force) { return force.kind == PartKind::droplet; });
-}
-
+/// Whether the circle of the outstretched chains contains all that is drawn. Droplets are far away and not drawn.
 bool has_circle(const Scene& scene) {
-    return stays_in_circle(scene.preset.a) && stays_in_circle(scene.preset.b);
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
+    for (const auto* side : {&scene.preset.a, &scene.preset.b})
+        if (!side->particles.empty() || !side->constraints.empty() || !std::ranges::all_of(side->forces, is_droplet))
+            return false;
+    return true;
 }
 
 /// The range with a margin of a tenth; includes zero.
@@ -26,13 +23,6 @@ Range padded(const Spread& seen) {
     const double low = seen.low, high = seen.high, width = high - low;
     if (!(width > 0) || !std::isfinite(width)) return {0, 1};
     return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
-}
-
-/// In m.
-double chain_length(const SideSpec& side) {
-    double sum = 0;
-    for (const auto& length : side.length_m) sum += static_cast<double>(length);
-    return sum;
 }
 
 /// The nearest 1, 2 or 5 times a power of ten, rounded up or down.
@@ -101,15 +91,14 @@ void MotionBounds::add(const Scene& scene, const PairState& state, double start_
     for (const auto kind : video.strips) {
         // a pair that starts equal has distances near zero at first; they are left out
         if (kind == StripKind::distance && !(start_distance > 0) && 50 * state.sample < scene.samples) continue;
-        for (const auto& curve : strip_curves(kind, scene, state, start_distance, themes[0], 1))
+        for (const auto& curve : strip_curves(kind, scene, state, start_distance))
             if (curve.value) strips[static_cast<std::size_t>(kind)].add(*curve.value);
     }
 }
 
 View fitted_view(const Scene& scene, const MotionBounds& seen) {
     if (has_circle(scene)) {
-        double reach = std::max(chain_length(scene.preset.a) + scene.a.pivot_reach,
-                                chain_length(scene.preset.b) + scene.b.pivot_reach);
+        double reach = std::max(scene.a.reach + scene.a.pivot_reach, scene.b.reach + scene.b.pivot_reach);
         for (const auto& member : scene.members)
             reach = std::max(reach, static_cast<double>(member.chain->reach()) + scene.a.pivot_reach);
         return {.width = 2 * reach, .height = 2 * reach};

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace doppel {
@@ -42,13 +41,8 @@ PendulumPanel still_panel(const Layout& layout) {
     panel.area = {panel.center.x - width / 2, panel.center.y - height / 2, panel.center.x + width / 2,
                   panel.center.y + height / 2};
     panel.px_per_m *= scale;
-    if (layout.panels.size() > 1) panel.sides = {0, 1};
+    if (layout.panels.size() > 1) panel.shown = {0, 1};
     return panel;
-}
-
-Label with_text(Label label, std::string text) {
-    label.text = std::move(text);
-    return label;
 }
 
 }  // namespace
@@ -66,10 +60,11 @@ Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind k
     still_ = make_pendulum_layer(state_, still_panel_);
 }
 
-DisplayList Composer::backdrop() const {
+DisplayList Composer::backdrop(std::optional<Color> page) const {
     DisplayList list;
     const auto& video = state_.scene.preset.video;
-    if (!video.transparent) list.push_back(filled(video.size, page_color()));
+    if (!video.transparent && !page) page = page_color();
+    if (page) list.push_back(filled(video.size, *page));
     for (const auto& layer : layers_) layer->backdrop(list);
     list.insert(list.end(), state_.layout.words.begin(), state_.layout.words.end());
     return list;
@@ -87,9 +82,11 @@ DisplayList Composer::frame() const {
     DisplayList list;
     for (const auto& layer : layers_) layer->frame(list);
     const auto& layout = state_.layout;
-    const double time = state_.time();
-    if (layout.clock) list.push_back(with_text(*layout.clock, clock_text(state_.scene, time)));
-    if (layout.speed) list.push_back(with_text(*layout.speed, speed_text(state_.scene, time)));
+    for (auto [label, text_at] : {std::pair{layout.clock, &clock_text}, {layout.speed, &speed_text}}) {
+        if (!label) continue;
+        label->text = text_at(state_.scene, state_.time());
+        list.push_back(*label);
+    }
     return list;
 }
 

@@ -16,8 +16,9 @@ public:
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 
-    /// The constant part: page, panels, axes and their labels.
-    DisplayList backdrop() const;
+    /// The constant part: page, panels, axes and their labels. Without a colour of the page, a transparent film has
+    /// none, others their own.
+    DisplayList backdrop(std::optional<Color> page = {}) const;
 
     /// Adds the next snapshot in order: all samples from 0 on, and any times between them.
     void add(const Snapshot& snapshot);

@@ -15,38 +15,20 @@ namespace doppel {
 
 namespace {
 
-/// Adds the CPU time that this thread spends during its lifetime, s.
-class Stopwatch {
-public:
-    explicit Stopwatch(double& total) : total_(total), start_(seconds_of(CLOCK_THREAD_CPUTIME_ID)) {}
-    ~Stopwatch() { total_ += seconds_of(CLOCK_THREAD_CPUTIME_ID) - start_; }
-
-private:
-    double& total_;
-    double start_;
-};
-
 Metadata film_metadata(const Preset& preset) {
     return metadata_of(preset.title, preset.name, fmt::format("how it was made is in {}.json", preset.name));
-}
-
-DisplayList on_page(const DisplayList& backdrop, Size size, Color page) {
-    DisplayList list{filled(size, page)};
-    list.insert(list.end(), backdrop.begin(), backdrop.end());
-    return list;
 }
 
 }  // namespace
 
 Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop) : stop_(stop) {
     const auto& video = scene.preset.video;
-    auto backdrop = composer.backdrop();
     if (video.transparent) {
-        on_white_.emplace(video.size, on_page(backdrop, video.size, rgb(0xffffff)), gl, stop, video.typeface);
-        backdrop = on_page(backdrop, video.size, rgb(0x000000));
+        on_white_.emplace(video.size, composer.backdrop(rgb(0xffffff)), gl, stop, video.typeface);
         matted_ = Picture(video.size);
     }
-    renderer_.emplace(video.size, backdrop, gl, stop, video.typeface);
+    const auto page = video.transparent ? rgb(0x000000) : composer.page_color();
+    renderer_.emplace(video.size, composer.backdrop(page), gl, stop, video.typeface);
 }
 
 const Picture& Canvas::draw(const DisplayList& list) {
@@ -162,15 +144,14 @@ DisplayList Film::list_of(long number) const {
 }
 
 const Picture& Film::take(const DisplayList& list) {
-    const Picture* picture = nullptr;
-    {
-        Stopwatch watch(record_.draw_cpu_s);
-        picture = &canvas_->draw(list);
-    }
-    Stopwatch watch(record_.write_cpu_s);
-    sink_->take(*picture, canvas_->changed());
+    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    const auto& picture = canvas_->draw(list);
+    const double drawn = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    sink_->take(picture, canvas_->changed());
+    record_.draw_cpu_s += drawn - start;
+    record_.write_cpu_s += seconds_of(CLOCK_THREAD_CPUTIME_ID) - drawn;
     ++record_.frames;
-    return *picture;
+    return picture;
 }
 
 bool Film::add(const Snapshot& snapshot) {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -150,9 +150,10 @@ int add_legend(Layout& layout, const Scene& scene, float left, float width, floa
     }
     const float first = base - pen.y;
     layout.words.push_back(label(before, {left, first}, size, theme.quiet_text));
+    const auto members = shown_pendulums(scene, layout.style);
     for (std::size_t k = 0; k < words.size(); ++k) {
         const Point at{left + places[k].x + dot * size, first + places[k].y - 0.36f * size};
-        layout.words.push_back(Capsule{at, at, dot * size, member_color(layout.style, scene, k)});
+        layout.words.push_back(Capsule{at, at, dot * size, members[k].color});
         const auto text = fitted_text(layout, words[k], size, Weight::regular, width - after_dot * size);
         layout.words.push_back(
             label(text.text, {left + places[k].x + after_dot * size, first + places[k].y}, text.size, theme.text));
@@ -171,16 +172,10 @@ std::string speed_text(const Scene& scene, double time) {
     const bool changes = scene.preset.video.speed.changes_over_time();
     const auto speed = changes ? speed_at(scene.preset.video, time) : scene.preset.video.speed.constant;
     if (speed == Rational{1, 1}) return "real time";
-    constexpr std::array<std::pair<Rational, std::string_view>, 8> fractions{{{{1, 2}, "½"},
-                                                                              {{1, 3}, "⅓"},
-                                                                              {{2, 3}, "⅔"},
-                                                                              {{1, 4}, "¼"},
-                                                                              {{3, 4}, "¾"},
-                                                                              {{1, 5}, "⅕"},
-                                                                              {{1, 6}, "⅙"},
-                                                                              {{1, 8}, "⅛"}}};
-    for (const auto& [fraction, sign] : fractions)
-        if (changes && speed == fraction) return fmt::format("{} speed", sign);
+    static const std::map<std::string, std::string_view> signs{{"1/2", "½"}, {"1/3", "⅓"}, {"2/3", "⅔"}, {"1/4", "¼"},
+                                                               {"3/4", "¾"}, {"1/5", "⅕"}, {"1/6", "⅙"}, {"1/8", "⅛"}};
+    if (const auto sign = signs.find(speed.text()); changes && sign != signs.end())
+        return fmt::format("{} speed", sign->second);
     return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }
 

@@ -3,7 +3,9 @@
 #include "film/layout.hpp"
 #include "film/recording.hpp"
 
+#include <algorithm>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -20,8 +22,6 @@ inline double hermite(double p, double v, double q, double w, double dt, double 
 class Trail {
 public:
     Trail(const Scene& scene, const Style& style, Color color, float width);
-    Trail(const Scene& scene, const Style& style, std::size_t side)
-        : Trail(scene, style, style.theme.sides[side], px(style.width.trail)) {}
 
     std::optional<Point> end() const;
     /// Adds a point that was reached at `time`, s. Points that have faded out at `now` are removed.
@@ -58,13 +58,16 @@ struct FilmState {
     const Layout layout;
     Snapshot snapshot{};  // added last
     Outcome outcome{};
+    const std::vector<ShownPendulum> pendulums = shown_pendulums(scene, layout.style);
 
     double time() const { return scene.time(snapshot.pair.moment()); }
     /// Whether the snapshot is between two samples. Curves and trails contain only samples, and are drawn on to the
     /// snapshot.
     bool is_between() const { return snapshot.pair.share > 0; }
-    const Side& side(std::size_t k) const { return k == 0 ? scene.a : scene.b; }
-    const Observation& seen(std::size_t side) const { return side == 0 ? snapshot.pair.a : snapshot.pair.b; }
+    const Observation& seen(const Side& side) const { return &side == &scene.a ? snapshot.pair.a : snapshot.pair.b; }
+    const Bobs<double>& bobs(std::size_t pendulum) const {
+        return snapshot.members.empty() ? seen(pendulums[pendulum].side).bobs : snapshot.members[pendulum];
+    }
 };
 
 /// A part of a film's picture. It depends only on the scene and on the snapshots up to now.
@@ -90,6 +93,12 @@ protected:
                 .frame = theme_.frame,
                 .text = theme_.quiet_text,
                 .unit = {}};
+    }
+
+    void add_axis(const Axis& axis, const Area& area, const Area& within, const AxisStyle& style, DisplayList& list,
+                  std::optional<double> every = {}) const {
+        const auto ticks = spaced_ticks(axis, style.edge == AxisStyle::Edge::bottom, style.em, every);
+        std::ranges::move(axis_items(axis, ticks, area, within, style), std::back_inserter(list));
     }
 
     const FilmState& state_;

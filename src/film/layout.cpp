@@ -5,12 +5,12 @@
 #include "numeric/state.hpp"
 #include "plot/labels.hpp"
 #include "render/typeface.hpp"
-#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace doppel {
@@ -101,15 +101,16 @@ std::size_t panel_count(const VideoSpec& video) {
     return is_one ? 1 : 2;
 }
 
-/// Chooses the sides that each panel shows, and the axes of the phase portrait.
+/// Chooses the pendulums that each panel shows, and the axes of the phase portrait.
 void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& areas, const MotionBounds& seen) {
     const auto kind = scene.preset.video.layout;
     if (kind == Arrangement::side_by_side || kind == Arrangement::portrait) {
-        for (std::size_t side = 0; side < 2; ++side) layout.panels.push_back({.area = areas[side], .sides = {side}});
+        for (std::size_t side = 0; side < 2; ++side) layout.panels.push_back({.area = areas[side], .shown = {side}});
         return;
     }
-    layout.panels.push_back({.area = areas[0], .sides = {0, 1}});
-    if (kind == Arrangement::single) layout.panels[0].sides = {0};
+    std::vector<std::size_t> all(std::max(scene.members.size(), scene.letters().size()));
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    layout.panels.push_back({.area = areas[0], .shown = std::move(all)});
     if (kind != Arrangement::phase) return;
     const Area& area = areas[1];
     const float em = px(layout.style.font.axis);
@@ -118,13 +119,6 @@ void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& a
     const Area axes{std::round(area.left + widest(spaced_ticks(rate, false, em), em) + 1.4f * em), rate.to,
                     std::round(area.right - 2 * em), rate.from};
     layout.phase = {area, axes, {.low = -180, .high = 180, .from = axes.left, .to = axes.right}, rate};
-}
-
-/// Size of one of many pendulums in a panel, relative to a single one.
-float member_scale(std::size_t members) {
-    return members <= max_full_size_members
-               ? 1
-               : std::sqrt(static_cast<float>(max_full_size_members) / static_cast<float>(members));
 }
 
 /// Centres the pendulums in their panels, as large as possible, all at the same scale. A chain's scale is given by the
@@ -151,9 +145,9 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     const float link =
         view.is_circle ? radius / static_cast<float>(std::max(scene.a.mass.size(), scene.b.mass.size())) : radius;
     // a mechanism has more parts to show; many members share the space of a few
-    const float size = view.is_circle ? member_scale(scene.members.size()) : 0.6f;
+    const float size = view.is_circle ? size_of_many(scene.members.size()) : 0.6f;
     // many thin rods remain separate; a few are at least as wide as lines
-    const float thinnest = scene.members.size() > max_full_size_members ? 0.5f : 0.8f;
+    const float thinnest = size_of_many(scene.members.size()) < 1 ? 0.5f : 0.8f;
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), thinnest);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
@@ -221,20 +215,33 @@ Style make_style(const VideoSpec& video, float unit, float text) {
     return style;
 }
 
+float size_of_many(std::size_t pendulums) {
+    return std::sqrt(8 / static_cast<float>(std::max<std::size_t>(pendulums, 8)));
+}
+
 Color member_color(const Style& style, double share) {
     // leaves out the end of the scale with too little contrast to the background
     return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
 }
 
-Color member_color(const Style& style, const Scene& scene, std::size_t k) {
-    if (const auto& listed = scene.preset.video.members.releases; !listed.empty())
-        return listed[k].color.value_or(style.theme.palette[k % style.theme.palette.size()]);
+std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style) {
+    std::vector<ShownPendulum> shown;
+    const auto& theme = style.theme;
+    const auto& listed = scene.preset.video.members.releases;
     const auto last = static_cast<double>(std::max<std::size_t>(scene.members.size(), 2) - 1);
-    return member_color(style, static_cast<double>(k) / last);
-}
-
-std::vector<double> masses_of(const Scene& scene, const MotionSpec& member) {
-    return member.physical ? scene.a.mass : member.chain->cast<double>().mass;
+    // listed members have distinct hues, others the colour scale
+    for (std::size_t k = 0; const auto& member : scene.members) {
+        shown.push_back({member, scene.a, member.physical ? scene.a.mass : member.chain->cast<double>().mass,
+                         listed.empty() ? member_color(style, static_cast<double>(k) / last)
+                                        : listed[k].color.value_or(theme.palette[k % theme.palette.size()])});
+        ++k;
+    }
+    if (!shown.empty()) return shown;
+    for (const char letter : scene.letters()) {
+        const auto& side = scene.side(letter);
+        shown.push_back({side.motion, side, side.mass, theme.sides[shown.size()]});
+    }
+    return shown;
 }
 
 Point PendulumPanel::at(double x_m, double y_m) const {

@@ -9,7 +9,6 @@
 #include "scene/scene.hpp"
 #include "scene/video_spec.hpp"
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -35,20 +34,26 @@ struct Style {
 /// `unit` = px of this picture per px of a 1920×1080 one; `text` = the same for text.
 Style make_style(const VideoSpec& video, float unit, float text);
 
-/// An ensemble of at most this many members is drawn as large as a pair.
-inline constexpr std::size_t max_full_size_members = 8;
+/// The size of one of many pendulums in a panel, relative to a single one; up to eight are as large as one.
+float size_of_many(std::size_t pendulums);
 
 /// The colour of a member of an ensemble, from the first (0) to the last (1).
 Color member_color(const Style& style, double share);
-/// The colour of member `k`: listed members have distinct hues, others the colour scale.
-Color member_color(const Style& style, const Scene& scene, std::size_t k);
-/// The masses of an ensemble's member, kg.
-std::vector<double> masses_of(const Scene& scene, const MotionSpec& member);
+
+/// A pendulum of a film: that of a side, or an ensemble's member with the side that has the same lines.
+struct ShownPendulum {
+    const MotionSpec& motion;
+    const Side& side;
+    std::vector<double> mass;  // kg
+    Color color;
+};
+/// From the first or front one on. `style`: for their colours.
+std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style = {});
 
 /// A panel of pendulums and its map from metres to pixels.
 struct PendulumPanel {
     Area area;
-    std::vector<std::size_t> sides{};   // sides whose pendulums it shows, the front one first
+    std::vector<std::size_t> shown{};   // numbers of pendulums, the front one first
     Point center{};                     // the position of (center_x, center_y), px
     double center_x = 0, center_y = 0;  // m; the pivot of a chain
     float px_per_m = 1;

@@ -75,7 +75,7 @@ void FilmPage::add(const Snapshot& snapshot) {
     }
     for (const auto kind : video.strips)
         if (!computes_ || !page_computes(kind))
-            for (const auto& curve : strip_curves(kind, scene_, pair, start_distance_, themes[0], 1))
+            for (const auto& curve : strip_curves(kind, scene_, pair, start_distance_))
                 curves.push_back(curve.value.value_or(NAN));
     for (const auto* seen : {&pair.a, &pair.b}) {
         if (video.layout != Arrangement::phase || computes_) break;
@@ -90,19 +90,16 @@ void FilmPage::add(const Snapshot& snapshot) {
 }
 
 /// Angles in steps of 2^−bits of a turn, times √N for a chain of N links, whose errors add up randomly; `low` is −half
-/// the range. Coordinates in steps of 2^−bits of their range. Stores second differences in time, less those of the
-/// previous pendulum if all have as many channels.
+/// the range. Coordinates in steps of 2^−bits of their range. Stores second differences in time.
 Json FilmPage::motion_json() const {
     const int bits = scene_.preset.video.position_bits;
     std::vector<double> turns;  // the step of a channel of angles, rad; 0: of coordinates
     Json pendulums = Json::array();
-    std::size_t channels = 0;  // of the last pendulum
-    for (const auto& [motion, side] : shown_pendulums(scene_)) {
-        const auto links = side.mass.size(), before = turns.size();
+    for (const auto& [motion, side, mass, color] : shown_pendulums(scene_)) {
+        const auto links = mass.size();
         const double turn = is_by_angles(side) ? std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(links)) : 0;
-        turns.resize(before + (turn > 0 ? links : 2 * links), turn);
+        turns.resize(turns.size() + (turn > 0 ? links : 2 * links), turn);
         if (side.pivot_reach > 0) turns.resize(turns.size() + 2, 0);
-        channels = turns.size() - before;
         pendulums.push_back({{"turn", turn}, {"moves", side.pivot_reach > 0}});
         if (turn > 0) pendulums.back()["length"] = motion.chain->cast<double>().length;
     }
@@ -117,11 +114,11 @@ Json FilmPage::motion_json() const {
         for (const float number : places_[c])
             words.push_back(static_cast<std::uint32_t>(
                 std::lround(turns[c] > 0 ? number / turns[c] + std::ldexp(1, bits - 1) : (number - low) / step)));
-    const auto like_last = channels * pendulums.size() == turns.size() ? channels * places_[0].size() : words.size();
-    for (std::size_t i = words.size(); i-- > like_last;) words[i] -= words[i - like_last];
-    return {{"bits", bits},           {"low", low},
-            {"step", step},           {"like_last", like_last},
-            {"pendulums", pendulums}, {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
+    return {{"bits", bits},
+            {"low", low},
+            {"step", step},
+            {"pendulums", pendulums},
+            {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
 }
 
 void FilmPage::finish() {
@@ -152,10 +149,9 @@ double estimated_page_bytes(const Scene& scene) {
     const auto& video = scene.preset.video;
     const bool computes = page_computes(scene);
     double per_sample = !computes && video.layout == Arrangement::phase ? 6 * number : 0;
-    for (const auto& [motion, side] : shown_pendulums(scene))
+    for (const auto& [motion, side, mass, color] : shown_pendulums(scene))
         if (!computes)
-            per_sample +=
-                place * video.position_bits * static_cast<double>(side.mass.size()) * (is_by_angles(side) ? 1 : 2);
+            per_sample += place * video.position_bits * static_cast<double>(mass.size()) * (is_by_angles(side) ? 1 : 2);
     for (const auto kind : video.strips)
         if (!computes || !page_computes(kind))
             per_sample += number * (kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2);

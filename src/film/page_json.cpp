@@ -1,14 +1,11 @@
 #include "film/page_json.hpp"
 
-#include "film/composer.hpp"
 #include "film/layer.hpp"
 #include "film/strips.hpp"
-#include "output/sink.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace doppel {
 namespace {
@@ -55,8 +52,7 @@ Json strip_json(const FilmState& state, std::size_t index, const PictureJson& js
     const double start_distance = state.snapshot.pair.distance;
     DisplayList backdrop;
     make_strip_layer(state, index)->backdrop(backdrop);
-    const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance,
-                                     state.layout.style.theme, state.layout.style.width.trace);
+    const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance, state.layout.style);
     auto words = placed_caption(strip, state.scene, state.layout, curves, start_distance == 0);
     Json json{{"kind", name_of(strip.kind)},
               {"area", json_of(strip.area)},
@@ -99,11 +95,8 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     if (!video.transparent) backdrop.push_back(filled(video.size, style.theme.background));
     for (const auto& panel : layout.panels) {
         make_pendulum_layer(state, panel)->backdrop(backdrop);
-        std::vector<std::size_t> shown(panel.sides);  // pendulums, from the front
-        if (!scene.members.empty()) shown.resize(scene.members.size());
-        if (!scene.members.empty()) std::iota(shown.begin(), shown.end(), std::size_t{0});
         json["panels"].push_back({{"area", json_of(panel.area)},
-                                  {"shown", shown},
+                                  {"shown", panel.shown},
                                   {"center", json_of(panel.center)},
                                   {"origin", {panel.center_x, panel.center_y}},
                                   {"scale", panel.px_per_m}});
@@ -128,9 +121,9 @@ Json end_json(const End<double>& end) {
 }
 
 /// A pendulum's masses, lines and chain. `least_bob`: radius of its lightest bobs, in units of the rods'.
-Json body_json(const ShownPendulum& pendulum, const std::vector<double>& masses, const Color& color) {
+Json body_json(const ShownPendulum& pendulum) {
     constexpr std::array<const char*, 5> kinds{"rod", "spring", "anchor", "slot_line", "slot_circle"};
-    const auto& [motion, side] = pendulum;
+    const auto& [motion, side, mass, color] = pendulum;
     float thickest = 1;
     Json lines = Json::array();
     for (const auto& line : side.lines) {
@@ -138,7 +131,7 @@ Json body_json(const ShownPendulum& pendulum, const std::vector<double>& masses,
             {kinds[static_cast<std::size_t>(line.kind)], end_json(line.from), end_json(line.to), line.width});
         thickest = std::max(thickest, line.width);
     }
-    return {{"mass", masses},
+    return {{"mass", mass},
             {"color", hexadecimal(color)},
             {"lines", lines},
             {"least_bob", thickest > 1 ? 0.5 * thickest : 1.6},
@@ -159,14 +152,6 @@ Json speed_json(const Scene& scene) {
 }
 
 }  // namespace
-
-std::vector<ShownPendulum> shown_pendulums(const Scene& scene) {
-    std::vector<ShownPendulum> shown;
-    for (const auto& member : scene.members) shown.push_back({member, scene.a});
-    if (!shown.empty()) return shown;
-    for (const char letter : scene.letters()) shown.push_back({scene.side(letter).motion, scene.side(letter)});
-    return shown;
-}
 
 Json axis_json(const Axis& axis, const std::string& label) {
     return {{"label", label},     {"from", axis.low}, {"to", axis.high}, {"logarithmic", axis.logarithmic},
@@ -194,9 +179,8 @@ Json chain_json(const MotionSpec& motion) {
 bool page_computes(const Scene& scene) {
     const auto shown = shown_pendulums(scene);
     return std::ranges::all_of(shown, [&](const ShownPendulum& pendulum) {
-        const auto& [motion, side] = pendulum;
-        return !side.replay && chain_json(motion).contains("method") &&
-               motion.chain->links() == shown[0].motion.chain->links();
+        return !pendulum.side.replay && chain_json(pendulum.motion).contains("method") &&
+               pendulum.motion.chain->links() == shown[0].motion.chain->links();
     });
 }
 
@@ -209,12 +193,7 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
     const auto style = make_style(video, 1, 1);
     const auto clock = clock_text(scene, 0);
     Json bodies = Json::array(), pictures = Json::array();
-    for (std::size_t k = 0; const auto& pendulum : shown_pendulums(scene)) {
-        const bool is_side = scene.members.empty();
-        bodies.push_back(body_json(pendulum, is_side ? pendulum.side.mass : masses_of(scene, pendulum.motion),
-                                   is_side ? style.theme.sides[k] : member_color(style, scene, k)));
-        ++k;
-    }
+    for (const auto& pendulum : shown_pendulums(scene, style)) bodies.push_back(body_json(pendulum));
     PairRun pair(scene);
     const Snapshot first{pair.next(never_stopped), {}};
     pictures.push_back(picture_json(scene, bounds, first));
@@ -238,8 +217,10 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
               {"fps", scene.fps.value()},
               {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
               {"speed", speed_json(scene)},
+              {"limits", Json::array()},
               {"bodies", bodies},
               {"pictures", pictures}};
+    for (const auto& [time, text] : limits_of(scene)) json["limits"].push_back({time, text});
     for (const auto& color : color_names)
         json["theme"][std::string(color.key)] = hexadecimal(style.theme.*color.member);
     if (video.layout == Arrangement::phase)

@@ -5,7 +5,6 @@
 #include "scene/scene.hpp"
 
 #include <string>
-#include <vector>
 
 namespace doppel {
 
@@ -18,13 +17,6 @@ Json axis_json(const Axis& axis, const std::string& label = "");
 /// The numbers in double of a motion's ideal chain of one to three links. Includes its method and steps if
 /// src/film/page/chain.js computes the motion bit for bit. null for any other motion.
 Json chain_json(const MotionSpec& motion);
-
-/// A pendulum of a film: that of a side, or an ensemble's member with the side that has the same layout.
-struct ShownPendulum {
-    const MotionSpec& motion;
-    const Side& side;
-};
-std::vector<ShownPendulum> shown_pendulums(const Scene& scene);
 
 /// Whether the page computes all of these motions.
 bool page_computes(const Scene& scene);

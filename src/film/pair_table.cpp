@@ -8,46 +8,72 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace doppel {
 
 namespace {
 
-/// Columns of the masses of a side, or of a member of an ensemble. Only chains have angles and rates.
-void add_columns(const std::string& prefix, const Side& side, std::vector<std::string>& names) {
-    const auto add = [&](const std::string& name) { names.push_back(prefix + name); };
-    const auto bobs = side.mass.size();
-    for (std::size_t i = 1; side.has_angles && i <= bobs; ++i) add(fmt::format("theta{}_rad", i));
-    for (std::size_t i = 1; side.has_angles && i <= bobs; ++i) add(fmt::format("omega{}_rad_per_s", i));
-    for (std::size_t i = 1; i <= bobs; ++i) {
-        for (const char* place : {"x", "y"}) add(fmt::format("{}{}_m", place, i));
-        for (const char* velocity : {"vx", "vy"}) add(fmt::format("{}{}_m_per_s", velocity, i));
+/// Calls cell(of, name, number, value) for each cell of some bobs; `{}` in the name stands for the number of a bob, from
+/// 1. Only chains have angles and rates.
+template <class Scalar, class Cell>
+void visit_bobs(const std::string& of, const Side& side, const Bobs<Scalar>& bobs, const Cell& cell) {
+    for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) cell(of, "theta{}_rad", i + 1, bobs[i].theta);
+    for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i)
+        cell(of, "omega{}_rad_per_s", i + 1, bobs[i].omega);
+    for (std::size_t i = 0; i < bobs.size(); ++i) {
+        cell(of, "x{}_m", i + 1, bobs[i].x);
+        cell(of, "y{}_m", i + 1, bobs[i].y);
+        cell(of, "vx{}_m_per_s", i + 1, bobs[i].vx);
+        cell(of, "vy{}_m_per_s", i + 1, bobs[i].vy);
     }
+}
+
+/// Calls cell(of, name, number, value) for each cell of a row, in order.
+template <class Cell>
+void visit_row(const Scene& scene, const Snapshot& snapshot, double start_distance, const Cell& cell) {
+    const auto& state = snapshot.pair;
+    const auto of_sides = [&](const auto& visit) {
+        for (const char letter : scene.letters())
+            visit(std::string{letter, '_'}, scene.side(letter), letter == 'a' ? state.a : state.b);
+    };
+    cell("", "sample", 0, state.sample);
+    cell("", "time_s", 0, scene.time(state.sample));
+    of_sides([&](const std::string& of, const Side& side, const Observation& seen) {
+        seen.exact.empty() ? visit_bobs(of, side, seen.bobs, cell) : visit_bobs(of, side, seen.exact, cell);
+        cell(of, "energy_J", 0, seen.energy);
+        cell(of, "energy_error", 0, &side == &scene.a ? state.energy_error_a : state.energy_error_b);
+        cell(of, "length_error_m", 0, seen.length_error);
+    });
+    if (!scene.is_single()) {
+        cell("", "distance", 0, state.distance);
+        cell("", "log_ratio", 0, log_ratio(state.distance, start_distance));
+    }
+    of_sides([&](const std::string& of, const Side&, const Observation& seen) {
+        if (!scene.preset.energy_columns) return;
+        cell(of, "kinetic_J", 0, seen.kinetic_energy);
+        cell(of, "potential_J", 0, seen.energy - seen.kinetic_energy);
+    });
+    of_sides([&](const std::string& of, const Side& side, const Observation& seen) {
+        if (side.has_work) cell(of, "work_J", 0, seen.work);
+        if (!(side.pivot_reach > 0)) return;
+        cell(of, "pivot_x_m", 0, seen.pivot.x);
+        cell(of, "pivot_y_m", 0, seen.pivot.y);
+    });
+    for (std::size_t k = 0; scene.preset.member_columns && k < snapshot.members.size(); ++k)
+        visit_bobs(fmt::format("member{}_", k + 1), scene.a, snapshot.members[k], cell);
 }
 
 }  // namespace
 
 std::vector<std::string> columns_of(const Scene& scene) {
-    std::vector<std::string> names{"sample", "time_s"};
-    for (const char letter : scene.letters()) {
-        add_columns(fmt::format("{}_", letter), scene.side(letter), names);
-        for (const char* name : {"energy_J", "energy_error", "length_error_m"})
-            names.push_back(fmt::format("{}_{}", letter, name));
-    }
-    if (!scene.is_single()) names.insert(names.end(), {"distance", "log_ratio"});
-    for (const char letter : scene.letters()) {
-        if (!scene.preset.energy_columns) break;
-        for (const char* name : {"kinetic", "potential"}) names.push_back(fmt::format("{}_{}_J", letter, name));
-    }
-    for (const char letter : scene.letters()) {
-        const auto& side = scene.side(letter);
-        if (side.has_work) names.push_back(fmt::format("{}_work_J", letter));
-        if (side.pivot_reach > 0)
-            for (const char axis : {'x', 'y'}) names.push_back(fmt::format("{}_pivot_{}_m", letter, axis));
-    }
-    for (std::size_t k = 0; scene.preset.member_columns && k < scene.members.size(); ++k)
-        add_columns(fmt::format("member{}_", k + 1), scene.a, names);
+    Snapshot any;
+    any.pair.a.bobs.resize(scene.a.mass.size());
+    any.pair.b.bobs.resize(scene.b.mass.size());
+    any.members.resize(scene.members.size(), any.pair.a.bobs);
+    std::vector<std::string> names;
+    visit_row(scene, any, 0, [&](const std::string& of, const char* name, std::size_t number, const auto&) {
+        names.push_back(of + fmt::format(fmt::runtime(name), number));
+    });
     return names;
 }
 
@@ -71,47 +97,16 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
 }
 
 void PairTable::add(const Snapshot& snapshot, double start_distance) {
-    const auto& state = snapshot.pair;
-    const auto seen = [&](char letter) -> const Observation& { return letter == 'a' ? state.a : state.b; };
-    csv_.add(state.sample);
-    csv_.add(scene_.time(state.sample));
-    for (const char letter : scene_.letters())
-        add_side(scene_.side(letter), seen(letter), letter == 'a' ? state.energy_error_a : state.energy_error_b);
-    if (!scene_.is_single()) {
-        csv_.add(state.distance);
-        csv_.add(log_ratio(state.distance, start_distance));
-    }
-    for (const char letter : scene_.letters()) {
-        if (!scene_.preset.energy_columns) break;
-        csv_.add(seen(letter).kinetic_energy);
-        csv_.add(seen(letter).energy - seen(letter).kinetic_energy);
-    }
-    for (const char letter : scene_.letters()) {
-        const auto& side = scene_.side(letter);
-        if (side.has_work) csv_.add(seen(letter).work);
-        if (side.pivot_reach > 0) csv_.add(seen(letter).pivot.x), csv_.add(seen(letter).pivot.y);
-    }
-    for (const auto& member : snapshot.members)
-        if (scene_.preset.member_columns) add_bobs(scene_.a, member);
+    visit_row(scene_, snapshot, start_distance, [&](const std::string&, const char*, std::size_t, const auto& value) {
+        if constexpr (std::is_same_v<decltype(value), const Quad&>)
+            add_exact(value);
+        else
+            csv_.add(value);
+    });
     csv_.end_row();
 }
 
-template <class Scalar>
-void PairTable::add_bobs(const Side& side, const Bobs<Scalar>& bobs) {
-    for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].theta);
-    for (std::size_t i = 0; side.has_angles && i < bobs.size(); ++i) add(bobs[i].omega);
-    for (const auto& bob : bobs)
-        for (const auto& value : {bob.x, bob.y, bob.vx, bob.vy}) add(value);
-}
-
-void PairTable::add_side(const Side& side, const Observation& seen, std::optional<double> energy_error) {
-    seen.exact.empty() ? add_bobs(side, seen.bobs) : add_bobs(side, seen.exact);
-    csv_.add(seen.energy);
-    csv_.add(energy_error);
-    csv_.add(seen.length_error);
-}
-
-void PairTable::add(const Quad& value) {
+void PairTable::add_exact(const Quad& value) {
     if (const auto near = static_cast<double>(value); !std::isfinite(near)) return csv_.add(near);
     csv_.add(text_of(value));
 }

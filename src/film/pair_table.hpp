@@ -4,7 +4,6 @@
 #include "output/csv.hpp"
 #include "scene/scene.hpp"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,12 +27,8 @@ public:
     void finish() { csv_.finish(); }
 
 private:
-    void add_side(const Side& side, const Observation& seen, std::optional<double> energy_error);
-    template <class Scalar>
-    void add_bobs(const Side& side, const Bobs<Scalar>& bobs);
-    void add(double value) { csv_.add(value); }
     /// Writes all digits.
-    void add(const Quad& value);
+    void add_exact(const Quad& value);
 
     const Scene& scene_;
     Csv csv_;

@@ -2,7 +2,6 @@
 #include "render/stroke.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -27,59 +26,47 @@ public:
     PendulumLayer(const FilmState& state, const PendulumPanel& panel)
         : Layer(state),
           panel_(panel),
-          heaviest_(std::max({std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass), 1e-300})),
-          paths_{Path{.trail = {state.scene, style_, 0}}, Path{.trail = {state.scene, style_, 1}}} {
-        for (const auto& member : state.scene.members) {
-            member_masses_.push_back(masses_of(state.scene, member));
-            heaviest_ = std::max(heaviest_, std::ranges::max(member_masses_.back()));
+          heaviest_(std::max({std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass), 1e-300})) {
+        const float thinner = std::max(size_of_many(pendulums_.size()), 0.4f);
+        for (const auto& pendulum : pendulums_) {
+            heaviest_ = std::max(heaviest_, std::ranges::max(pendulum.mass));
+            paths_.push_back(
+                {{state.scene, style_, hue(pendulum, 0.5f), px(style_.width.trail) * thinner}, std::nullopt});
         }
     }
 
     void backdrop(DisplayList& list) const override;
     void add() override {
-        if (!(state_.scene.preset.video.trail_s > 0)) return;
-        const auto& members = state_.snapshot.members;
-        for (std::size_t k = 0; k < members.size(); ++k) {
-            if (k == member_paths_.size())
-                member_paths_.push_back({{state_.scene, style_, member_hue(k, 0.5f), member_trail_width()}});
-            extend(member_paths_[k], members[k].back());
-        }
-        if (!members.empty()) return;
-        for (const auto side : panel_.sides) extend(paths_[side], state_.seen(side).bobs.back());
+        for (const auto k : panel_.shown)
+            if (video_.trail_s > 0) extend(paths_[k], bobs(k).back());
     }
     void frame(DisplayList& list) const override;
 
 private:
-    /// The path of a side's last bob.
+    /// The path of a pendulum's last bob.
     struct Path {
         Trail trail;
         std::optional<std::pair<Bob<double>, double>> last{};  // the last bob and its time, s
     };
 
     void extend(Path& path, const Bob<double>& bob) const;
-    void draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const;
+    void draw_trail(std::size_t k, DisplayList& list) const;
     bool coincide() const;
-    void draw_pendulum(std::size_t side, bool alone, DisplayList& list) const;
-    void draw_members(DisplayList& list) const;
-    void draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses, Color of_last,
-                   Color of_others, float minimum, DisplayList& list) const;
-    Color member_hue(std::size_t k, float opacity) const;
-    float member_trail_width() const;
-    void draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color, DisplayList& list) const;
-    Point place_at(std::size_t side, const Place<double>& place) const;
-    void draw_slots(std::size_t side, DisplayList& list) const;
-    void draw_pivots(std::size_t side, DisplayList& list) const;
+    void draw_bobs(std::size_t k, Color of_others, DisplayList& list) const;
+    Color hue(const ShownPendulum& pendulum, float opacity) const;
+    void draw_lines(std::size_t k, float radius, Color color, DisplayList& list) const;
+    Point place_at(const Side& side, const Place<double>& place) const;
+    void draw_slots(const Side& side, DisplayList& list) const;
+    void draw_pivots(const Side& side, DisplayList& list) const;
     void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const;
-    float bob_radius(std::size_t side, std::size_t bob) const { return radius_of(side, state_.side(side).mass[bob]); }
-    float radius_of(std::size_t side, double mass) const;
+    float bob_radius(std::size_t k, std::size_t bob) const;
+    const Bobs<double>& bobs(std::size_t k) const { return state_.bobs(k); }
     bool shows(std::string_view part) const { return video_.shows(part); }
     void draw_surroundings(DisplayList& list) const;
     /// The shift of all that is drawn, px, if the view follows a mass.
     Point shift() const {
         if (video_.view.follow == 0) return {};
-        const auto& members = state_.snapshot.members;
-        const auto& bobs = members.empty() ? state_.seen(panel_.sides.front()).bobs : members.front();
-        const auto& bob = bobs[static_cast<std::size_t>(video_.view.follow - 1)];
+        const auto& bob = bobs(panel_.shown.front())[static_cast<std::size_t>(video_.view.follow - 1)];
         const Point from = panel_.at(bob.x, bob.y);
         return {panel_.center.x - from.x, panel_.center.y - from.y};
     }
@@ -94,17 +81,16 @@ private:
 
     const PendulumPanel& panel_;
     const VideoSpec& video_ = state_.scene.preset.video;
+    const std::vector<ShownPendulum>& pendulums_ = state_.pendulums;
+    const bool is_ensemble_ = !state_.scene.members.empty(), is_many_ = size_of_many(pendulums_.size()) < 1;
     double heaviest_;  // kg
-    std::array<Path, 2> paths_;
-    std::vector<Path> member_paths_;                  // of an ensemble
-    std::vector<std::vector<double>> member_masses_;  // kg
+    std::vector<Path> paths_;
 };
 
 void PendulumLayer::backdrop(DisplayList& list) const {
     const float u = layout_.unit;
     const auto& area = panel_.area;
-    if (!state_.scene.preset.video.transparent)
-        list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
+    if (!video_.transparent) list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
     if (video_.view.follow == 0) draw_surroundings(list);
 }
 
@@ -116,7 +102,7 @@ void PendulumLayer::draw_surroundings(DisplayList& list) const {
         panel_.area.contains(Area{pivot.x - reach, pivot.y - reach, pivot.x + reach, pivot.y + reach});
     if (reach > 0 && is_within && shows("circle") && style_.width.grid > 0)
         list.push_back(Ring{pivot, reach, px(style_.width.grid), theme_.grid});
-    for (const auto side : panel_.sides) draw_slots(side, list);
+    for (const auto k : panel_.shown) draw_slots(pendulums_[k].side, list);
 }
 
 /// Adds the path from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
@@ -143,34 +129,40 @@ void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
     path.last = {bob, now};
 }
 
-void PendulumLayer::draw_trail(const Path& path, const Bob<double>& bob, DisplayList& list) const {
-    const auto draw = [&](const Trail& trail) {
-        trail.draw(panel_.area, state_.time(), still_at(bob), list, std::numeric_limits<float>::infinity(), shift());
-    };
-    if (!state_.is_between() || !path.last) return draw(path.trail);
-    auto ahead = path;
-    extend(ahead, bob);
-    draw(ahead.trail);
+void PendulumLayer::draw_trail(std::size_t k, DisplayList& list) const {
+    const auto& bob = bobs(k).back();
+    auto ahead = paths_[k];
+    if (state_.is_between() && ahead.last) extend(ahead, bob);
+    ahead.trail.draw(panel_.area, state_.time(), still_at(bob), list, std::numeric_limits<float>::infinity(), shift());
 }
 
+/// The last pendulum behind: trails, rods, pivots and bobs. If several pendulums share a panel, each has its own hue.
+/// Many are transparent, with their last bobs on top.
 void PendulumLayer::frame(DisplayList& list) const {
     if (video_.view.follow > 0) draw_surroundings(list);
-    if (!state_.snapshot.members.empty()) return draw_members(list);
-    const bool alone = panel_.sides.size() == 1;
+    const auto& shown = panel_.shown;
+    const bool alone = !is_ensemble_ && shown.size() == 1;
     // the other pendulum, faint and behind; this side hides it as long as both move together
     if (alone && shows("twin") && !state_.scene.is_single() && !coincide()) {
-        const std::size_t other = 1 - panel_.sides.front();
-        const Color hue = theme_.sides[other];
-        const Color ghost =
-            state_.scene.preset.video.transparent ? hue.with_alpha(0.4f) : mixed(theme_.panel, hue, 0.26f);
-        draw_lines(other, state_.seen(other).bobs, 0.7f * layout_.rod_radius, ghost, list);
-        const auto& bobs = state_.seen(other).bobs;
-        for (std::size_t i = 0; shows("bobs") && layout_.bob_radius > 0 && i < bobs.size(); ++i)
-            draw_disc(at(bobs[i]), bob_radius(other, i), ghost, list);
+        const std::size_t other = 1 - shown.front();
+        const Color color = pendulums_[other].color;
+        const Color ghost = video_.transparent ? color.with_alpha(0.4f) : mixed(theme_.panel, color, 0.26f);
+        draw_lines(other, 0.7f * layout_.rod_radius, ghost, list);
+        for (std::size_t i = 0; shows("bobs") && layout_.bob_radius > 0 && i < bobs(other).size(); ++i)
+            draw_disc(at(bobs(other)[i]), bob_radius(other, i), ghost, list);
     }
-    for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side)
-        draw_trail(paths_[*side], state_.seen(*side).bobs.back(), list);
-    for (auto side = panel_.sides.rbegin(); side != panel_.sides.rend(); ++side) draw_pendulum(*side, alone, list);
+    for (auto k = shown.rbegin(); k != shown.rend(); ++k) draw_trail(*k, list);
+    for (auto k = shown.rbegin(); k != shown.rend(); ++k) {
+        const auto& pendulum = pendulums_[*k];
+        const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, pendulum.color, share); };
+        draw_lines(*k, layout_.rod_radius, is_ensemble_ ? hue(pendulum, 0.43f) : hued(theme_.rod, 0.55f), list);
+        if (!is_ensemble_) draw_pivots(pendulum.side, list);
+        if (!is_many_) draw_bobs(*k, hued(theme_.bob, 0.4f), list);
+    }
+    if (is_ensemble_) draw_pivots(state_.scene.a, list);
+    if (!is_many_ || !shows("bobs") || !(layout_.bob_radius > 0)) return;
+    for (auto k = shown.rbegin(); k != shown.rend(); ++k)
+        draw_disc(at(bobs(*k).back()), bob_radius(0, bobs(0).size() - 1), pendulums_[*k].color, list);
 }
 
 bool PendulumLayer::coincide() const {
@@ -180,73 +172,39 @@ bool PendulumLayer::coincide() const {
     const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
         return a.kind == b.kind && a.from == b.from && a.to == b.to;
     };
-    return std::ranges::equal(state_.seen(0).bobs, state_.seen(1).bobs, same_bob) &&
+    return std::ranges::equal(bobs(0), bobs(1), same_bob) &&
            std::ranges::equal(state_.scene.a.lines, state_.scene.b.lines, same_line);
 }
 
-/// Rods, then the pivot and the bobs. If two pendulums share a panel, each has its own hue.
-void PendulumLayer::draw_pendulum(std::size_t side, bool alone, DisplayList& list) const {
-    const auto& bobs = state_.seen(side).bobs;
-    const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, theme_.sides[side], share); };
-    draw_lines(side, bobs, layout_.rod_radius, hued(theme_.rod, 0.55f), list);
-    draw_pivots(side, list);
-    draw_bobs(side, bobs, state_.side(side).mass, theme_.sides[side], hued(theme_.bob, 0.4f), layout_.last_bob_radius,
-              list);
-}
-
-/// Bobs with a contrasting rim, the last one with a radius of at least `minimum` px.
-void PendulumLayer::draw_bobs(std::size_t side, const Bobs<double>& bobs, const std::vector<double>& masses,
-                              Color of_last, Color of_others, float minimum, DisplayList& list) const {
+/// Bobs with a contrasting rim. The last one of a long chain is visible, except in an ensemble.
+void PendulumLayer::draw_bobs(std::size_t k, Color of_others, DisplayList& list) const {
     if (!shows("bobs") || !(layout_.bob_radius > 0)) return;
-    for (std::size_t i = 0; i < bobs.size(); ++i) {
-        const bool last = i + 1 == bobs.size();
-        const float radius = std::max(radius_of(side, masses[i]), last ? minimum : 0);
+    for (std::size_t i = 0; i < bobs(k).size(); ++i) {
+        const bool last = i + 1 == bobs(k).size();
+        const float radius = std::max(bob_radius(k, i), last && !is_ensemble_ ? layout_.last_bob_radius : 0);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
-        if (!state_.scene.preset.video.transparent) draw_disc(at(bobs[i]), radius + rim, theme_.panel, list);
-        draw_disc(at(bobs[i]), radius, last ? of_last : of_others, list, last ? style_.glow : 0);
+        if (!video_.transparent) draw_disc(at(bobs(k)[i]), radius + rim, theme_.panel, list);
+        draw_disc(at(bobs(k)[i]), radius, last ? pendulums_[k].color : of_others, list, last ? style_.glow : 0);
     }
 }
 
-/// The colour of a member; many members are more transparent, few are opaque.
-Color PendulumLayer::member_hue(std::size_t k, float opacity) const {
-    const auto count = state_.scene.members.size();
-    const auto color = member_color(style_, state_.scene, k);
-    if (count <= max_full_size_members) return color;
-    return color.with_alpha(std::clamp(opacity * 14 / std::sqrt(static_cast<float>(count)), 0.16f, 0.9f));
-}
-
-float PendulumLayer::member_trail_width() const {
-    const auto count = static_cast<float>(state_.scene.members.size());
-    return px(style_.width.trail) * std::clamp(std::sqrt(max_full_size_members / count), 0.4f, 1.0f);
-}
-
-/// The members of an ensemble, the last one behind: trails, rods (transparent if they are many), and the last bobs; for
-/// few members, all bobs.
-void PendulumLayer::draw_members(DisplayList& list) const {
-    const auto& members = state_.snapshot.members;
-    const bool few = members.size() <= max_full_size_members;
-    for (std::size_t k = member_paths_.size(); k-- > 0;) draw_trail(member_paths_[k], members[k].back(), list);
-    for (std::size_t k = members.size(); k-- > 0;) {
-        draw_lines(0, members[k], layout_.rod_radius, member_hue(k, 0.43f), list);
-        const auto hue = member_hue(k, 1);
-        if (few) draw_bobs(0, members[k], member_masses_[k], hue, mixed(theme_.bob, hue, 0.4f), 0, list);
-    }
-    draw_pivots(0, list);
-    if (few || !shows("bobs") || !(layout_.bob_radius > 0)) return;
-    for (std::size_t k = members.size(); k-- > 0;)
-        draw_disc(at(members[k].back()), bob_radius(0, members[k].size() - 1), member_hue(k, 1).with_alpha(1), list);
+/// The colour of a pendulum; many are more transparent, few are opaque.
+Color PendulumLayer::hue(const ShownPendulum& pendulum, float opacity) const {
+    if (!is_many_) return pendulum.color;
+    return pendulum.color.with_alpha(
+        std::clamp(opacity * 14 / std::sqrt(static_cast<float>(pendulums_.size())), 0.16f, 0.9f));
 }
 
 /// Rods, and springs as thin zigzags.
-void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float radius, Color color,
-                               DisplayList& list) const {
+void PendulumLayer::draw_lines(std::size_t k, float radius, Color color, DisplayList& list) const {
     if (!shows("rods") || !(radius > 0)) return;
+    const auto& side = pendulums_[k].side;
     const auto end_at = [&](const End<double>& end) {
-        if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs[*bob]);
+        if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs(k)[*bob]);
         return place_at(side, std::get<Place<double>>(end));
     };
     const auto draw = [&](Point from, Point to, float width) { add_line(from, to, width, color, panel_.area, list); };
-    for (const auto& line : state_.side(side).lines) {
+    for (const auto& line : side.lines) {
         if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), line.width * radius);
         if (line.kind != MechanismLine::Kind::spring) continue;
         constexpr int turns = 16;
@@ -264,11 +222,11 @@ void PendulumLayer::draw_lines(std::size_t side, const Bobs<double>& bobs, float
 }
 
 /// Slots in which bobs slide.
-void PendulumLayer::draw_slots(std::size_t side, DisplayList& list) const {
+void PendulumLayer::draw_slots(const Side& side, DisplayList& list) const {
     const float width = px(style_.width.grid);
     const auto& color = theme_.grid;
     if (!(width > 0)) return;
-    for (const auto& line : state_.side(side).lines) {
+    for (const auto& line : side.lines) {
         const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
         if (!from) continue;
         const Point start = at(*from);
@@ -284,16 +242,16 @@ void PendulumLayer::draw_slots(std::size_t side, DisplayList& list) const {
 }
 
 /// The position of a fixed end; for a chain, of the pivot, which may move.
-Point PendulumLayer::place_at(std::size_t side, const Place<double>& place) const {
+Point PendulumLayer::place_at(const Side& side, const Place<double>& place) const {
     const auto& pivot = state_.seen(side).pivot;
     return at(place[0] + pivot.x, place[1] + pivot.y);
 }
 
 /// Symbols at the fixed ends.
-void PendulumLayer::draw_pivots(std::size_t side, DisplayList& list) const {
+void PendulumLayer::draw_pivots(const Side& side, DisplayList& list) const {
     if (!shows("rods") || !(layout_.rod_radius > 0)) return;
     const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
-    for (const auto& line : state_.side(side).lines) {
+    for (const auto& line : side.lines) {
         using Kind = MechanismLine::Kind;
         if (line.kind == Kind::slot_line || line.kind == Kind::slot_circle) continue;
         const bool one_end = line.kind == Kind::anchor;
@@ -312,10 +270,11 @@ void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& 
 }
 
 /// Radius in px: area proportional to mass, with a visible minimum.
-float PendulumLayer::radius_of(std::size_t side, double mass) const {
-    const auto share = static_cast<float>(std::sqrt(mass / heaviest_));
+float PendulumLayer::bob_radius(std::size_t k, std::size_t bob) const {
+    const auto& [motion, side, mass, color] = pendulums_[k];
+    const auto share = static_cast<float>(std::sqrt(mass[bob] / heaviest_));
     float thickest = 1;
-    for (const auto& line : state_.side(side).lines) thickest = std::max(thickest, line.width);
+    for (const auto& line : side.lines) thickest = std::max(thickest, line.width);
     return std::max(layout_.bob_radius * share, (thickest > 1 ? 0.5f * thickest : 1.6f) * layout_.rod_radius);
 }
 

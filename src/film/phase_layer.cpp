@@ -32,13 +32,13 @@ std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>&
 class PhaseLayer final : public Layer {
 public:
     PhaseLayer(const FilmState& state, const PhasePanel& panel)
-        : Layer(state), panel_(panel), trails_{Trail(state.scene, style_, 0), Trail(state.scene, style_, 1)} {}
+        : Layer(state), panel_(panel), trails_{trail_of(0), trail_of(1)} {}
 
     void backdrop(DisplayList& list) const override;
     void add() override {
         for (std::size_t side = 0; side < 2; ++side)
             video_.phase == PhaseKind::rate
-                ? trails_[side].add(at(state_.seen(side).bobs[link_]), state_.time(), state_.time())
+                ? trails_[side].add(at(state_.bobs(side)[link_]), state_.time(), state_.time())
                 : add_to_section(side);
     }
     void frame(DisplayList& list) const override;
@@ -48,6 +48,9 @@ private:
         return {panel_.angle.at(degrees(std::remainder(theta, 2 * pi))), panel_.rate.at(degrees(omega))};
     }
     Point at(const Bob<double>& bob) const { return at(bob.theta, bob.omega); }
+    Trail trail_of(std::size_t side) const {
+        return {state_.scene, style_, theme_.sides[side], px(style_.width.trail)};
+    }
     void add_to_section(std::size_t side);
 
     const PhasePanel& panel_;
@@ -60,18 +63,13 @@ private:
 };
 
 void PhaseLayer::backdrop(DisplayList& list) const {
-    const float em = px(style_.font.axis);
     const Area &area = panel_.area, around = panel_.panel;
     if (!video_.transparent)
         list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
     auto style = axis_style();
-    const auto add = [&](const Axis& axis, const std::vector<Tick>& ticks) {
-        const auto items = axis_items(axis, ticks, area, around, style);
-        list.insert(list.end(), items.begin(), items.end());
-    };
-    add(panel_.angle, spaced_ticks(panel_.angle, true, em, 90));
+    add_axis(panel_.angle, area, around, style, list, 90);
     style.edge = AxisStyle::Edge::left;
-    add(panel_.rate, spaced_ticks(panel_.rate, false, em));
+    add_axis(panel_.rate, area, around, style, list);
     const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
                                      video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
     const auto fits = fitted_text(layout_, heading, px(style_.font.strip), Weight::regular, around.width());
@@ -80,7 +78,7 @@ void PhaseLayer::backdrop(DisplayList& list) const {
 
 /// Adds a point if the path since the last sample crosses the section.
 void PhaseLayer::add_to_section(std::size_t side) {
-    const auto& bobs = state_.seen(side).bobs;
+    const auto& bobs = state_.bobs(side);
     if (const auto& last = last_bobs_[side]) {
         const double dt = state_.time() - last_time_;
         if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
@@ -100,7 +98,7 @@ void PhaseLayer::frame(DisplayList& list) const {
         for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
         if (video_.phase != PhaseKind::rate) continue;
         // a path that leaves at +180° continues at -180°
-        const Point now = at(state_.seen(side).bobs[link_]);
+        const Point now = at(state_.bobs(side)[link_]);
         auto trail = trails_[side];
         if (state_.is_between()) trail.add(now, state_.time(), state_.time());
         trail.draw(panel_.area, state_.time(), std::nullopt, list, panel_.area.width() / 2);

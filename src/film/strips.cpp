@@ -2,6 +2,7 @@
 
 #include "numeric/state.hpp"
 #include "scene/captions.hpp"
+#include "scene/certificate.hpp"
 
 #include <fmt/format.h>
 
@@ -90,10 +91,38 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
+/// A caption in lines no wider than `width` px. The first line begins at (0, 0).
+std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
+                                 const std::vector<StripCurve>& curves, bool starts_equal, float width) {
+    const float size = px(layout.style.font.strip), line = caption_line(layout), gap = 0.66f * size;
+    const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
+    std::vector<Label> labels;
+    Point pen;
+    for (const auto& piece : pieces_of(kind, scene, layout, curves, starts_equal)) {
+        if (pen.x > 0) pen.x += gap;
+        const auto parts = piece.room > 0 ? std::vector{piece.text} : words_of(piece.text);
+        bool continues = false;  // continues the previous label
+        for (const auto& part : parts) {
+            const float room = std::max(piece.room, width_of(part.substr(0, part.find_last_not_of(' ') + 1)));
+            if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, continues = false;
+            if (continues)
+                labels.back().text += part;
+            else
+                labels.push_back(label(part, pen, size, piece.color));
+            continues = true;
+            pen.x += std::max(piece.room, width_of(part));
+        }
+    }
+    for (auto& words : labels) words.text.erase(words.text.find_last_not_of(' ') + 1);
+    return labels;
+}
+
 }  // namespace
 
 std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const PairState& state, double start_distance,
-                                     const Theme& theme, double width) {
+                                     const Style& style) {
+    const auto& theme = style.theme;
+    const double width = style.width.trace;  // of single curves
     if (kind == StripKind::distance) return {{state.distance, theme.trace, width}};
     if (kind == StripKind::exponent) return {{growth_rate(scene, state, start_distance), theme.trace, width}};
     std::vector<StripCurve> curves;
@@ -146,6 +175,19 @@ std::optional<double> growth_rate(const Scene& scene, const PairState& state, do
     return std::log(state.distance / start_distance) / scene.time(state.moment());
 }
 
+std::vector<TimeMark> limits_of(const Scene& scene) {
+    std::vector<TimeMark> marks;
+    if (const auto limit = scene.horizon())
+        marks.push_back({*limit, fmt::format("numerical predictability limit {:.1f} s", *limit)});
+    if (const auto& proof = scene.certificate) {
+        const double until = proof->run_until_s();
+        marks.push_back({until, fmt::format("proved until {:.1f} s", std::floor(10 * until) / 10)});  // not later
+    }
+    if (const auto limit = scene.preset.video.model_limit_s)
+        marks.push_back({*limit, fmt::format("predictability limit of the model {:.1f} s", *limit)});
+    return marks;
+}
+
 float caption_line(const Layout& layout) {
     return 1.24f * px(layout.style.font.strip);
 }
@@ -154,34 +196,9 @@ float above_curves(const Layout& layout) {
     return 0.9f * px(layout.style.font.strip);
 }
 
-std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
-                                 const std::vector<StripCurve>& curves, bool starts_equal, float width) {
-    const float size = px(layout.style.font.strip), line = caption_line(layout), gap = 0.66f * size;
-    const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
-    std::vector<Label> labels;
-    Point pen;
-    for (const auto& piece : pieces_of(kind, scene, layout, curves, starts_equal)) {
-        if (pen.x > 0) pen.x += gap;
-        const auto parts = piece.room > 0 ? std::vector{piece.text} : words_of(piece.text);
-        bool continues = false;  // continues the previous label
-        for (const auto& part : parts) {
-            const float room = std::max(piece.room, width_of(part.substr(0, part.find_last_not_of(' ') + 1)));
-            if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, continues = false;
-            if (continues)
-                labels.back().text += part;
-            else
-                labels.push_back(label(part, pen, size, piece.color));
-            continues = true;
-            pen.x += std::max(piece.room, width_of(part));
-        }
-    }
-    for (auto& words : labels) words.text.erase(words.text.find_last_not_of(' ') + 1);
-    return labels;
-}
-
 std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, const Layout& layout,
-                                  const std::vector<StripCurve>& curves, bool is_alike) {
-    auto words = strip_caption(strip.kind, scene, layout, curves, is_alike, strip.cell.width());
+                                  const std::vector<StripCurve>& curves, bool starts_equal) {
+    auto words = strip_caption(strip.kind, scene, layout, curves, starts_equal, strip.cell.width());
     const float room = caption_line(layout) * (static_cast<float>(strip.lines) - 0.5f);
     std::erase_if(words, [&](const Label& label) { return label.anchor.y > room; });
     for (auto& label : words) label.anchor = {strip.cell.left + label.anchor.x, strip.baseline + label.anchor.y};
@@ -194,7 +211,7 @@ int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, floa
         seen->bobs.resize(side->mass.size());
         seen->tension.resize(side->mass.size());
     }
-    const auto curves = strip_curves(kind, scene, any, 0, layout.style.theme, 1);
+    const auto curves = strip_curves(kind, scene, any, 0, layout.style);
     const auto labels = strip_caption(kind, scene, layout, curves, false, width);
     return 1 + static_cast<int>(std::lround(labels.back().anchor.y / caption_line(layout)));
 }

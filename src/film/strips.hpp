@@ -4,7 +4,6 @@
 #include "image/color.hpp"
 #include "scene/scene.hpp"
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,25 +18,28 @@ struct StripCurve {
     std::string name{};
 };
 
-/// The values that a strip shows; single curves are `width` px wide. Potential energy is zero at the lowest point that
-/// a chain can reach. The energy of a driven side is its mean over the last drive period.
+/// The values that a strip shows. Potential energy is zero at the lowest point that a chain can reach. The energy of a
+/// driven side is its mean over the last drive period. `style`: for colours and widths.
 std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const PairState& state, double start_distance,
-                                     const Theme& theme, double width);
+                                     const Style& style = {});
 
 /// ln(d/d0) / t, 1/s. Nothing in the first twentieth of the scene, where it is not meaningful yet, or if a distance is
 /// 0.
 std::optional<double> growth_rate(const Scene& scene, const PairState& state, double start_distance);
 
+/// A time on the axis of all strips, with its text.
+struct TimeMark {
+    double time_s;
+    std::string text;
+};
+/// The predictability limits, and the time until which the run is proved.
+std::vector<TimeMark> limits_of(const Scene& scene);
+
 /// Line spacing of captions, px; also the distance from the last line to the curves.
 float caption_line(const Layout& layout);
 float above_curves(const Layout& layout);
 
-/// The caption of a strip, in lines no wider than `width` px: the quantity, and its value (one curve) or the curves'
-/// names. The first line begins at (0, 0).
-std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
-                                 const std::vector<StripCurve>& curves, bool starts_equal, float width);
-
-/// The caption at its place in the picture, as far as the strip has space.
+/// The caption of a strip, as far as it has space: the quantity, and its value (one curve) or the curves' names.
 std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, const Layout& layout,
                                   const std::vector<StripCurve>& curves, bool starts_equal);
 

@@ -163,7 +163,7 @@ TEST(Layouts, AxesContainTheWholeMotion) {
         for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
             if (snapshot.pair.sample == 0) start = snapshot.pair.distance;
             for (std::size_t k = 0; k < strips.size(); ++k)
-                for (const auto& curve : strip_curves(strips[k].kind, scene, snapshot.pair, start, themes[0], 1))
+                for (const auto& curve : strip_curves(strips[k].kind, scene, snapshot.pair, start))
                     if (curve.value) seen[k].add(*curve.value);
         });
         for (std::size_t k = 0; k < strips.size(); ++k) {

@@ -145,8 +145,6 @@ std::vector<std::vector<double>> channels_of(const Json& motion, std::size_t cou
     for (int order = 0; order < 2; ++order)
         for (std::size_t i = 0; i < words.size(); ++i)
             if (i % count > 0) words[i] += words[i - 1];
-    for (std::size_t i = motion.at("like_last"); i < words.size(); ++i)
-        words[i] += words[i - motion.at("like_last").get<std::size_t>()];
     std::vector<std::vector<double>> channels;
     std::size_t at = 0;
     const auto add = [&](double low, double step) {
@@ -249,6 +247,13 @@ TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
         EXPECT_EQ(script, "\n" + test::bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "src" / name)) << name;
         at = page.find(start, at + 1);
     }
+}
+
+TEST(Page, SaysTheLimitsThatTheFilmMarks) {
+    const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
+    EXPECT_EQ(data_of(page_of(text)).at("limits"), Json::array());
+    EXPECT_EQ(data_of(page_of(text + "model_limit_s = 0.5\n")).at("limits").dump(),
+              R"([[0.5,"predictability limit of the model 0.5 s"]])");
 }
 
 /// A wide film also has an upright picture; the pictures equal those of the film.

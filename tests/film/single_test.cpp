@@ -23,7 +23,7 @@ TEST(Single, ShowsOnePendulumAndNothingOfAPair) {
     const auto scene = scene_of_text(one);
     const auto layout = make_layout(scene);
     ASSERT_EQ(layout.panels.size(), 1u);
-    EXPECT_EQ(layout.panels[0].sides, std::vector<std::size_t>{0});
+    EXPECT_EQ(layout.panels[0].shown, std::vector<std::size_t>{0});
     ASSERT_EQ(layout.strips.size(), 1u);
     EXPECT_GE(layout.strips[0].area.height(), 0.2f * 1080);
     const auto composer = composed(scene, scene.samples);

@@ -158,7 +158,7 @@ TEST(Strips, TheEnergyOfADrivenSideIsAMeanOverItsPeriod) {
     const auto scene = scene_of("kapitza", {"scene.duration_s=3"});
     Spread raw, mean;
     for_each_snapshot(scene, scene.samples, [&](const Snapshot& seen) {
-        const auto value = strip_curves(StripKind::total_energy, scene, seen.pair, 0, themes[0], 1)[0].value;
+        const auto value = strip_curves(StripKind::total_energy, scene, seen.pair, 0)[0].value;
         EXPECT_EQ(value.has_value(), scene.time(seen.pair.sample) >= 1 / 15.76) << seen.pair.sample;
         if (!value) return;
         raw.low = std::min(raw.low, seen.pair.a.energy), raw.high = std::max(raw.high, seen.pair.a.energy);
@@ -178,7 +178,7 @@ TEST(Strips, PotentialEnergyCountsFromTheLowestPoint) {
                                "b.angle_deg=[0, 0]", "system.omega_deg_per_s=[0, 0]"});
     PairRun pair(scene);
     const auto start = pair.next(never_stopped);
-    const auto potential = [&](StripKind kind) { return *strip_curves(kind, scene, start, 0, themes[0], 1)[1].value; };
+    const auto potential = [&](StripKind kind) { return *strip_curves(kind, scene, start, 0)[1].value; };
     EXPECT_NEAR(potential(StripKind::energies_a), 3 * 9.8 * 0.25 / 2, 1e-12);
     EXPECT_NEAR(potential(StripKind::energies_b), 0, 1e-12);
 }

@@ -18,9 +18,8 @@ async function unpacked(base64, wordBytes, order) {
 }
 
 // The motion that the page holds: for each pendulum places [xs, ys] of its pivot and its bobs.
-async function embeddedMotion({ bits, low, step, like_last, pendulums, words }) {
+async function embeddedMotion({ bits, low, step, pendulums, words }) {
   const steps = await unpacked(words, bits / 8, 2), most = 2 ** bits - 1;
-  for (let i = like_last; like_last && i < steps.length; ++i) steps[i] += steps[i - like_last];
   let at = 0;
   const channel = (from, unit) => numbers(() => from + unit * (steps[at++] & most));
   const place = () => [channel(low, step), channel(low, step)];

@@ -195,18 +195,21 @@ function verticalLine(x, top, bottom, color) {
   const width = Math.max(1, Math.round(picture.mark));
   if (picture.mark > 0) box(Math.round(x - width / 2), top, width, bottom - top, 0, color);
 }
-// A dashed line, and beside it at its foot, above what stands there, what it marks.
-function drawMark({ area: [left, top, right, bottom], backdrop, time }, at, words) {
-  const x = along(time, at), t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
-  for (let y = top; y < bottom; y += 10 * t) verticalLine(x, y, Math.min(y + 5 * t, bottom), theme.quiet_text);
-  text("", [0, 0], ...style);
-  const { width } = g.measureText(words), isRight = right - x - 20 * t >= Math.min(width, x - left - 20 * t);
-  const from = Math.max(Math.min(isRight ? x + 10 * t : x - 10 * t - width, right - width - 2 * t), left + 2 * t);
-  const notes = motion === original ? backdrop.filter(item => item[0] === "text" && item[6] === theme.text) : [];
-  const foot = Math.min(bottom - 0.45 * size, ...notes.map(item => item[2][1] - 1.2 * size));
+// The texts of marks at the feet of their lines, one above the other. Lines of limits are in the backdrop.
+function drawMarks({ area: [left, top, right, bottom], time }, marks) {
+  const t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
   const behind = film.transparent ? "#0000" : faded(theme.background, 0.85);
-  box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, behind);
-  text(words, [from, foot], ...style);
+  for (const [at] of marks.filter(mark => !film.limits.includes(mark)))
+    for (let y = top; y < bottom; y += 10 * t)
+      verticalLine(along(time, at), y, Math.min(y + 5 * t, bottom), theme.quiet_text);
+  text("", [0, 0], ...style);
+  marks.forEach(([at, words], i) => {
+    const x = along(time, at), foot = bottom - (0.45 + 1.2 * i) * size, { width } = g.measureText(words);
+    const isRight = right - x - 20 * t >= Math.min(width, x - left - 20 * t);
+    const from = Math.max(Math.min(isRight ? x + 10 * t : x - 10 * t - width, right - width - 2 * t), left + 2 * t);
+    box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, behind);
+    text(words, [from, foot], ...style);
+  });
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
@@ -218,8 +221,9 @@ function drawStrip(strip, index) {
   drawAll(strip.words);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
-  if (index === stripOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6))
-    drawMark(strip, since, `diverged at ${since.toFixed(1)} s`);
+  const marks = motion === original ? [...film.limits] : [];
+  if (isStill ? since >= 0 : time >= since + 1 - 1e-6) marks.push([since, `diverged at ${since.toFixed(1)} s`]);
+  if (index === stripOfPair) drawMarks(strip, marks);
   verticalLine(x, area[1], area[3], theme.cursor);
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
     const [color, width] = pens[c];
