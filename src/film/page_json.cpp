@@ -218,6 +218,7 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
               {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
               {"speed", speed_json(scene)},
               {"limits", Json::array()},
+              {"true_divergence", true_divergence_words(scene)},
               {"bodies", bodies},
               {"pictures", pictures}};
     for (const auto& [time, text] : limits_of(scene)) json["limits"].push_back({time, text});

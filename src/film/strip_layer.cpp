@@ -27,8 +27,10 @@ private:
     std::vector<StripCurve> curves() const {
         return strip_curves(strip_.kind, state_.scene, state_.snapshot.pair, state_.outcome.start_distance, style_);
     }
+    /// A curve begins where it enters its axis.
     void extend(Trace& trace, const StripCurve& now) const {
-        if (now.value) trace.add({strip_.time.at(state_.time()), strip_.value.at(*now.value)});
+        if (now.value && !(trace.is_empty() && *now.value < strip_.value.low))
+            trace.add({strip_.time.at(state_.time()), strip_.value.at(*now.value)});
     }
     /// Whether this strip shows the marks of the pair: that of the distance, otherwise the first.
     bool is_of_pair() const {
@@ -102,11 +104,9 @@ void StripLayer::frame(DisplayList& list) const {
         list.push_back(std::move(words));
     auto marks = is_of_pair() ? limits_of(state_.scene) : std::vector<TimeMark>();
     if (const auto since = state_.outcome.divergence.since(); since && is_of_pair()) {
-        marks.push_back({*since, fmt::format("diverged at {:.1f} s", *since)});
-        draw_line(marks.back(), list);  // below all texts
+        marks.push_back({*since, fmt::format("diverged at {:.1f} s{}", *since, true_divergence_words(state_.scene))});
+        draw_line(marks.back(), list);
     }
-    float foot = area.bottom - 0.45f * px(style_.font.strip);
-    for (const auto& mark : marks) draw_text(mark, foot, list);
     const float x = strip_.time.at(state_.time());
     if (style_.width.mark > 0)
         list.push_back(vertical_line(x, area.top, area.bottom, px(style_.width.mark), theme_.cursor));
@@ -115,7 +115,9 @@ void StripLayer::frame(DisplayList& list) const {
         if (state_.is_between()) extend(trace, now[k]);
         list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
     }
-    if (now.size() != 1 || !now[0].value || !(style_.width.trace > 0)) return;
+    float foot = area.bottom - 0.45f * px(style_.font.strip);
+    for (const auto& mark : marks) draw_text(mark, foot, list);  // above all lines
+    if (now.size() != 1 || traces_[0].is_empty() || !(style_.width.trace > 0)) return;
     const Point head{x, strip_.value.at(*now[0].value)};
     list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
 }

@@ -188,6 +188,14 @@ std::vector<TimeMark> limits_of(const Scene& scene) {
     return marks;
 }
 
+std::string true_divergence_words(const Scene& scene) {
+    const auto& proof = scene.certificate;
+    if (!proof || !proof->diverged_s) return {};
+    const auto from = fmt::format("{:.1f}", proof->diverged_s->low),
+               to = fmt::format("{:.1f}", proof->diverged_s->high);
+    return fmt::format(", the true motions at {}{} s", from, from == to ? "" : " to " + to);
+}
+
 float caption_line(const Layout& layout) {
     return 1.24f * px(layout.style.font.strip);
 }

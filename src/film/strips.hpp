@@ -34,6 +34,8 @@ struct TimeMark {
 };
 /// The predictability limits, and the time until which the run is proved.
 std::vector<TimeMark> limits_of(const Scene& scene);
+/// ", the true motions at 15.4 s", if that is proved.
+std::string true_divergence_words(const Scene& scene);
 
 /// Line spacing of captions, px; also the distance from the last line to the curves.
 float caption_line(const Layout& layout);

@@ -12,6 +12,8 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace doppel {
@@ -116,6 +118,53 @@ TEST(Strips, WhenTheyDivergedStandsAtItsLine) {
         EXPECT_TRUE(strip.area.contains(box)) << film << size;
         EXPECT_LT(std::abs(box.left - strip.time.at(since)), 14 * layout.text + 1) << film << size;
     }
+}
+
+/// The curves in a strip, with their places in the list.
+std::vector<std::pair<std::size_t, Stroke>> curves_in(const Area& area, const DisplayList& list) {
+    std::vector<std::pair<std::size_t, Stroke>> curves;
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (const auto* stroke = std::get_if<Stroke>(&list[i]); stroke && !stroke->vertices.empty())
+            if (area.contains(stroke->vertices.front().at)) curves.emplace_back(i, *stroke);
+    return curves;
+}
+
+TEST(Strips, NoLineCrossesTheWordsOfMarks) {
+    const auto scene = scene_of("single-and-double");
+    const auto area = make_layout(scene).strips[0].area;
+    const auto list = composed(scene, 12 * 120)->frame();
+    const auto words = std::ranges::find_if(list, [](const auto& item) {
+        const auto* label = std::get_if<Label>(&item);
+        return label && label->text.starts_with("diverged");
+    });
+    ASSERT_NE(words, list.end());
+    const auto curves = curves_in(area, list);
+    ASSERT_EQ(curves.size(), 1u);
+    EXPECT_GT(words - list.begin(), static_cast<std::ptrdiff_t>(curves[0].first));
+    // the cursor, a line of the strip's height
+    const auto cursor = std::ranges::find_if(list, [&](const auto& item) {
+        const auto* box = std::get_if<Box>(&item);
+        return box && box->color == themes[0].cursor && box->top == area.top && box->bottom == area.bottom;
+    });
+    ASSERT_NE(cursor, list.end());
+    EXPECT_LT(cursor, words);
+}
+
+TEST(Strips, ACurveBeginsWhereItEntersItsAxis) {
+    // both start at the same place: the distance is 0, then far below the axis for 0.4 s
+    const auto scene = scene_of("single-and-double");
+    const auto& strip = make_layout(scene).strips[0];
+    const auto curves = curves_in(strip.area, composed(scene, 2 * 120)->frame());
+    ASSERT_EQ(curves.size(), 1u);
+    EXPECT_GT(curves[0].second.vertices.front().at.x, strip.time.at(0.3));
+    EXPECT_LT(curves[0].second.vertices.front().at.x, strip.time.at(0.5));
+    EXPECT_TRUE(curves_in(strip.area, composed(scene, 12)->frame()).empty());
+}
+
+TEST(Strips, TheProvedTimeOfDivergenceStandsBesideThatOfTheRun) {
+    const auto scene = scene_of("butterfly", {"scene.certify=true", "scene.duration_s=16"});
+    const auto words = label_of(labels_of(scene, 16 * 120), "diverged at 14.2 s, the true motions at 15.3 s");
+    EXPECT_TRUE(words);
 }
 
 TEST(Strips, LimitsAreNamedForWhatTheyAre) {

@@ -195,13 +195,14 @@ function verticalLine(x, top, bottom, color) {
   const width = Math.max(1, Math.round(picture.mark));
   if (picture.mark > 0) box(Math.round(x - width / 2), top, width, bottom - top, 0, color);
 }
-// The texts of marks at the feet of their lines, one above the other. Lines of limits are in the backdrop.
-function drawMarks({ area: [left, top, right, bottom], time }, marks) {
+function dashedLine({ area: [, top, , bottom], time }, at) {
+  for (let y = top; y < bottom; y += 10 * picture.text)
+    verticalLine(along(time, at), y, Math.min(y + 5 * picture.text, bottom), theme.quiet_text);
+}
+// The texts of marks at the feet of their lines, one above the other.
+function drawMarks({ area: [left, , right, bottom], time }, marks) {
   const t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
   const behind = film.transparent ? "#0000" : faded(theme.background, 0.85);
-  for (const [at] of marks.filter(mark => !film.limits.includes(mark)))
-    for (let y = top; y < bottom; y += 10 * t)
-      verticalLine(along(time, at), y, Math.min(y + 5 * t, bottom), theme.quiet_text);
   text("", [0, 0], ...style);
   marks.forEach(([at, words], i) => {
     const x = along(time, at), foot = bottom - (0.45 + 1.2 * i) * size, { width } = g.measureText(words);
@@ -221,18 +222,22 @@ function drawStrip(strip, index) {
   drawAll(strip.words);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
-  const marks = motion === original ? [...film.limits] : [];
-  if (isStill ? since >= 0 : time >= since + 1 - 1e-6) marks.push([since, `diverged at ${since.toFixed(1)} s`]);
-  if (index === stripOfPair) drawMarks(strip, marks);
+  const marks = motion === original ? [...film.limits] : [];  // their lines are in the backdrop
+  if (index === stripOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6)) {
+    marks.push([since, `diverged at ${since.toFixed(1)} s${motion === original ? film.true_divergence : ""}`]);
+    dashedLine(strip, since);
+  }
   verticalLine(x, area[1], area[3], theme.cursor);
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
     const [color, width] = pens[c];
     const points = Array.from(list.subarray(0, last + 1), (v, i) => [at(i * film.sample_s), along(axis, v)]);
     if (!isStill) points.push([x, along(axis, value(list))]);
-    const known = points.filter(([, y]) => y >= 0);
+    const first = list.findIndex(v => axisShare(axis, v) >= 0);  // a curve begins where it enters its axis
+    const known = points.filter(([, y], i) => first >= 0 && i >= first && y >= 0);
     stroke(color, width, () => polyline(known));
     if (curves.length === 1 && known.length && !isStill) drawHead(known.at(-1), color);
   }
+  if (index === stripOfPair) drawMarks(strip, marks);
 }
 
 // Rates over angles: paths, or the points at which θ1 passes a whole number of turns upwards.
