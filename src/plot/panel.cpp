@@ -50,10 +50,12 @@ LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& 
     for (std::size_t i = 0; i < curves.size(); ++i) {
         all.push_back(drawn(curves[i], panel.x, panel.y_of(curves[i]), panel.area));
         const std::size_t owner = i % (LabelPlacer::no_owner - 1);
-        const bool is_behind = curves[i].background != Background::none;
-        if (is_behind) draw_curve(curves[i], all.back(), panel.area, style, over_map, list);
+        if (curves[i].background != Background::none) {
+            draw_curve(curves[i], all.back(), panel.area, style, over_map, list);
+            all.back() = {};  // labels may cover it
+        }
         for (const auto& line : all.back().lines)
-            for (std::size_t k = 1; k < line.size() && !is_behind; ++k) placer.add_line(line[k - 1], line[k], owner);
+            for (std::size_t k = 1; k < line.size(); ++k) placer.add_line(line[k - 1], line[k], owner);
         const float r = style.marker;
         for (const Point& at : all.back().points)
             for (const float up : {-0.7f * r, 0.7f * r})
@@ -66,8 +68,7 @@ LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& 
     // quiet curves are drawn first, below the others
     for (const bool quiet : {true, false})
         for (std::size_t i = 0; i < curves.size(); ++i)
-            if (curves[i].quiet == quiet && curves[i].background == Background::none)
-                draw_curve(curves[i], all[i], panel.area, style, over_map, list);
+            if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
     label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, placer, list);
     return label_curves(panel.plot, all, given, beside, style, placer, list);
 }
