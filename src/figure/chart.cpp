@@ -12,29 +12,6 @@ constexpr double paths_scale = 4;                 // for output made of paths
 constexpr double page_scale = 2;                  // for a page, whose picture may be pixels
 constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL supports, which reports its own limit
 
-Size scaled(double width, double height, double scale) {
-    return {static_cast<int>(std::lround(width * scale)), static_cast<int>(std::lround(height * scale))};
-}
-
-}  // namespace
-
-ChartLayout layout_of(const ChartSpec& chart) {
-    double width = chart.size.width, height = chart.size.height, pt = pt_per_px, scale = chart.scale;
-    if (chart.width_cm) {
-        const double high = chart.height_cm.value_or(*chart.width_cm * height / width);
-        pt = chart.font_pt / label_px;
-        width = *chart.width_cm * pt_per_cm / pt, height = high * pt_per_cm / pt;
-        scale = chart.dpi / cm_per_inch * *chart.width_cm / width;
-    }
-    if (chart.format != PictureFormat::png) scale = chart.format == PictureFormat::html ? page_scale : paths_scale;
-    ChartLayout layout{
-        .picture = scaled(width, height, scale), .scale = static_cast<float>(scale), .width_pt = width * pt};
-    if (chart.width_cm) layout.unit = 1;
-    return layout;
-}
-
-namespace {
-
 /// Checks that the picture can be made, with space for its text.
 void check_chart(const TomlReader& table, const ChartSpec& chart) {
     const auto layout = layout_of(chart);
@@ -58,6 +35,72 @@ void check_chart(const TomlReader& table, const ChartSpec& chart) {
 }
 
 }  // namespace
+
+void chart_fields(KeyVisitor& visit, ChartSpec& chart) {
+    const bool on_paper = chart.width_cm.has_value();
+    const auto of_paper = [&](std::string_view what) {
+        return Condition{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
+    };
+    visit({"format", "format of the picture: pixels, text and lines for a paper, or a page that tells the numbers"},
+          chart.format);
+    visit(size_field, chart.size);
+    visit(theme_field, chart.theme);
+    visit({.key = "width_cm",
+           .help = "width on paper",
+           .unit = "cm",
+           .bounds = {.low = 2, .high = 200},
+           .absent = "none: as wide as `size`"},
+          chart.width_cm);
+    visit({.key = "height_cm",
+           .help = "height on paper",
+           .unit = "cm",
+           .bounds = {.low = 2, .high = 200},
+           .absent = "in proportion, as `size`",
+           .only = of_paper("is the height on paper")},
+          chart.height_cm);
+    visit({.key = "font_pt",
+           .help = "text on paper, with `width_cm`",
+           .unit = "pt",
+           .bounds = {.low = 4, .high = 40},
+           .only = of_paper("is the size of text on paper")},
+          chart.font_pt);
+    visit({.key = "dpi",
+           .help = "pixels an inch of a PNG, with `width_cm`",
+           .bounds = {.low = 72, .high = 1200},
+           .only = of_paper("is the resolution on paper")},
+          chart.dpi);
+    visit({"scale",
+           "picture pixels to a pixel of `size`: 2 for print",
+           "",
+           {.low = 0, .high = 8, .is_open = true},
+           "",
+           Condition{!on_paper, "is for a size in pixels; with width_cm, dpi sets it"}},
+          chart.scale);
+    visit({.key = "title",
+           .help = "text in place of title and subtitle, one or a list of both; `false`: none",
+           .is_drawn = true},
+          chart.title);
+    visit(
+        {.key = "captions", .help = "text in place of the captions below the picture; `false`: none", .is_drawn = true},
+        chart.captions);
+}
+
+ChartLayout layout_of(const ChartSpec& chart) {
+    double width = chart.size.width, height = chart.size.height, pt = pt_per_px, scale = chart.scale;
+    if (chart.width_cm) {
+        const double high = chart.height_cm.value_or(*chart.width_cm * height / width);
+        pt = chart.font_pt / label_px;
+        width = *chart.width_cm * pt_per_cm / pt, height = high * pt_per_cm / pt;
+        scale = chart.dpi / cm_per_inch * *chart.width_cm / width;
+    }
+    if (chart.format != PictureFormat::png) scale = chart.format == PictureFormat::html ? page_scale : paths_scale;
+    ChartLayout layout{
+        .picture = {static_cast<int>(std::lround(width * scale)), static_cast<int>(std::lround(height * scale))},
+        .scale = static_cast<float>(scale),
+        .width_pt = width * pt};
+    if (chart.width_cm) layout.unit = 1;
+    return layout;
+}
 
 void read_chart(TomlReader& table, ChartSpec& chart) {
     // the meaning of other keys depends on this one

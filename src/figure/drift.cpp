@@ -41,8 +41,9 @@ std::vector<double> running_maximum(std::vector<double> worst) {
 /// Long-term errors of energy and rod lengths, every method at the same cost.
 class Drift final : public Experiment {
 public:
-    Drift(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
+    Drift(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
         : release_(reader.release()), duration_s_(keys.duration_s), evaluations_per_s_(keys.evaluations_per_s) {
+        if (reader.only_keys) return;
         find_times(keys.points_per_decade);
         const auto &methods = keys.methods, &projected = keys.projected;
         if (methods.empty()) throw table.error("methods", "must name at least one");
@@ -57,7 +58,7 @@ public:
         }
         check_distinct(table, "methods", methods);
         check_distinct(table, "projected", projected);
-        settings_ = resolved_release(release_) + resolved;
+        settings_ = resolved_release(release_) + settings_text(keys);
     }
 
     std::size_t trials() const override { return runs_.size(); }
@@ -101,8 +102,8 @@ public:
     }
 
     std::string subtitle() const override {
-        return fmt::format("{} {}, {}; every method at some {:g} evaluations a second of motion",
-                           pendulum_words(release_.links()), released_words(release_), links_words(release_),
+        return fmt::format("a {} {}, {}; every method at some {:g} evaluations a second of motion",
+                           chain_words(release_.links()), released_words(release_), links_words(release_),
                            evaluations_per_s_);
     }
 
@@ -114,24 +115,24 @@ public:
                            times_s_.front());
     }
 
-    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        std::vector<Finding> all;
+    Json findings(std::span<const TrialNumbers> numbers) const override {
+        Json all;
         for (std::size_t r = 0; r < runs_.size(); ++r) {
             const auto run = run_of(numbers[r]);
             auto name = fmt::format("{}_{}", runs_[r].method, model_words(runs_[r]));
             std::replace(name.begin(), name.end(), ' ', '_');
-            all.push_back({name + "_setting", run.setting});
-            all.push_back({name + "_evaluations_per_s", run.evaluations_per_s});
-            all.push_back({name + "_cpu_s", run.cpu_s});
+            all[name + "_setting"] = run.setting;
+            all[name + "_evaluations_per_s"] = run.evaluations_per_s;
+            all[name + "_cpu_s"] = run.cpu_s;
             for (const bool of_rods : {false, true}) {
                 if (of_rods && runs_[r].model == Model::angles) continue;
                 const auto found = growth(run, of_rods);
                 const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
-                all.push_back({quantity + "growth", std::string(style_of(found).words)});
-                all.push_back({quantity + "exponent", found.exponent});
-                if (run.failed_at_s > 0) all.push_back({quantity + "doubling_s", found.doubling_s});
+                all[quantity + "growth"] = std::string(style_of(found).words);
+                all[quantity + "exponent"] = found.exponent;
+                if (run.failed_at_s > 0) all[quantity + "doubling_s"] = found.doubling_s;
             }
-            if (run.failed_at_s > 0) all.push_back({name + "_broken_at_s", run.failed_at_s});
+            if (run.failed_at_s > 0) all[name + "_broken_at_s"] = run.failed_at_s;
         }
         return all;
     }
@@ -166,7 +167,8 @@ private:
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto run = drift(runs_[trial], evaluations_per_s_, times_s_, stop);
-        auto numbers = numbers_of<DriftCost>(run);
+        TrialNumbers numbers;
+        append<DriftCost>(numbers, run);
         for (const auto* errors : {&run.energy_error, &run.length_error})
             numbers.insert(numbers.end(), errors->begin(), errors->end());
         return numbers;
@@ -196,11 +198,8 @@ private:
     std::vector<std::size_t> longest_first(std::span<const TrialNumbers> numbers) const {
         std::vector<std::size_t> order(runs_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t one, std::size_t other) {
-            const auto end = [&](std::size_t r) {
-                return std::fmin(times_s_.back(), row_of<DriftCost>(numbers[r]).failed_at_s);
-            };
-            return end(one) > end(other);
+        std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t r) {
+            return std::fmin(times_s_.back(), row_of<DriftCost>(numbers[r]).failed_at_s);
         });
         return order;
     }
@@ -247,9 +246,8 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const Experiment> make_drift(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys,
-                                             const std::string& resolved) {
-    return std::make_shared<Drift>(reader, table, keys, resolved);
+std::shared_ptr<const Experiment> make_drift(FigureReader& reader, const TomlReader& table, SeriesKeys& keys) {
+    return std::make_shared<Drift>(reader, table, keys);
 }
 
 }  // namespace doppel

@@ -3,6 +3,7 @@
 #include "output/csv.hpp"
 #include "plot/plot.hpp"
 #include "scene/preset.hpp"
+#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
 namespace doppel {
@@ -63,13 +63,6 @@ void append(TrialNumbers& numbers, const Row& row) {
     for (const double value : std::bit_cast<std::array<double, numbers_in<Row>>>(row)) numbers.push_back(value);
 }
 
-template <NumberRow Row>
-TrialNumbers numbers_of(const Row& row) {
-    TrialNumbers numbers;
-    append(numbers, row);
-    return numbers;
-}
-
 /// Adds a row to the table: text, whole numbers and doubles. NaN gives an empty cell.
 template <class... Cells>
 void add_row(Csv& table, const Cells&... cells) {
@@ -90,12 +83,6 @@ inline void add_point(Curve& curve, double x, double y) {
     curve.x.push_back(x);
     curve.y.push_back(y);
 }
-
-/// A result of a figure outside its table: a key of the manifest.
-struct Finding {
-    std::string key;
-    std::variant<double, std::string, bool> value;
-};
 
 /// The numbers of cells of a map figure: in each panel, and numbers per cell.
 struct MapCells {
@@ -138,7 +125,8 @@ public:
 
     /// Adds the panels (or the page), and captions with results. Titles are already set.
     virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
-    virtual std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const = 0;
+    /// Results outside the table, for the manifest.
+    virtual Json findings(std::span<const TrialNumbers> numbers) const = 0;
 
     /// The subtitle if the preset has none: the system and the integrator.
     virtual std::string subtitle() const { return {}; }

@@ -10,12 +10,76 @@
 #include <utility>
 
 namespace doppel {
+namespace {
+
+constexpr std::string_view key_help =
+    "key that is varied: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
+    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
+    "method";
+
+}  // namespace
+
+void Grid::fields(KeyVisitor& visit) {
+    visit({"quantity", quantity_help}, quantity_);
+    visit({.key = "right", .help = "a second quantity of curves, on an axis at the right", .names = names_of<Quantity>},
+          right_);
+    visit({"difference", "difference between the two pendulums of a pair in the key of x"}, difference_);
+    const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
+    visit({"exponent_duration_s",
+           "duration of the motion from which an exponent is computed",
+           "s",
+           positive,
+           "",
+           {.applies = has(Quantity::exponent), .hides = true}},
+          options_.exponent_duration_s);
+    const Condition of_flips{has(Quantity::flip_time), "is only for flip_time"};
+    visit({"flip_tolerance",
+           "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
+           "rad/s",
+           {.low = 1e-15, .is_positive = true},
+           "1e-8 up to 20 s, for longer times less",
+           of_flips},
+          options_.flip_tolerance);
+    const Condition strobed{.applies = quantity_ == Quantity::stroboscopic, .hides = true};
+    auto& strobe = options_.stroboscope;
+    visit({"link", "link whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
+    visit({"transient_periods", "length of the transient, drive periods", "", from_to(0, 1'000'000), "", strobed},
+          strobe.transient_periods);
+    visit({"periods", "number of drive periods shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
+    visit({"overlay",
+           "theoretical curves on a map: where a vibrating pivot stabilises one link upright, where two links "
+           "released "
+           "at rest have the energy to flip, or the linear stability limit of a method"},
+          overlay_);
+    visit({"mark_step_s",
+           "a step marked by a line",
+           "s",
+           positive,
+           "",
+           {.applies = quantity_ == Quantity::convergence, .hides = true}},
+          mark_step_);
+    const Condition of_this{!visit.from_command_line("quantity") || visit.from_command_line("range"),
+                            "belongs to the preset's quantity", true};
+    visit({"range",
+           "of the quantity: its axis, or the colours of a map; [lowest, highest]",
+           "",
+           {},
+           "that of the numbers",
+           of_this},
+          range_);
+    visit({"threshold", "of a map: two colours, up to it and above it", "", {}, "colours for all numbers"}, threshold_);
+    visit.table("x", [&](KeyVisitor& table) { x_.fields(table, key_help); });
+    visit.table("y", [&](KeyVisitor& table) { y_.fields(table, "the vertical axis of a map"); });
+    visit.table("color", [&](KeyVisitor& table) { color_.fields(table, "a curve for each value"); });
+    visit.table("panel", [&](KeyVisitor& table) { panel_.fields(table, "a panel for each value"); });
+}
 
 Grid::Grid(FigureReader& reader) : Grid() {
     pair_ = reader.pair();
-    auto table = reader.settings(*this);
+    const auto table = reader.settings(*this);
+    if (reader.only_keys) return;
+    settings_ = resolved_pair(pair_) + settings_text(*this);
     find_axes(reader);
-    settings_ = resolved_pair(pair_) + table.finish();
     check(table);
     for (std::size_t p = 0; p < panel_.count; ++p)
         for (std::size_t c = 0; c < color_.count; ++c) add_group(reader, table, p, c);
@@ -52,34 +116,35 @@ void Grid::check(const TomlReader& table) const {
         throw table.error("difference", "must be 0 for {}, in which the sides do not differ", x_.key);
     for (const auto& end : {x_.value(0), x_.value(x_.count - 1)})
         x_.require(table, "difference", Quad(end + difference_));
-    if (is_map() && color_.exists())
-        throw table.error("color", "is only for curves; in a map the colours show the quantity");
-    if (is_map() && right_) throw table.error("right", "is only for curves; a map shows one quantity");
-    if (right_ == name_of(quantity_) || right_ == name_of(Quantity::stroboscopic))
-        throw table.error("right", "must be another quantity with one number per pair; it is \"{}\"", *right_);
-    if (quantity_ == Quantity::convergence && (!x_.is_setting() || is_map() || right_))
-        throw table.error("quantity", "\"convergence\" takes [grid.x] key = \"setting\", and no [grid.y] or right");
-    if (quantity_ == Quantity::stroboscopic && (is_map() || right_))
-        throw table.error(
-            "quantity",
-            "\"stroboscopic\" has many numbers per pair, which are drawn as points over x; leave the other axes out");
-    if (!is_map() && threshold_) throw table.error("threshold", "is only for maps, which have [grid.y]");
-    check_overlay(table);
-}
-
-void Grid::check_overlay(const TomlReader& table) const {
     const auto& a = pair_.a;
     const bool is_shaken = x_.key == "system.pivot.frequency_hz" && y_.key == "system.pivot.amplitude_m" &&
                            a.particles.empty() && a.links() == 1 && a.physical.pivot.direction_deg == 90;
-    if (overlay_ == Overlay::energy_bound && !(is_of_releases() && is_zero(a.omega_deg_per_s)))
-        throw table.error("overlay",
-                          "\"energy-bound\" is for two ideal links released at rest, theta2_deg over theta1_deg");
-    if ((overlay_ == Overlay::kapitza || overlay_ == Overlay::mathieu) && !is_shaken)
-        throw table.error("overlay",
-                          "is for one link whose pivot moves up and down, over system.pivot.frequency_hz and "
-                          "system.pivot.amplitude_m");
-    if (overlay_ == Overlay::linear_limit && !(is_map() && quantity_ == Quantity::stability && x_.is_setting()))
-        throw table.error("overlay", "\"linear-limit\" is for a map of stability over the setting");
+    const bool is_of_rest = is_of_releases() && is_zero(a.omega_deg_per_s);
+    const bool is_of_steps = is_map() && quantity_ == Quantity::stability && x_.is_setting();
+    struct Fault {
+        bool is_there;
+        std::string_view key;
+        std::string words;
+    };
+    for (const auto& fault : {
+             Fault{is_map() && color_.exists(), "color", "is only for curves; in a map the colours show the quantity"},
+             {is_map() && right_, "right", "is only for curves; a map shows one quantity"},
+             {right_ == name_of(quantity_) || right_ == name_of(Quantity::stroboscopic), "right",
+              fmt::format("must be another quantity with one number per pair; it is \"{}\"", right_.value_or(""))},
+             {quantity_ == Quantity::convergence && (!x_.is_setting() || is_map() || right_), "quantity",
+              "\"convergence\" takes [grid.x] key = \"setting\", and no [grid.y] or right"},
+             {quantity_ == Quantity::stroboscopic && (is_map() || right_), "quantity",
+              "\"stroboscopic\" has many numbers per pair, which are drawn as points over x; leave the other axes out"},
+             {!is_map() && threshold_, "threshold", "is only for maps, which have [grid.y]"},
+             {overlay_ == Overlay::energy_bound && !is_of_rest, "overlay",
+              "\"energy-bound\" is for two ideal links released at rest, theta2_deg over theta1_deg"},
+             {(overlay_ == Overlay::kapitza || overlay_ == Overlay::mathieu) && !is_shaken, "overlay",
+              "is for one link whose pivot moves up and down, over system.pivot.frequency_hz and "
+              "system.pivot.amplitude_m"},
+             {overlay_ == Overlay::linear_limit && !is_of_steps, "overlay",
+              "\"linear-limit\" is for a map of stability over the setting"},
+         })
+        if (fault.is_there) throw table.error(fault.key, "{}", fault.words);
 }
 
 void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c) {
@@ -188,15 +253,13 @@ std::optional<Experiment::Releases> Grid::releases() const {
 
 void Grid::compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
     for (std::size_t done = 1; !numbers.empty(); first += done, numbers = numbers.subspan(done)) {
-        done = 1;
-        if (is_map()) {
-            std::vector<TrialNumbers> cells(cells_of(first));
-            find_cells(place_of(first), cells, stop);
-            for (const auto& cell : cells) numbers[0].insert(numbers[0].end(), cell.begin(), cell.end());
-        } else {
-            const auto place = place_of(first);
-            done = std::min(numbers.size(), groups_[place.group].x.count - place.column);
-            find_cells(place, numbers.first(done), stop);
+        const auto place = place_of(first);
+        if (!is_map()) done = std::min(numbers.size(), groups_[place.group].x.count - place.column);
+        std::vector<TrialNumbers> cells(is_map() ? cells_of(first) : done);
+        find_cells(place, cells, stop);
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            auto& trial = numbers[is_map() ? 0 : i];
+            trial.insert(trial.end(), cells[i].begin(), cells[i].end());
         }
     }
 }
@@ -250,15 +313,27 @@ void Grid::write_rows(std::span<const TrialNumbers> numbers, Csv& table) const {
 }
 
 std::optional<std::string> Grid::nothing_to_draw(std::span<const TrialNumbers> numbers) const {
-    if (right_) return std::nullopt;
-    Drawn drawn;
-    for_each_cell([&](const Cell& cell) { drawn.add(value_at(numbers, cell)); });
-    if (quantity_ == Quantity::stroboscopic && !drawn.any) return "the run failed at every value";
+    bool is_any = false, is_any_above_0 = false;
+    for_each_cell([&](const Cell& cell) {
+        const double number = value_at(numbers, cell);
+        is_any |= std::isfinite(number);
+        is_any_above_0 |= std::isfinite(number) && number > 0;
+    });
+    if (right_ || (words().logarithmic ? is_any_above_0 : is_any)) return std::nullopt;
+    if (quantity_ == Quantity::stroboscopic) return "the run failed at every value";
     const auto pairs = fmt::format("{}{}", x_.count, is_map() ? fmt::format(" × {}", y_.count) : "");
-    return nothing_drawn(quantity_, words(), drawn, pairs, seconds_text(pair_));
+    const bool has_vowel = quantity_ == Quantity::exponent || quantity_ == Quantity::energy_error;
+    const auto name = fmt::format("{} {}", has_vowel ? "an" : "a", name_of(quantity_));
+    if (is_any) return fmt::format("none of the {} pairs has {} above 0, which a logarithmic scale needs", pairs, name);
+    if (words().none_is_bad)
+        return fmt::format(
+            "all of the {} pairs failed within {} s; use a smaller step or tolerance, or a shorter scene.duration_s",
+            pairs, seconds_text(pair_));
+    return fmt::format("none of the {} pairs has {}: {}{}", pairs, name, words().none,
+                       quantity_ == Quantity::parting_time ? ", or apart from the start" : "");
 }
 
-std::vector<Finding> Grid::findings(std::span<const TrialNumbers> numbers) const {
+Json Grid::findings(std::span<const TrialNumbers> numbers) const {
     if (quantity_ == Quantity::stroboscopic) return period_findings(numbers);
     const auto& column = words().columns[words().drawn];
     double minimum = NAN, maximum = NAN, regular = 0, missing = 0, forbidden = 0;
@@ -277,14 +352,13 @@ std::vector<Finding> Grid::findings(std::span<const TrialNumbers> numbers) const
                           radians(static_cast<double>(y_.value(cell.row)))};
         forbidden += flip_is_forbidden(released);
     });
-    std::vector<Finding> all{{"least_" + column, minimum}, {"greatest_" + column, maximum}};
-    if (is_map()) all.push_back({"share_without", missing / cells});
-    if (!is_map() && missing > 0)
-        all.push_back({words().none_is_bad ? "trials_broken_down" : "trials_without", missing});
-    if (is_bounded) all.push_back({"share_forbidden_by_energy", forbidden / cells});
-    if (exponent_place()) all.push_back({"regular_trials", regular});
+    Json all{{"least_" + column, minimum}, {"greatest_" + column, maximum}};
+    if (is_map()) all["share_without"] = missing / cells;
+    if (!is_map() && missing > 0) all[words().none_is_bad ? "trials_broken_down" : "trials_without"] = missing;
+    if (is_bounded) all["share_forbidden_by_energy"] = forbidden / cells;
+    if (exponent_place()) all["regular_trials"] = regular;
     for (std::size_t group = 0; group < groups_.size() && quantity_ == Quantity::convergence; ++group)
-        all.push_back({"slope_" + joined_words(group, "_"), slope(numbers, group)});
+        all["slope_" + joined_words(group, "_")] = slope(numbers, group);
     return all;
 }
 

@@ -10,11 +10,6 @@
 
 namespace doppel {
 
-inline constexpr std::string_view grid_key_help =
-    "key that is varied: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
-    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
-    "method";
-
 /// A quantity of pairs over the values of one to four keys: curves over x, in several colours; maps over x and y;
 /// panels of either. A trial is a value of x of one curve, or some adjacent cells of a map. If the map has a mirror
 /// symmetry, only its lower half is computed.
@@ -24,64 +19,7 @@ public:
     Grid() { x_.key = "theta1_deg"; }
     explicit Grid(FigureReader& reader);
 
-    template <class Visit>
-    void fields(Visit& visit) {
-        visit({"quantity", quantity_help}, quantity_);
-        visit({.key = "right",
-               .help = "a second quantity of curves, on an axis at the right",
-               .names = names_of<Quantity>},
-              right_);
-        visit({"difference", "difference between the two pendulums of a pair in the key of x"}, difference_);
-        const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
-        visit({"exponent_duration_s",
-               "duration of the motion from which an exponent is computed",
-               "s",
-               positive,
-               "",
-               {.applies = has(Quantity::exponent), .hides = true}},
-              options_.exponent_duration_s);
-        const Condition of_flips{has(Quantity::flip_time), "is only for flip_time"};
-        visit({"flip_tolerance",
-               "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
-               "rad/s",
-               {.low = 1e-15, .is_positive = true},
-               "1e-8 up to 20 s, for longer times less",
-               of_flips},
-              options_.flip_tolerance);
-        const Condition strobed{.applies = quantity_ == Quantity::stroboscopic, .hides = true};
-        auto& strobe = options_.stroboscope;
-        visit({"link", "link whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
-        visit({"transient_periods", "length of the transient, drive periods", "", from_to(0, 1'000'000), "", strobed},
-              strobe.transient_periods);
-        visit({"periods", "number of drive periods shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
-        visit({"overlay",
-               "theoretical curves on a map: where a vibrating pivot stabilises one link upright, where two links "
-               "released "
-               "at rest have the energy to flip, or the linear stability limit of a method"},
-              overlay_);
-        visit({"mark_step_s",
-               "a step marked by a line",
-               "s",
-               positive,
-               "",
-               {.applies = quantity_ == Quantity::convergence, .hides = true}},
-              mark_step_);
-        const Condition of_this{!visit.from_command_line("quantity") || visit.from_command_line("range"),
-                                "belongs to the preset's quantity", true};
-        visit({"range",
-               "of the quantity: its axis, or the colours of a map; [lowest, highest]",
-               "",
-               {},
-               "that of the numbers",
-               of_this},
-              range_);
-        visit({"threshold", "of a map: two colours, up to it and above it", "", {}, "colours for all numbers"},
-              threshold_);
-        visit.table("x", [&](auto& table) { x_.fields(table, grid_key_help); });
-        visit.table("y", [&](auto& table) { y_.fields(table, "the vertical axis of a map"); });
-        visit.table("color", [&](auto& table) { color_.fields(table, "a curve for each value"); });
-        visit.table("panel", [&](auto& table) { panel_.fields(table, "a panel for each value"); });
-    }
+    void fields(KeyVisitor& visit);
 
     std::size_t trials() const override { return groups_.back().first + trials_of(groups_.back()); }
     std::size_t together() const override;
@@ -95,7 +33,7 @@ public:
     std::vector<std::string> columns() const override;
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override;
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override;
-    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override;
+    Json findings(std::span<const TrialNumbers> numbers) const override;
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override;  // figure/grid_plot.cpp
 
 private:
@@ -113,7 +51,6 @@ private:
     // Reading.
     void find_axes(FigureReader& reader);
     void check(const TomlReader& table) const;
-    void check_overlay(const TomlReader& table) const;
     void check_range(const TomlReader& table) const;
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();

@@ -13,6 +13,12 @@ bool is_number(const std::string& text) {
     return text.find_first_not_of("0123456789+-.eE") == std::string::npos;
 }
 
+/// "mass m₂" and "kg" of "mass m₂, kg"; no unit for "mass ratio m₁/m₂".
+std::pair<std::string, std::string> name_and_unit(const std::string& label) {
+    const auto comma = label.rfind(", ");
+    return {label.substr(0, comma), comma == std::string::npos ? "" : label.substr(comma + 2)};
+}
+
 /// Removes the quotes: "rk4" from "\"rk4\"".
 std::string unquoted(const std::string& text) {
     return text[0] == '"' || text[0] == '\'' ? text.substr(1, text.size() - 2) : text;
@@ -36,6 +42,61 @@ const std::array<GridAxis::ReleaseParameter, 4> GridAxis::releases{
      {"mass_ratio", "mass ratio m₁/m₂", 2, [](SideSpec& s, const Quad& x) { s.mass_kg[0] = x * s.mass_kg[1]; }, true},
      {"length_ratio", "length ratio l₁/l₂", 2, [](SideSpec& s, const Quad& x) { s.length_m[0] = x * s.length_m[1]; },
       true}}};
+
+void GridAxis::fields(KeyVisitor& visit, std::string_view help) {
+    constexpr int max_points = 1'048'576;
+    constexpr std::size_t max_values = 1000;
+    visit({.key = "key",
+           .help = help,
+           .absent = exists() ? "" : "no such axis",
+           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|setting|system|(system|a|b)\..+)$)"},
+          key);
+    visit({.key = "values",
+           .help = "the values one by one: numbers, or what the key takes",
+           .absent = "given by `from`, `to` and `step`",
+           .only = {exists(), "is for an axis, and this one has no key"},
+           .maximum = max_values},
+          values);
+    visit({.key = "labels",
+           .help = "names of the values in picture and table",
+           .absent = "the values",
+           .only = {values.has_value(), "needs values, one name for each"},
+           .is_drawn = true},
+          labels);
+    const bool are_even = exists() && !values;
+    const Condition even{
+        are_even, exists() ? "is for even values; give it, or values" : "is for an axis, and this one has no key"};
+    visit({.key = "from", .help = "the first value; for a map the lower edge", .only = even}, from);
+    visit({.key = "to", .help = "the last value; for a map the upper edge", .only = even}, to);
+    visit({.key = "spacing", .help = "by equal differences, or by equal ratios", .only = even}, spacing);
+    visit({.key = "points",
+           .help = "number of values; for a map number of cells, each computed at its centre",
+           .bounds = from_to(2, max_points),
+           .absent = "given by `step`",
+           .only = even},
+          points);
+    visit({"step", "difference of two values; must divide the range from `from` to `to`", "", positive, "",
+           Condition{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
+                     visit.from_command_line("points") || visit.from_command_line("spacing")}},
+          step);
+    const Condition of_setting{is_setting(), "is only for key = \"setting\""};
+    visit({"tolerance_from",
+           "of adaptive methods, in place of `from`",
+           "",
+           {.low = 1e-32, .is_positive = true},
+           "",
+           of_setting},
+          tolerance_from);
+    visit({"tolerance_to",
+           "of adaptive methods, in place of `to`",
+           "",
+           {.low = 1e-32, .is_positive = true},
+           "",
+           of_setting},
+          tolerance_to);
+    visit({"tolerance_points", "of adaptive methods", "", from_to(2, max_points), "as `points`", of_setting},
+          tolerance_points);
+}
 
 void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset& pair) {
     if (!exists()) return;
@@ -199,7 +260,7 @@ std::size_t GridAxis::even_steps(const TomlReader& table) const {
 
 Quad GridAxis::even_value(std::size_t i) const {
     const Quad number(static_cast<double>(i));
-    if (are_cells) return Quad(cells().middle(static_cast<int>(i)));
+    if (are_cells) return Quad(middle_of_cell(i));
     if (!points) return from + step * number;
     if (i + 1 == count) return to;
     const Quad share = number / Quad(static_cast<double>(count - 1));
@@ -207,16 +268,22 @@ Quad GridAxis::even_value(std::size_t i) const {
     return from * Quad(std::pow(static_cast<double>(Quad(to / from)), static_cast<double>(share)));
 }
 
+/// If the ends are opposite numbers, mirror images have exactly opposite centres.
+double GridAxis::middle_of_cell(std::size_t i) const {
+    const auto low = static_cast<double>(from), high = static_cast<double>(to), halves = 2 * static_cast<double>(count);
+    const double before = 2 * static_cast<double>(i) + 1, after = halves - before;  // in half cells
+    if (spacing == Spacing::logarithmic) return low * std::pow(high / low, before / halves);
+    return (low * after + high * before) / halves;
+}
+
 std::string GridAxis::words(std::size_t i) const {
     if (!labels.empty()) return labels[i];
     if (!levels.empty()) return unquoted(values->texts[i]);
-    const auto comma = label.rfind(", ");
-    auto what = label.substr(0, comma);
+    auto [what, unit] = name_and_unit(label);
     // the symbol stands for the words before it: "θ₁" for "release angle θ₁"
     const auto last = what.substr(what.rfind(' ') + 1);
     if (std::any_of(last.begin(), last.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
         what = last;
-    const auto unit = comma == std::string::npos ? "" : label.substr(comma + 2);
     return fmt::format("{} = {:.6g}{}{}", what, static_cast<double>(value(i)), unit.empty() || unit == "°" ? "" : " ",
                        unit);
 }
@@ -273,13 +340,10 @@ std::string GridAxis::difference_words(const Quad& difference) const {
     if (difference == 0) return "";
     const auto far = text_of(difference < 0 ? Quad(-difference) : difference);
     if (angle) return fmt::format("pair {}° apart", far);
-    const auto comma = label.rfind(", ");
-    if (comma == std::string::npos) {
-        auto ratios = label;  // "mass ratio m₁/m₂"
-        if (const auto ratio = ratios.find(" ratio"); ratio != std::string::npos) ratios.insert(ratio + 6, "s");
-        return fmt::format("{} apart by {}", ratios, far);
-    }
-    return fmt::format("{} apart by {} {}", label.substr(0, comma), far, label.substr(comma + 2));
+    auto [what, unit] = name_and_unit(label);
+    if (!unit.empty()) return fmt::format("{} apart by {} {}", what, far, unit);
+    if (const auto ratio = what.find(" ratio"); ratio != std::string::npos) what.insert(ratio + 6, "s");
+    return fmt::format("{} apart by {}", what, far);
 }
 
 void GridAxis::require(const TomlReader& table, std::string_view of, const Quad& number) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "figure/kinds.hpp"
-#include "figure/spacing.hpp"
 #include "scene/numeric_key.hpp"
 
 #include <array>
@@ -10,6 +9,11 @@
 #include <vector>
 
 namespace doppel {
+
+/// The spacing of a parameter's values: equal differences, or equal ratios.
+enum class Spacing { linear, logarithmic };
+template <>
+inline constexpr auto names_of<Spacing> = std::to_array<std::string_view>({"linear", "logarithmic"});
 
 /// An axis of a grid: [grid.x], [grid.y], [grid.color] or [grid.panel]. Without a key the axis does not exist; its
 /// single value changes nothing.
@@ -36,8 +40,7 @@ struct GridAxis {
     bool exists() const { return !key.empty(); }
     /// The accuracy setting of the method: its step size, or the tolerance of an adaptive method.
     bool is_setting() const { return key == "setting"; }
-    template <class Visit>
-    void fields(Visit& visit, std::string_view help);
+    void fields(KeyVisitor& visit, std::string_view help);
 
     /// `table` = that of the axis. Throws Error (exit 2) if the pair has no such key, or cannot take a value.
     void find(FigureReader& reader, const TomlReader& table, const Preset& pair);
@@ -56,7 +59,6 @@ struct GridAxis {
     /// The same for both sides, whichever the key belongs to.
     void put_both(Preset& pair) const;
     PlotAxis plot_axis() const;
-    CellRange cells() const { return {static_cast<double>(from), static_cast<double>(to), int(count), spacing}; }
     /// The text for a pair with this difference: "pair 0.003° apart"; empty for 0.
     std::string difference_words(const Quad& difference) const;
     /// Throws Error (exit 2) at the table's key `of` if a pair has no such key.
@@ -71,6 +73,7 @@ private:
     void find_even_values(const TomlReader& table);
     void find_settings(const TomlReader& table, const Preset& pair);
     Quad even_value(std::size_t i) const;
+    double middle_of_cell(std::size_t i) const;
     std::size_t even_steps(const TomlReader& table) const;
 
     /// A release parameter that curves and maps can vary.
@@ -88,61 +91,5 @@ private:
     bool is_adaptive_ = false;                          // for key "setting"
     std::vector<std::pair<Rational, Rational>> steps_;  // for key "setting": samples per second, and the step size, s
 };
-
-template <class Visit>
-void GridAxis::fields(Visit& visit, std::string_view help) {
-    constexpr int max_points = 1'048'576;
-    constexpr std::size_t max_values = 1000;
-    visit({.key = "key",
-           .help = help,
-           .absent = exists() ? "" : "no such axis",
-           .pattern = R"(^(theta1_deg|theta2_deg|mass_ratio|length_ratio|links|setting|system|(system|a|b)\..+)$)"},
-          key);
-    visit({.key = "values",
-           .help = "the values one by one: numbers, or what the key takes",
-           .absent = "given by `from`, `to` and `step`",
-           .only = {exists(), "is for an axis, and this one has no key"},
-           .maximum = max_values},
-          values);
-    visit({.key = "labels",
-           .help = "names of the values in picture and table",
-           .absent = "the values",
-           .only = {values.has_value(), "needs values, one name for each"},
-           .is_drawn = true},
-          labels);
-    const bool are_even = exists() && !values;
-    const Condition even{
-        are_even, exists() ? "is for even values; give it, or values" : "is for an axis, and this one has no key"};
-    visit({.key = "from", .help = "the first value; for a map the lower edge", .only = even}, from);
-    visit({.key = "to", .help = "the last value; for a map the upper edge", .only = even}, to);
-    visit({.key = "spacing", .help = spacing_help, .only = even}, spacing);
-    visit({.key = "points",
-           .help = "number of values; for a map number of cells, each computed at its centre",
-           .bounds = from_to(2, max_points),
-           .absent = "given by `step`",
-           .only = even},
-          points);
-    visit({"step", "difference of two values; must divide the range from `from` to `to`", "", positive, "",
-           Condition{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
-                     visit.from_command_line("points") || visit.from_command_line("spacing")}},
-          step);
-    const Condition of_setting{is_setting(), "is only for key = \"setting\""};
-    visit({"tolerance_from",
-           "of adaptive methods, in place of `from`",
-           "",
-           {.low = 1e-32, .is_positive = true},
-           "",
-           of_setting},
-          tolerance_from);
-    visit({"tolerance_to",
-           "of adaptive methods, in place of `to`",
-           "",
-           {.low = 1e-32, .is_positive = true},
-           "",
-           of_setting},
-          tolerance_to);
-    visit({"tolerance_points", "of adaptive methods", "", from_to(2, max_points), "as `points`", of_setting},
-          tolerance_points);
-}
 
 }  // namespace doppel

@@ -20,6 +20,34 @@ bool shows(const Plot& plot, const Curve& line) {
     return false;
 }
 
+/// Counts the regular releases of a curve, and removes equilibria: their exponent is not that of a motion.
+std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit) {
+    long regular = 0, changing = 0;
+    bool contracts = false;
+    std::string equilibria;
+    const auto count = exponents.x.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
+        regular += is_regular({exponent, uncertainty});
+        changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
+        contracts = contracts || exponent < -1.5 * uncertainty;
+        if (exponent == 0 || uncertainty != 0) continue;
+        equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i], unit,
+                                  exponent > 0 ? "an unstable" : "a stable", exponent);
+        exponents.y[i] = NAN;
+    }
+    const auto which =
+        contracts ? "regular or come to rest: their exponent is not above 0" : "regular: their exponent is not above 0";
+    auto words = regular == 0 ? fmt::format("None of {} releases is regular", count)
+                              : fmt::format("{} of {} releases are {}", regular, count, which);
+    words += ". The band is the 68 % interval of the exponent";
+    if (changing > 0)
+        words += fmt::format(
+            "; it is too narrow for {}, where parts of the run differ by more than chance (transients, sticky orbits)",
+            changing);
+    return fmt::format("{}.{}", words, equilibria);
+}
+
 }  // namespace
 
 void Grid::draw(std::span<const TrialNumbers> numbers, Figure& figure) const {

@@ -7,19 +7,14 @@
 
 namespace doppel {
 
-Preset FigureReader::read_pair(const std::vector<TomlReader*>& more) {
+Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
     clock_fields(scene, preset);
     std::vector<TomlReader*> levels{&top};
     levels.insert(levels.end(), more.begin(), more.end());
     read_sides(document, levels, preset);
-    return preset;
-}
-
-Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
-    auto preset = read_pair(more);
-    check_clock(preset, scene);
+    if (!only_keys) check_clock(preset, scene);
     return preset;
 }
 
@@ -37,34 +32,10 @@ SideSpec FigureReader::release(bool physical) {
     return side;
 }
 
-const MethodEntry& method_named(const TomlReader& table, const std::string& name) {
-    if (const auto* method = find_method(name)) return *method;
-    throw table.error("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
-}
-
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names) {
     for (const auto& name : names)
         if (std::count(names.begin(), names.end(), name) > 1)
             throw table.error(key, "must differ; \"{}\" is named more than once", name);
-}
-
-std::string commented(std::string_view text) {
-    std::string lines = "#";
-    for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
-    return lines + "\n";
-}
-
-Preset film_named(const std::string& name, const TomlReader& table) {
-    const auto source = [&] {
-        try {
-            return find_preset(name);
-        } catch (const Error& error) {
-            throw table.error("scene", "cannot be taken: {}", error.what());
-        }
-    }();
-    table.require_drawable("scene", source.name);
-    if (is_figure(source)) throw table.error("scene", "must name a film; \"{}\" is a figure", name);
-    return read_preset(source);
 }
 
 bool have_same_release(const SideSpec& a, const SideSpec& b) {

@@ -32,21 +32,11 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
                          std::span<const ExternalMethod> external_methods = {},
                          const std::atomic<bool>& stop = never_stopped);
 
-/// The tables common to all figures, then those of each kind (figure/kinds.hpp).
-std::vector<FieldTable> figure_tables();
-
 /// The tables that a preset of this kind may have, except those of particles, constraints and forces. "[]" contains the
 /// keys outside of tables; others are "[scene]", "[system]", "[a]" … and "[[curve]]".
 std::vector<FieldTable> tables_of(std::string_view kind);
 
 /// The JSON schema (Draft 4) of presets.
 std::string preset_schema();
-
-/// A page of docs/ with lists of keys.
-struct ReferencePage {
-    std::string file, text;
-};
-/// The pages for films, for [video], and for figures.
-std::vector<ReferencePage> reference_pages();
 
 }  // namespace doppel

@@ -110,20 +110,6 @@ TrialNumbers step_costs(const SideSpec& side, const std::atomic<bool>& stop) {
     return minimum;
 }
 
-/// The mean step size, s, the largest distance of the pair, and the number of steps; no distance if a side failed.
-TrialNumbers distance_and_steps(const Preset& pair, const std::atomic<bool>& stop) {
-    const auto scene = make_scene(pair, stop);
-    PairRun run(scene);
-    double maximum = 0;
-    try {
-        for (long n = 0; n <= scene.samples; ++n) maximum = std::fmax(maximum, run.next(stop).distance);
-    } catch (const RunFailure&) {
-        return {NAN, NAN, 0};
-    }
-    const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
-    return {2 * pair.duration_s.value() / steps, maximum, steps};
-}
-
 /// How pairs can be integrated in lanes, if they can be: plain chains in double by the methods of Batch.
 std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
     const auto supports = [](const Side& side) {
@@ -147,11 +133,14 @@ public:
         if (quantity_ == Quantity::divergence) mean_.add(distance);
         if (quantity_ == Quantity::parting_time) divergence_.add(time, distance);
     }
+    double greatest() const { return largest_; }
     double value() const {
         if (quantity_ == Quantity::divergence) return mean_.value();
         if (!std::isfinite(last_)) return NAN;
         if (quantity_ == Quantity::greatest_distance) return largest_;
-        return quantity_ == Quantity::distance_at_end ? last_ : divergence_.since().value_or(NAN);
+        if (quantity_ == Quantity::distance_at_end) return last_;
+        const auto time = divergence_.since();
+        return time ? *time : NAN;
     }
 
 private:
@@ -243,58 +232,15 @@ void require_difference(const TomlReader& table, Quantity quantity, bool is_of_o
             "0; \"distance_at_end\" and \"parting_time\" need none");
 }
 
-std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit) {
-    long regular = 0, changing = 0;
-    bool contracts = false;
-    std::string equilibria;
-    const auto count = exponents.x.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
-        regular += is_regular({exponent, uncertainty});
-        changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
-        contracts = contracts || exponent < -1.5 * uncertainty;
-        if (exponent == 0 || uncertainty != 0) continue;
-        equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i], unit,
-                                  exponent > 0 ? "an unstable" : "a stable", exponent);
-        exponents.y[i] = NAN;
-    }
-    const auto which =
-        contracts ? "regular or come to rest: their exponent is not above 0" : "regular: their exponent is not above 0";
-    auto words = regular == 0 ? fmt::format("None of {} releases is regular", count)
-                              : fmt::format("{} of {} releases are {}", regular, count, which);
-    words += ". The band is the 68 % interval of the exponent";
-    if (changing > 0)
-        words += fmt::format(
-            "; it is too narrow for {}, where parts of the run differ by more than chance (transients, sticky orbits)",
-            changing);
-    return fmt::format("{}.{}", words, equilibria);
-}
-
 std::string seconds_text(const Preset& pair) {
     return fmt::format("{:.10g}", pair.duration_s.value());
-}
-
-std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
-                                         const std::string& pairs, const std::string& seconds) {
-    if (words.logarithmic ? drawn.above_0 : drawn.any) return std::nullopt;
-    const auto name = fmt::format(
-        "{} {}", quantity == Quantity::exponent || quantity == Quantity::energy_error ? "an" : "a", name_of(quantity));
-    if (drawn.any)
-        return fmt::format("none of the {} pairs has {} above 0, which a logarithmic scale needs", pairs, name);
-    if (words.none_is_bad)
-        return fmt::format(
-            "all of the {} pairs failed within {} s; use a smaller step or tolerance, or a shorter scene.duration_s",
-            pairs, seconds);
-    return fmt::format("none of the {} pairs has {}: {}{}", pairs, name, words.none,
-                       quantity == Quantity::parting_time ? ", or apart from the start" : "");
 }
 
 Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
                          bool same_method, const QuantityOptions& options)
     : quantity_(quantity),
       words_(words_of(quantity, seconds_text(pair), options.stroboscope)),
-      exponent_{.duration_s = options.exponent_duration_s},
-      stroboscope_(options.stroboscope),
+      options_(options),
       flip_{pair.duration_s.value(), options.flip_tolerance.value_or(flip_tolerance(pair.duration_s.value()))} {
     if (words_.short_label.empty()) words_.short_label = words_.label.substr(0, words_.label.rfind(", "));
     const auto& a = pair.a;
@@ -311,7 +257,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         throw table.error(key, "\"period\" needs one link; there are {}", a.links());
     if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
         throw table.error(key, "\"{}\" needs sides with the same number of masses", name_of(quantity));
-    if (quantity == Quantity::stroboscopic) require_drive(table, key, stroboscope_, a);
+    if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, a);
     const auto scene = make_scene(pair);
     motion_ = scene.a.motion;
     if (quantity == Quantity::stability &&
@@ -347,11 +293,11 @@ void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const
 TrialNumbers Measurement::found(const Preset& pair, const std::atomic<bool>& stop) const {
     const auto& a = pair.a;
     if (quantity_ == Quantity::step_cost) return step_costs(a, stop);
-    if (quantity_ == Quantity::convergence) return distance_and_steps(pair, stop);
-    if (quantity_ == Quantity::stroboscopic) return stroboscope(make_scene(pair, stop), stroboscope_, stop);
-    if (quantity_ != Quantity::exponent) return {watched(pair, stop)};
-    const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), exponent_, stop)
-                                               : largest_exponent(physical_of(a).cast<double>(), exponent_, stop);
+    if (quantity_ == Quantity::stroboscopic) return stroboscope(make_scene(pair, stop), options_.stroboscope, stop);
+    if (quantity_ != Quantity::exponent) return watched(pair, stop);
+    const ExponentSpec spec{.duration_s = options_.exponent_duration_s};
+    const auto exponent = a.physical.is_none() ? largest_exponent(chain_of(a).cast<double>(), spec, stop)
+                                               : largest_exponent(physical_of(a).cast<double>(), spec, stop);
     return {exponent.value, exponent.uncertainty, exponent.is_settled ? 0.0 : 1.0};
 }
 
@@ -401,14 +347,16 @@ void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> in
 }
 
 /// Runs a pair with the sample loop of films: any model, method and precision.
-double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) const {
+TrialNumbers Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) const {
     const auto scene = make_scene(pair, stop);
     try {
         if (is_of_distance(quantity_)) {
             PairRun run(scene);
             DistanceWatch watch(quantity_);
             for (long n = 0; n <= scene.samples; ++n) watch.add(scene.time(n), run.next(stop).distance);
-            return watch.value();
+            if (quantity_ != Quantity::convergence) return {watch.value()};
+            const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
+            return {2 * pair.duration_s.value() / steps, watch.greatest(), steps};
         }
         SideRun run(scene, scene.a, 'a');
         FlipWatch flips;
@@ -422,13 +370,13 @@ double Measurement::watched(const Preset& pair, const std::atomic<bool>& stop) c
             worst = std::max(worst, std::abs(seen.energy_change));
             if (quantity_ == Quantity::period) flips.add_swing(scene.time(n), seen.bobs);
             if (quantity_ != Quantity::flip_time) continue;
-            if (const auto time = flips.add(scene.time(n), seen.bobs)) return *time;
+            if (const auto time = flips.add(scene.time(n), seen.bobs)) return {*time};
         }
-        if (quantity_ == Quantity::deviation) return furthest * (180 / pi);
-        if (quantity_ == Quantity::period) return flips.period();
-        return quantity_ == Quantity::flip_time ? never : worst / scene.a.energy_unit;
+        if (quantity_ == Quantity::deviation) return {furthest * (180 / pi)};
+        if (quantity_ == Quantity::period) return {flips.period()};
+        return {quantity_ == Quantity::flip_time ? never : worst / scene.a.energy_unit};
     } catch (const RunFailure&) {
-        return NAN;
+        return quantity_ == Quantity::convergence ? TrialNumbers{NAN, NAN, 0} : TrialNumbers{NAN};
     }
 }
 

@@ -65,28 +65,13 @@ struct QuantityWords {
     std::optional<Range> range = {};  // of the colour scale of a map
 };
 
-/// Whether there is any number, and any number above 0.
-struct Drawn {
-    bool any = false, above_0 = false;
-    void add(double number) {
-        any |= std::isfinite(number);
-        above_0 |= std::isfinite(number) && number > 0;
-    }
-};
 /// The duration of the pair in words: "20", "0.5".
 std::string seconds_text(const Preset& pair);
-/// Why a picture would be empty; otherwise nothing. `pairs` = their number.
-std::optional<std::string> nothing_drawn(Quantity quantity, const QuantityWords& words, const Drawn& drawn,
-                                         const std::string& pairs, const std::string& seconds);
-
 /// Throws Error (exit 2) at the table's `difference` or `quantity` if the quantity compares two pendulums that are the
 /// same: in all pairs, or because `difference` is lost in rounding in the first or last pair, or because `divergence`
 /// starts at distance 0.
 void require_difference(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
                         const std::array<Scene, 2>& ends);
-
-/// Counts the regular releases of a curve, and removes equilibria: their exponent is not that of a motion.
-std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit);
 
 /// Options for quantities, set by keys of [grid].
 struct QuantityOptions {
@@ -128,12 +113,11 @@ private:
     void append_flips(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
     void append_energies(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;
     TrialNumbers found(const Preset& pair, const std::atomic<bool>& stop) const;
-    double watched(const Preset& pair, const std::atomic<bool>& stop) const;
+    TrialNumbers watched(const Preset& pair, const std::atomic<bool>& stop) const;
 
     Quantity quantity_;
     QuantityWords words_;
-    ExponentSpec exponent_;
-    StroboscopeSpec stroboscope_;
+    QuantityOptions options_;
     FlipSpec flip_;
     std::optional<PairBatchSpec> run_;
     MotionSpec motion_;  // of side a of the first pair

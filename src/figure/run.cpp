@@ -47,15 +47,6 @@ const Theme& theme_named(const std::string& name) {
     return *std::find_if(themes.begin(), themes.end(), [&](const auto& theme) { return theme.name == name; });
 }
 
-}  // namespace
-
-Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
-    const auto layout = layout_of(figure.chart);
-    return compose(page_of(figure, trials), layout.picture, theme_named(figure.chart.theme), layout.scale, layout.unit);
-}
-
-namespace {
-
 /// Throws Error (exit 2) if the map cells of the trials in `header` exceed the memory, or the disk space of `folder`,
 /// or what a page holds.
 /// Other figures need no check.
@@ -94,11 +85,6 @@ struct FigureRecord {
 /// `tiles` = the description of a pyramid, otherwise null.
 void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownTrials& trials,
                     const FigureRecord& record, const Json& tiles) {
-    Json findings = Json::object();
-    for (const auto& finding : figure.experiment->findings(trials))
-        std::visit([&](const auto& value) { findings[finding.key] = value; },
-                   finding.value);  // not a finite number: null
-
     Json manifest = {
         {"doppel", program_json()},
         {"figure", figure.name},
@@ -106,7 +92,7 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
         {"title", figure.title},
         {"captions", figure.captions},
         {"erratum", figure.erratum},
-        {"findings", findings},
+        {"findings", figure.experiment->findings(trials)},  // null: not a finite number
         {"resolved_preset", json_of_toml(figure.resolved())},
         {"trials", trials.size()},
         {"threads", record.jobs},
@@ -175,11 +161,6 @@ RunResult write_figure(const FigurePreset& figure, const KnownTrials& trials, Fi
     return result;
 }
 
-ComputationReport report_of(const FigureReport& report, std::size_t k) {
-    return {[&report, k](const FigureProgress& p) { report.progress(k, p); },
-            [&report, k](const std::string& s) { report.note(k, s); }};
-}
-
 /// The computations of all figures, and the threads that do them.
 class Scheduler {
 public:
@@ -197,7 +178,9 @@ public:
                 !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
                 report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-            computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report_of(report, k)));
+            const ComputationReport own{[&report, k](const auto& progress) { report.progress(k, progress); },
+                                        [&report, k](const auto& sentence) { report.note(k, sentence); }};
+            computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, own));
             auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);
@@ -248,6 +231,11 @@ private:
 };
 
 }  // namespace
+
+Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
+    const auto layout = layout_of(figure.chart);
+    return compose(page_of(figure, trials), layout.picture, theme_named(figure.chart.theme), layout.scale, layout.unit);
+}
 
 std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options) {
     const auto& name = figure.name;

@@ -105,10 +105,6 @@ Json entries_schema(const FieldTable& table) {
     return list_schema(entry, 0, 0);
 }
 
-bool is_of_entries(const FieldTable& table) {
-    return table.name.starts_with("[[");
-}
-
 /// The tables that a preset of this kind may have, and the keys of tables that differ between kinds. The types of keys
 /// are described elsewhere.
 Json kind_schema(std::string_view kind) {
@@ -145,7 +141,7 @@ std::string preset_schema() {
     for (const auto kind : scene_kinds) {
         kinds.push_back(kind_schema(kind));
         for (const auto& table : tables_of(kind)) {
-            const auto schema = is_of_entries(table) ? entries_schema(table) : table_schema(table);
+            const auto schema = table.name.starts_with("[[") ? entries_schema(table) : table_schema(table);
             if (table.key().empty())
                 properties.update(schema["properties"]);
             else if (auto& known = properties[std::string(table.key())]; known.is_null())

@@ -36,19 +36,19 @@ public:
     static constexpr std::string_view table_key = "section";
     Section() = default;
     explicit Section(FigureReader& reader) : release_(reader.release()) {
+        const auto table = reader.settings(*this);
+        if (reader.only_keys) return;
         auto system = reader.document.table(reader.top, "system");
         for (const char* key : {"angle_deg", "omega_deg_per_s"})
             if (system.has(key))
                 throw system.error(key, "is not for a section, whose orbits start at all states of an energy");
-        auto table = reader.settings(*this);
         if (release_.links() != 2) throw table.error("energy_J", "is for two links; there are {}", release_.links());
-        settings_ = resolved_chain(release_) + table.finish();
+        settings_ = resolved_chain(release_) + settings_text(*this);
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
     }
 
-    template <class Visit>
-    void fields(Visit& visit) {
+    void fields(KeyVisitor& visit) {
         visit({.key = "energy_J",
                .help = "of each panel's orbits, above hanging at rest",
                .unit = "J",
@@ -87,11 +87,12 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        for (std::size_t panel = 0; panel < energies_.size(); ++panel)
-            figure.panels.push_back(plot_of(panel, numbers.subspan(panel * orbits(), orbits())));
         long maximum = 0;
-        for (std::size_t panel = 0; panel < energies_.size(); ++panel)
-            maximum = std::max(maximum, regular_ones(numbers.subspan(panel * orbits(), orbits())));
+        for (std::size_t panel = 0; panel < energies_.size(); ++panel) {
+            const auto own = numbers.subspan(panel * orbits(), orbits());
+            figure.panels.push_back(plot_of(panel, own));
+            maximum = std::max(maximum, regular_ones(own));
+        }
         figure.captions.push_back(
             fmt::format("In colour, regular orbits ({}): the largest Lyapunov exponent of {} s of their motion is at "
                         "most 1.5 times its uncertainty. In grey, chaotic ones.",
@@ -110,14 +111,14 @@ public:
                            links_words(release_));
     }
 
-    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        std::vector<Finding> all;
+    Json findings(std::span<const TrialNumbers> numbers) const override {
+        Json all;
         double points = 0;
         for (const auto& orbit : numbers) points += orbit_of(orbit).crossings;
-        all.push_back({"points", points});
+        all["points"] = points;
         for (std::size_t panel = 0; panel < energies_.size(); ++panel)
-            all.push_back({fmt::format("regular_orbits_of_{:g}_J", energies_[panel]),
-                           static_cast<double>(regular_ones(numbers.subspan(panel * orbits(), orbits())))});
+            all[fmt::format("regular_orbits_of_{:g}_J", energies_[panel])] =
+                static_cast<double>(regular_ones(numbers.subspan(panel * orbits(), orbits())));
         return all;
     }
 
@@ -126,7 +127,7 @@ private:
         const auto& release = releases_[trial / orbits()][trial % orbits()];
         const auto points = poincare_section(release, spec_, stop);
         const auto exponent = largest_exponent(release, {.duration_s = exponent_duration_s_}, stop);
-        auto numbers = numbers_of(OrbitRow{exponent.value, exponent.uncertainty, static_cast<double>(points.size())});
+        TrialNumbers numbers{exponent.value, exponent.uncertainty, static_cast<double>(points.size())};
         for (const auto& point : points) append(numbers, CrossingRow{point.theta2, point.p2, point.time_s});
         return numbers;
     }

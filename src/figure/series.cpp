@@ -21,8 +21,7 @@ struct PairCurve {
     Preset pair;
 };
 
-template <class Visit>
-void curve_fields(Visit& visit, PairCurve& curve) {
+void curve_fields(KeyVisitor& visit, PairCurve& curve) {
     visit({"column", "its name in the CSV", "", {}, must_be_given}, curve.column);
     curve.label = curve.column;
     visit({.key = "label", .help = "its name in the picture", .absent = "the column", .is_drawn = true}, curve.label);
@@ -89,22 +88,20 @@ std::string column_words(const std::string& column) {
 /// agree.
 class PairSeries final : public Experiment {
 public:
-    PairSeries(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
+    PairSeries(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
         : logarithmic_(keys.logarithmic), check_tolerance_(keys.check_tolerance) {
         const auto shown = keys.film_column.value_or(std::string(name_of(keys.quantity)));
         auto entries = reader.entries("curve");
-        if (entries.empty()) curves_.push_back({shown, "", shown, reader.pair()});
+        if (entries.empty() || reader.only_keys) curves_.push_back({shown, "", shown, reader.pair()});
         for (auto& entry : entries) {
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
-            if (curve.column.empty()) throw entry.error("column", "is missing; it names the curve in the table");
-            if (!entry.has("label")) entry.require_drawable("column", curve.column);  // the column is used as label
-            if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
-                throw entry.error("column", "must differ from the other columns; it is \"{}\"", curve.column);
+            if (!reader.only_keys) check_column(entry, curve);
             if (!curve.film_column) curve.film_column = shown;
             curve.pair = reader.pair({&entry});
             entry.finish();
         }
+        if (reader.only_keys) return;
         bool differ = false;
         for (auto& curve : curves_) {
             curve.pair.energy_columns = true;
@@ -127,7 +124,7 @@ public:
         if (!differ)
             throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
                               shown);
-        settings_ = resolved_settings(resolved);
+        settings_ = resolved_settings(settings_text(keys));
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
@@ -180,20 +177,26 @@ public:
         return "nothing is greater than 0, which a logarithmic axis cannot show; set series.logarithmic = false";
     }
 
-    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        std::vector<Finding> all;
+    Json findings(std::span<const TrialNumbers> numbers) const override {
+        Json all;
         for (std::size_t i = 0; i < curves_.size(); ++i) {
             const auto maximum = std::max_element(numbers[i].begin(), numbers[i].end(),
                                                   [](double a, double b) { return std::isnan(a) || a < b; });
-            all.push_back({"greatest_" + curves_[i].column, *maximum});
-            all.push_back(
-                {"greatest_at_sample_" + curves_[i].column, static_cast<double>(maximum - numbers[i].begin())});
-            if (check_tolerance_) all.push_back({"agrees_until_s_" + curves_[i].column, agree_until(numbers, i)});
+            all["greatest_" + curves_[i].column] = *maximum;
+            all["greatest_at_sample_" + curves_[i].column] = static_cast<double>(maximum - numbers[i].begin());
+            if (check_tolerance_) all["agrees_until_s_" + curves_[i].column] = agree_until(numbers, i);
         }
         return all;
     }
 
 private:
+    void check_column(TomlReader& entry, const PairCurve& curve) const {
+        if (curve.column.empty()) throw entry.error("column", "is missing; it names the curve in the table");
+        if (!entry.has("label")) entry.require_drawable("column", curve.column);  // the column is used as label
+        if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
+            throw entry.error("column", "must differ from the other columns; it is \"{}\"", curve.column);
+    }
+
     std::string resolved_settings(const std::string& own) const {
         const auto& base = curves_.front().pair;
         auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
@@ -208,8 +211,8 @@ private:
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto scene = make_scene(pair_of(trial));
         const auto& shown = *curves_[trial % curves_.size()].film_column;
-        for (std::size_t i = 0; i < certified_columns.size(); ++i)
-            if (certified_columns[i] == shown) return certified_radii(scene, certified_bits[i], stop);
+        if (const auto* of = std::ranges::find(certified_columns, shown); of != certified_columns.end())
+            return certified_radii(scene, certified_bits[of - certified_columns.begin()], stop);
         PairRun run(scene);
         TrialNumbers values;
         double start = 0;
@@ -263,38 +266,12 @@ private:
     long samples_ = 0;
 };
 
-}  // namespace
-
-SeriesKeys::SeriesKeys() {
-    for (const auto& method : doppel::methods())
-        if (method.angles || method.constraints) methods.emplace_back(method.name);
-}
-
-namespace {
-
 std::shared_ptr<const Experiment> read_series(FigureReader& reader) {
     SeriesKeys keys;
-    auto table = reader.settings(keys);
-    const auto resolved = table.finish();
-    if (keys.is_of_pairs()) return std::make_shared<PairSeries>(reader, table, keys, resolved);
-    return keys.quantity == SeriesQuantity::errors ? make_drift(reader, table, keys, resolved)
-                                                   : make_spectrum(reader, table, keys, resolved);
-}
-
-void read_series_keys(FigureReader& reader, FigureKind::System) {
-    SeriesKeys keys;
-    reader.settings(keys).finish();
-    if (!keys.is_of_pairs()) {
-        reader.release(keys.quantity == SeriesQuantity::exponents);
-        return;
-    }
-    reader.read_pair();
-    for (auto& entry : reader.entries("curve")) {
-        PairCurve curve;
-        curve_fields(entry, curve);
-        reader.read_pair({&entry});
-        entry.finish();
-    }
+    const auto table = reader.settings(keys);
+    if (keys.is_of_pairs()) return std::make_shared<PairSeries>(reader, table, keys);
+    return keys.quantity == SeriesQuantity::errors ? make_drift(reader, table, keys)
+                                                   : make_spectrum(reader, table, keys);
 }
 
 std::vector<FieldTable> series_tables() {
@@ -314,6 +291,58 @@ std::vector<FieldTable> series_tables() {
 
 }  // namespace
 
-const FigureKind series_kind{"series", FigureKind::System::pair, read_series, read_series_keys, series_tables};
+SeriesKeys::SeriesKeys() {
+    for (const auto& method : doppel::methods())
+        if (method.angles || method.constraints) methods.emplace_back(method.name);
+}
+
+void SeriesKeys::fields(KeyVisitor& visit) {
+    visit({"quantity",
+           "the distance of pairs in state space, or ln(d/d₀); all Lyapunov exponents of one motion, as their "
+           "estimates settle; or the errors of its energy and rods by each method at the same cost"},
+          quantity);
+
+    visit({.key = "film_column",
+           .help = "in place of `quantity`: a column of the table that a film of the pair has",
+           .only = {is_of_pairs(), "is only for pairs"},
+           .is_drawn = true},
+          film_column);
+    const Condition of_pairs{is_of_pairs(), "is only for pairs"};
+    const Condition of_exponents{quantity == SeriesQuantity::exponents, "is only for exponents"};
+    const Condition of_errors{quantity == SeriesQuantity::errors, "is only for errors"};
+    const Bounds of_motions = of_errors.applies ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;
+    constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true},
+        costs{.low = 10, .high = 1e6, .is_positive = true};
+    visit({"logarithmic", "the axis", "", {}, "", of_pairs}, logarithmic);
+    visit({"check_tolerance", "runs every pair again at this tolerance, to see how long both agree", "", positive, "",
+           of_pairs},
+          check_tolerance);
+    visit({"duration_s", "of the motion", "s", of_motions, "",
+           Condition{!is_of_pairs(), "is for one motion; pairs use that of [scene]"}},
+          duration_s);
+    visit(
+        {"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000), "", of_exponents},
+        samples);
+    visit({"tolerance", "relative error of a step of dop853, of the motion and of its tangents", "", tolerances, "",
+           of_exponents},
+          tolerance);
+    visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100), "", of_errors}, points_per_decade);
+    visit({"evaluations_per_s", "evaluations of the right-hand side a second of motion, the same for all methods", "",
+           costs, "", of_errors},
+          evaluations_per_s);
+    visit({.key = "methods",
+           .help = "names of methods",
+           .absent = "all that step chains",
+           .only = of_errors,
+           .known = names_of_methods()},
+          methods);
+    visit({.key = "projected",
+           .help = "methods that are also shown with projection onto the constraints",
+           .only = of_errors,
+           .known = names_of_methods()},
+          projected);
+}
+
+const FigureKind series_kind{"series", FigureKind::System::pair, read_series, series_tables};
 
 }  // namespace doppel

@@ -11,8 +11,9 @@ namespace {
 /// Convergence of the estimates of all Lyapunov exponents of one motion.
 class Spectrum final : public Experiment {
 public:
-    Spectrum(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys, const std::string& resolved)
+    Spectrum(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
         : release_(reader.release(true)), spec_{keys.duration_s, keys.samples, keys.tolerance} {
+        if (reader.only_keys) return;
         if (release_.physical.has_coulomb())
             throw reader.document.table(reader.top, "system")
                 .error("joint_coulomb_N_m",
@@ -21,7 +22,7 @@ public:
         if (release_.links() > max_links)
             throw table.error("quantity", "= \"exponents\" is for 1 to {} links; there are {}", max_links,
                               release_.links());
-        settings_ = resolved_release(release_) + resolved;
+        settings_ = resolved_release(release_) + settings_text(keys);
     }
 
     std::size_t trials() const override { return 1; }
@@ -73,18 +74,17 @@ public:
 
     std::string subtitle() const override {
         const auto physical = physical_words(release_.physical);
-        return fmt::format("{}{} {}, {}; tangent equations in canonical variables, dop853",
-                           pendulum_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
+        return fmt::format("a {}{} {}, {}; tangent equations in canonical variables, dop853",
+                           chain_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
                            released_words(release_), links_words(release_));
     }
 
-    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        std::vector<Finding> all;
+    Json findings(std::span<const TrialNumbers> numbers) const override {
+        Json all;
         const auto last = samples_of(numbers).back();
-        for (std::size_t i = 0; i < exponents(); ++i)
-            all.push_back({fmt::format("exponent{}_per_s", i + 1), last.exponents[i]});
-        all.push_back({"sum_per_s", sum(last)});
-        if (preserves_volume()) all.push_back({"pair_mismatch_per_s", pair_mismatch(last)});
+        for (std::size_t i = 0; i < exponents(); ++i) all[fmt::format("exponent{}_per_s", i + 1)] = last.exponents[i];
+        all["sum_per_s"] = sum(last);
+        if (preserves_volume()) all["pair_mismatch_per_s"] = pair_mismatch(last);
         return all;
     }
 
@@ -105,12 +105,9 @@ private:
     /// The numbers of each sample: its time, then the exponents.
     std::vector<SpectrumSample> samples_of(std::span<const TrialNumbers> numbers) const {
         std::vector<SpectrumSample> samples;
-        for (auto at = numbers[0].begin(); at != numbers[0].end();) {
-            const double time = *at++;
-            const auto end = at + static_cast<std::ptrdiff_t>(exponents());
-            samples.push_back({time, {at, end}});
-            at = end;
-        }
+        const auto each = static_cast<std::ptrdiff_t>(exponents()) + 1;
+        for (auto at = numbers[0].begin(); at != numbers[0].end(); at += each)
+            samples.push_back({*at, {at + 1, at + each}});
         return samples;
     }
     static double sum(const SpectrumSample& sample) {
@@ -123,9 +120,8 @@ private:
 
 }  // namespace
 
-std::shared_ptr<const Experiment> make_spectrum(FigureReader& reader, const TomlReader& table, const SeriesKeys& keys,
-                                                const std::string& resolved) {
-    return std::make_shared<Spectrum>(reader, table, keys, resolved);
+std::shared_ptr<const Experiment> make_spectrum(FigureReader& reader, const TomlReader& table, SeriesKeys& keys) {
+    return std::make_shared<Spectrum>(reader, table, keys);
 }
 
 }  // namespace doppel

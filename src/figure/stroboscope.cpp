@@ -66,20 +66,14 @@ TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const 
     return numbers;
 }
 
-std::vector<Finding> period_findings(std::span<const TrialNumbers> motions) {
-    std::array<double, 5> of_period{};
-    double irregular = 0;
-    for (const auto& motion : motions) {
-        const auto count = distinct_rates(motion);
-        if (count >= 1 && count <= 4)
-            of_period[count] += 1;
-        else if (count > 16)
-            irregular += 1;
-    }
-    return {{"values_of_one_period", of_period[1]},
-            {"values_of_two_periods", of_period[2]},
-            {"values_of_four_periods", of_period[4]},
-            {"values_of_more_than_16", irregular}};
+Json period_findings(std::span<const TrialNumbers> motions) {
+    constexpr std::size_t many = 17;
+    std::array<double, many + 1> with{};  // numbers of motions with so many distinct rates
+    for (const auto& motion : motions) with[std::min(distinct_rates(motion), many)] += 1;
+    return {{"values_of_one_period", with[1]},
+            {"values_of_two_periods", with[2]},
+            {"values_of_four_periods", with[4]},
+            {"values_of_more_than_16", with[many]}};
 }
 
 }  // namespace doppel

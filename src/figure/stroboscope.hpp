@@ -26,6 +26,6 @@ void require_drive(const TomlReader& table, std::string_view key, const Strobosc
 TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const std::atomic<bool>& stop);
 
 /// How many motions repeat after one, two or four periods, or have more than 16 distinct rates.
-std::vector<Finding> period_findings(std::span<const TrialNumbers> motions);
+Json period_findings(std::span<const TrialNumbers> motions);
 
 }  // namespace doppel

@@ -13,17 +13,13 @@ namespace {
 constexpr std::size_t max_named = 4;  // shorter chains have each link named
 
 /// "1", or "1, 2, 0.5" if they differ; for long lists the minimum and maximum.
-std::string numbers_words(const std::vector<double>& numbers) {
+std::string numbers_words(const std::vector<Quad>& quads) {
+    std::vector<double> numbers;
+    for (const auto& number : quads) numbers.push_back(static_cast<double>(number));
     const auto [minimum, maximum] = std::minmax_element(numbers.begin(), numbers.end());
     if (*minimum == *maximum) return fmt::format("{}", *minimum);
     return numbers.size() > max_named ? fmt::format("{} to {}", *minimum, *maximum)
                                       : fmt::format("{}", fmt::join(numbers, ", "));
-}
-
-std::vector<double> doubles(const std::vector<Quad>& numbers) {
-    std::vector<double> all;
-    for (const auto& number : numbers) all.push_back(static_cast<double>(number));
-    return all;
 }
 
 /// The numbers to name: the first of many equal ones, none of many different ones.
@@ -138,10 +134,6 @@ std::string slashed(const std::vector<Quad>& numbers, std::string_view unit) {
     return fmt::format("{}", fmt::join(texts, "/"));
 }
 
-std::string pendulum_words(std::size_t links) {
-    return "a " + chain_words(links);
-}
-
 std::string released_words(const SideSpec& side) {
     const auto angles = named(side.angle_deg), rates = named(side.omega_deg_per_s);
     const bool rests = is_zero(side.omega_deg_per_s);
@@ -151,28 +143,21 @@ std::string released_words(const SideSpec& side) {
     return words;
 }
 
-std::string links_words(const std::vector<double>& length_m, const std::vector<double>& mass_kg,
-                        double gravity_m_per_s2) {
-    auto words = fmt::format("links of {} m", numbers_words(length_m));
-    if (!mass_kg.empty()) words += fmt::format(" and {} kg", numbers_words(mass_kg));
-    return fmt::format("{}, g = {} m/s²", words, gravity_m_per_s2);
-}
-
 std::string links_words(const SideSpec& side) {
-    return links_words(doubles(side.length_m), doubles(side.mass_kg), static_cast<double>(side.gravity_m_per_s2));
+    return fmt::format("links of {} m and {} kg, g = {} m/s²", numbers_words(side.length_m),
+                       numbers_words(side.mass_kg), static_cast<double>(side.gravity_m_per_s2));
 }
 
 std::string pair_subtitle(const Scene& scene, const SweptKeys& swept, const std::string& difference) {
-    std::vector<std::string> parts{model_words(scene, swept)};
-    const auto add = [&](std::string words) {
-        if (!words.empty()) parts.push_back(std::move(words));
-    };
-    add(drive_words(scene.preset.a, swept));
-    add(release_words(scene, swept));
-    add(rate_words(scene.preset.a, scene.preset.b));
-    add(difference);
-    if (const auto sides = side_captions(scene); sides[0].heading != "a")
-        add(fmt::format("{} against {}", sides[0].heading, sides[1].heading));
+    const auto sides = side_captions(scene);
+    std::vector<std::string> parts{
+        model_words(scene, swept),
+        drive_words(scene.preset.a, swept),
+        release_words(scene, swept),
+        rate_words(scene.preset.a, scene.preset.b),
+        difference,
+        sides[0].heading == "a" ? "" : fmt::format("{} against {}", sides[0].heading, sides[1].heading)};
+    std::erase(parts, "");
     const auto method = swept.method.empty() ? method_words(scene, swept) : swept.method;
     return fmt::format("{}{}{}", fmt::join(parts, ", "), method.empty() ? "" : "; ", method);
 }

@@ -10,18 +10,13 @@
 
 namespace doppel {
 
-/// "a double pendulum"
-std::string pendulum_words(std::size_t links);
-
 /// "30°/0°"
 std::string slashed(const std::vector<Quad>& numbers, std::string_view unit = "");
 
 /// For example "released at rest from 30°/0°".
 std::string released_words(const SideSpec& side);
 
-/// "links of 1 m and 1 kg, g = 9.8 m/s²", or "links of 1, 0.5 m …" if they differ. Empty masses are left out.
-std::string links_words(const std::vector<double>& length_m, const std::vector<double>& mass_kg,
-                        double gravity_m_per_s2);
+/// "links of 1 m and 1 kg, g = 9.8 m/s²", or "links of 1, 0.5 m …" if they differ.
 std::string links_words(const SideSpec& side);
 
 /// The system and integrator of a figure of pairs: "two links in angles, θ₂ = 0, pair 0.003° apart; explicit Euler,

@@ -18,6 +18,20 @@ namespace {
 /// Errors, rad, for which the cheapest method is named.
 constexpr std::array accuracies{1e-3, 1e-6, 1e-9, 1e-12};
 
+/// The film preset of that name or path, given by the table's key `scene`. Throws Error (exit 2).
+Preset film_named(const std::string& name, const TomlReader& table) {
+    const auto source = [&] {
+        try {
+            return find_preset(name);
+        } catch (const Error& error) {
+            throw table.error("scene", "cannot be taken: {}", error.what());
+        }
+    }();
+    table.require_drawable("scene", source.name);
+    if (is_figure(source)) throw table.error("scene", "must name a film; \"{}\" is a figure", name);
+    return read_preset(source);
+}
+
 /// The numbers of a problem's reference trial.
 struct ProblemRow {
     double sensitivity, disagreement;
@@ -37,11 +51,12 @@ public:
         reader.chart(cost_field, cost_);
         reader.chart(names_field, names_);
         auto table = reader.settings(*this);
-        problems_ = scene_ ? problem_of(std::move(film_)) : standard_problems(problem_names_, table);
+        if (reader.only_keys) return;
+        problems_ = scene_ ? problem_of(film_) : standard_problems(problem_names_, table);
         references_ = std::make_unique<SharedReference[]>(problems_.all.size());
         find_solvers(table);
         for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
-        settings_ = table.finish() + problems_.comment;
+        settings_ = settings_text(*this) + problems_.comment;
         chart_settings_ = fmt::format("cost = {}\nnames = {}\n", toml_value(cost_), toml_value(names_));
         for (std::size_t p = 0; p < problems_.all.size(); ++p)
             for (const auto& solver : solvers_)
@@ -51,17 +66,19 @@ public:
                               name_of(problems_.all[0].motion.model));
     }
 
-    template <class Visit>
-    void fields(Visit& visit) {
+    void fields(KeyVisitor& visit) {
         visit({"scene", "a film, by name or path, whose side a is the problem"}, scene_);
-        if constexpr (std::is_same_v<Visit, SettingsReader>)
-            if (scene_) film_ = film_named(*scene_, visit);
+        if (const auto* table = dynamic_cast<const TomlReader*>(&visit); table && scene_)
+            film_ = film_named(*scene_, *table);
         const Condition standard{!scene_, "cannot be combined with \"scene\", which is a problem of its own"};
         const Condition of_scene{scene_.has_value(),
                                  "is only for the motion of a \"scene\"; the standard problems have their own"};
         visit({"problems", "the standard problems", "", {}, "", standard, "", standard_problem_names()},
               problem_names_);
-        visit({"duration_s", "of the motion of `scene`", "s", positive, "the film's", of_scene}, film_.duration_s);
+        if (auto* writer = dynamic_cast<TomlWriter*>(&visit); writer && scene_)  // in quotes, whole or not
+            writer->add("duration_s", toml_text(film_.duration_s.text()));
+        else
+            visit({"duration_s", "of the motion of `scene`", "s", positive, "the film's", of_scene}, film_.duration_s);
         visit({"repeats", "of a measurement of time", "", from_to(1, 99)}, repeats_);
         visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, max_evaluations_);
         visit({"least_error", "below which no finer setting is taken", "", positive}, min_error_);
@@ -73,12 +90,6 @@ public:
         chart(cost_field, Cost::time);
         chart(names_field, NamedCurves::best);
         return chart;
-    }
-
-    static void read_others(FigureReader& reader) {
-        WorkPrecision kind;
-        reader.chart(cost_field, kind.cost_);
-        reader.chart(names_field, kind.names_);
     }
 
     std::size_t trials() const override { return problems_.all.size() + studies_.size() * repeats(); }
@@ -114,16 +125,12 @@ public:
         for (std::size_t p = 0; p < problems.size(); ++p)
             for (const auto& [solver, outcomes] : problems[p])
                 for (const auto& outcome : outcomes) {
-                    for (const std::string_view word : {std::string_view(problems_.all[p].name), name_of(solver.model)})
-                        table.add(word);
-                    table.add(std::string_view(solver.name()));
-                    table.add_or_empty(outcome.setting);
-                    if (outcome.failed())
-                        table.add(std::string_view("failed"));
-                    else
-                        table.add_or_empty(outcome.error);
-                    add_row(table, outcome.energy_error, outcome.length_error, outcome.cpu_s, outcome.evaluations,
-                            outcome.steps);
+                    const auto add = [&](const auto& error) {
+                        add_row(table, problems_.all[p].name, name_of(solver.model), solver.name(), outcome.setting,
+                                error, outcome.energy_error, outcome.length_error, outcome.cpu_s, outcome.evaluations,
+                                outcome.steps);
+                    };
+                    outcome.failed() ? add("failed") : add(outcome.error);
                 }
     }
 
@@ -158,20 +165,20 @@ public:
 
     std::string subtitle() const override { return problems_.subtitle; }
 
-    std::vector<Finding> findings(std::span<const TrialNumbers> numbers) const override {
-        std::vector<Finding> all;
+    Json findings(std::span<const TrialNumbers> numbers) const override {
+        Json all;
         const auto studies = merged_studies(numbers);
         for (std::size_t p = 0; p < problems_.all.size(); ++p) {
             const auto& name = problems_.all[p].name;
             const auto problem = row_of<ProblemRow>(numbers[p]);
-            all.push_back({name + "_sensitivity", problem.sensitivity});
-            all.push_back({name + "_reference_disagreement", problem.disagreement});
+            all[name + "_sensitivity"] = problem.sensitivity;
+            all[name + "_reference_disagreement"] = problem.disagreement;
             for (const double accuracy : accuracies) add_findings(studies[p], name, accuracy, all);
         }
         if (cost_ == Cost::evaluations) return all;
         const auto [typical, worst] = time_spread(studies);
-        all.push_back({"spread_typical", typical});
-        all.push_back({"spread_worst", worst});
+        all["spread_typical"] = typical;
+        all["spread_worst"] = worst;
         return all;
     }
 
@@ -186,12 +193,16 @@ private:
     bool has_angles() const { return problems_.all.front().has_angles(); }
 
     void find_solvers(TomlReader& table) {
-        for (const auto& name : methods_) method_named(table, name);
+        for (const auto& name : methods_)
+            if (!find_method(name))
+                throw table.error("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
         check_distinct(table, "methods", methods_);
-        for (const auto& model : model_names_)
+        constexpr std::array of_model{&MethodEntry::angles, &MethodEntry::constraints, &MethodEntry::mechanism};
+        for (const auto& model_name : model_names_)
             for (const auto& name : methods_)
-                if (supports(*find_method(name), value_named<Model>(model)))
-                    solvers_.push_back({value_named<Model>(model), name});
+                if (const auto model = value_named<Model>(model_name);
+                    find_method(name)->*of_model[static_cast<std::size_t>(model)])
+                    solvers_.push_back({model, name});
         if (solvers_.empty())
             throw table.error(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it supports");
@@ -201,7 +212,7 @@ private:
         const std::size_t problems = problems_.all.size();
         if (trial < problems) {
             const auto& known = reference(trial, stop);
-            return numbers_of(ProblemRow{known.sensitivity, known.disagreement});
+            return {known.sensitivity, known.disagreement};
         }
         const auto& [p, solver] = studies_[(trial - problems) % studies_.size()];
         const bool is_first = trial - problems < studies_.size();
@@ -233,19 +244,19 @@ private:
     }
 
     void add_findings(const std::vector<StepStudy>& studies, const std::string& problem, double accuracy,
-                      std::vector<Finding>& all) const {
+                      Json& all) const {
         const auto key = fmt::format("{}_1e{}_", problem, std::lround(std::log10(accuracy)));
         const auto best = cheapest(studies, cost_, accuracy, [](const Solver& solver) { return !solver.external; });
         const auto external = cheapest(studies, cost_, accuracy, [](const Solver& solver) { return solver.external; });
         if (best.study) {
             const auto& solver = best.study->solver;
-            all.push_back({key + "best", fmt::format("{}, {}", solver.method, name_of(solver.model))});
-            all.push_back({key + "cost", best.cost});
+            all[key + "best"] = fmt::format("{}, {}", solver.method, name_of(solver.model));
+            all[key + "cost"] = best.cost;
         }
         if (!external.study) return;
-        all.push_back({key + "best_peer", external.study->solver.external->name});
-        all.push_back({key + "peer_cost", external.cost});
-        if (best.study) all.push_back({key + "peer_ratio", external.cost / best.cost});
+        all[key + "best_peer"] = external.study->solver.external->name;
+        all[key + "peer_cost"] = external.cost;
+        if (best.study) all[key + "peer_ratio"] = external.cost / best.cost;
     }
 
     /// The five best methods; if other libraries are shown, preceded by Doppel's best one.

@@ -44,6 +44,12 @@ double shown(double error) {
     return std::max(error, rounding / 4);
 }
 
+/// Adds the Pareto front of the studies.
+void add_front(std::span<const StepStudy> studies, const WorkDiagram& diagram, Curve& curve) {
+    for (const auto& point : pareto_front(studies, diagram.cost, range_of(diagram)))
+        add_point(curve, point.cost(diagram.cost), shown(point.error));
+}
+
 /// In colour with its name, or pale.
 Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
     const auto& [model, method, external] = study.solver;
@@ -65,8 +71,7 @@ Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
         curve.hue = style.hue;
         curve.dashed = style.dashed;
     }
-    for (const auto& point : pareto_front({&study, 1}, diagram.cost, range_of(diagram)))
-        add_point(curve, point.cost(diagram.cost), shown(point.error));
+    add_front({&study, 1}, diagram, curve);
     return curve;
 }
 
@@ -82,15 +87,6 @@ Curve spread_bars(const StepStudy& study, const WorkDiagram& diagram, int hue) {
         add_point(bars, NAN, NAN);
     }
     return bars;
-}
-
-Curve front_curve(const WorkDiagram& diagram) {
-    Curve curve{.background = Background::band};
-    const auto own = std::find_if(diagram.studies.begin(), diagram.studies.end(),
-                                  [](const StepStudy& study) { return study.solver.external != nullptr; });
-    for (const auto& point : pareto_front({diagram.studies.begin(), own}, diagram.cost, range_of(diagram)))
-        add_point(curve, point.cost(diagram.cost), shown(point.error));
-    return curve;
 }
 
 /// The result of the published study.
@@ -141,7 +137,9 @@ Plot work_plot(const WorkDiagram& diagram) {
     plot.y = {.label = diagram.problem.has_angles() ? "angle error at the end, rad"
                                                     : "error of place at the end, of the size",
               .logarithmic = true};
-    plot.curves.push_back(front_curve(diagram));
+    const auto own = std::find_if(diagram.studies.begin(), diagram.studies.end(),
+                                  [](const StepStudy& study) { return study.solver.external != nullptr; });
+    add_front({diagram.studies.begin(), own}, diagram, plot.curves.emplace_back(Curve{.background = Background::band}));
     if (!diagram.of_libraries) add_kao_point(diagram, plot);
     for (const bool named : {false, true})
         for (const auto* study : best_models(diagram.studies, diagram.cost)) {

@@ -55,24 +55,32 @@ WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational&
     return problem;
 }
 
-WorkProblem standard_problem(const std::string& name, const StandardProblem& standard) {
+SideSpec side_of(const StandardProblem& standard) {
     SideSpec side;
     side.set_links(standard.angle_deg.size());  // unit masses and lengths, at rest
     side.angle_deg.assign(standard.angle_deg.begin(), standard.angle_deg.end());
-    return make_problem(name, side, {standard.seconds, 1});
+    return side;
 }
 
 /// The system in the words of a subtitle.
 std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
     constexpr std::string_view computed = "double precision, one core";
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
-    const auto chain = problem.motion.chain->cast<double>();
-    const bool rests = std::all_of(chain.rate.begin(), chain.rate.end(), [](double rate) { return rate == 0; });
     const auto besides = side.is_mechanism()        ? ", and more"
                          : problem.is_plain_chain() ? ""
                                                     : " with " + physical_words(side.physical);
-    return fmt::format("side a of {}{}: {}{}; {}", problem.name, rests ? ", released at rest" : "",
-                       links_words(chain.length, chain.mass, chain.gravity), besides, computed);
+    auto shown = side;
+    shown.mass_kg = problem.motion.chain->mass;  // links with mass have none of their own in the preset
+    return fmt::format("side a of {}{}: {}{}; {}", problem.name,
+                       is_zero(side.omega_deg_per_s) ? ", released at rest" : "", links_words(shown), besides,
+                       computed);
+}
+
+/// The text as TOML comments: data that the numbers depend on and no key contains.
+std::string commented(std::string_view text) {
+    std::string lines = "#";
+    for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+    return lines + "\n";
 }
 
 /// The systems of the standard problems: "double and triple pendulums".
@@ -83,7 +91,7 @@ std::string pendulums_words(const std::vector<WorkProblem>& problems) {
     };
     const auto doubles = of(2), triples = of(3);
     if (doubles > 0 && triples > 0) return "double and triple pendulums";
-    return doubles > 1 ? "double pendulums" : pendulum_words(doubles == 1 ? 2 : 3);
+    return doubles > 1 ? "double pendulums" : "a " + chain_words(doubles == 1 ? 2 : 3);
 }
 
 }  // namespace
@@ -99,13 +107,12 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
         if (std::count(names.begin(), names.end(), name) > 1)
             throw table.error("problems", "must differ; \"{}\" is there twice", name);
         const auto number = std::find(names_of_all.begin(), names_of_all.end(), name) - names_of_all.begin();
-        problems.all.push_back(standard_problem(name, all_standard.at(static_cast<std::size_t>(number))));
+        const auto& standard = all_standard.at(static_cast<std::size_t>(number));
+        problems.all.push_back(make_problem(name, side_of(standard), {standard.seconds, 1}));
     }
-    const auto chain =
-        problems.all.front().motion.chain->cast<double>();  // the same for all problems except the number of links
     problems.subtitle =
         fmt::format("{} released at rest, {}; double precision, one core", pendulums_words(problems.all),
-                    links_words(chain.length, chain.mass, chain.gravity));
+                    links_words(side_of(all_standard[0])));  // all links are alike
     return problems;
 }
 

@@ -48,65 +48,46 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
     return all.size() == 1 || (need <= width && from_right <= 1);
 }
 
-void append(const DisplayList& items, PageList& list) {
+/// An axis at an edge of the area. The numbers below it stay inside `held`.
+void draw_axis(const Axis& axis, const PlotAxis& requested, AxisStyle::Edge edge, const Area& area, const Area& held,
+               bool has_grid, bool has_numbers, Color text, const PlotStyle& style, PageList& list) {
+    const bool across = edge == AxisStyle::Edge::bottom;
+    const auto items = axis_items(axis, ticks_of(axis, requested, across, style), area, across ? held : area,
+                                  {.edge = edge,
+                                   .em = style.tick,
+                                   .line = style.line,
+                                   .grid = style.theme.grid,
+                                   .frame = style.theme.frame,
+                                   .text = text,
+                                   .has_grid = has_grid,
+                                   .has_numbers = has_numbers});
     for (const auto& item : page_list(items)) list.push_back(item);
 }
 
-void draw_x_axis(const Plot& plot, const Axis& x, const Area& area, const Area& held, bool words,
-                 const PlotStyle& style, PageList& list) {
-    const float em = style.tick;
-    append(axis_items(x, x_ticks(x, plot.x, style), area, held,
-                      {.edge = AxisStyle::Edge::bottom,
-                       .em = em,
-                       .line = style.line,
-                       .grid = style.theme.grid,
-                       .frame = style.theme.frame,
-                       .text = style.theme.quiet_text,
-                       .has_grid = !plot.map,
-                       .has_numbers = words}),
-           list);
-    if (plot.x.label.empty() || !words) return;
-    const Weight weight = Weight::regular;
-    const float half = text_width(plot.x.label, style.axis, weight) / 2, baseline = area.bottom + 1.45f * em;
+void draw_x_label(const std::string& text, const Area& area, const Area& held, const PlotStyle& style, PageList& list) {
+    if (text.empty()) return;
+    const float half = text_width(text, style.axis) / 2, baseline = area.bottom + 1.45f * style.tick;
     const float middle =
         std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
-    list.push_back(Label{
-        plot.x.label, {middle, baseline + 1.5f * style.axis}, style.axis, Align::center, weight, style.theme.text});
-}
-
-/// A vertical axis at the left or right edge of the area.
-void draw_y_axis(const Axis& y, const PlotAxis& requested, AxisStyle::Edge edge, const Area& area, bool grid,
-                 bool words, Color color, const PlotStyle& style, PageList& list) {
-    append(axis_items(y, y_ticks(y, requested, style), area, area,
-                      {.edge = edge,
-                       .em = style.tick,
-                       .line = style.line,
-                       .grid = style.theme.grid,
-                       .frame = style.theme.frame,
-                       .text = color,
-                       .has_grid = grid,
-                       .has_numbers = words}),
-           list);
+    list.push_back(label(text, {middle, baseline + 1.5f * style.axis}, style.axis, style.theme.text, Align::center));
 }
 
 }  // namespace
 
-std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style) {
-    return spaced_ticks(axis, false, style.tick, requested.every);
-}
-
-std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style) {
-    return spaced_ticks(axis, true, style.tick, requested.every);
+std::vector<Tick> ticks_of(const Axis& axis, const PlotAxis& requested, bool across, const PlotStyle& style) {
+    return spaced_ticks(axis, across, style.tick, requested.every);
 }
 
 void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
                const AxisWords& words, const PlotStyle& style, PageList& list) {
+    using Edge = AxisStyle::Edge;
     const Theme& theme = style.theme;
-    draw_x_axis(plot, x, area, held, words.x, style, list);
-    draw_y_axis(y, plot.y, AxisStyle::Edge::left, area, !plot.map, words.y, theme.quiet_text, style, list);
+    draw_axis(x, plot.x, Edge::bottom, area, held, !plot.map, words.x, theme.quiet_text, style, list);
+    if (words.x) draw_x_label(plot.x.label, area, held, style, list);
+    draw_axis(y, plot.y, Edge::left, area, held, !plot.map, words.y, theme.quiet_text, style, list);
     if (right) {
-        const Color color = axis_color(plot, true, style);
-        draw_y_axis(*right, *plot.right, AxisStyle::Edge::right, area, false, true, color, style, list);
+        draw_axis(*right, *plot.right, Edge::right, area, held, false, true, axis_color(plot, true, style), style,
+                  list);
         list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
     list.push_back(vertical_line(area.left, area.top, area.bottom, style.line, theme.frame));

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <initializer_list>
-#include <iterator>
+#include <span>
 #include <string_view>
 
 namespace doppel {
@@ -50,17 +50,10 @@ struct Step {
     }
 };
 
-/// The digits of number · 10^exponent.
+/// The decimals of number · 10^exponent.
 std::string decimal(long long number, int exponent) {
-    if (number == 0) exponent = std::min(exponent, 0);
-    std::string digits = fmt::format("{}", std::abs(number));
-    if (exponent > 0) digits.append(static_cast<std::size_t>(exponent), '0');
-    const std::string_view sign = number < 0 ? "−" : "";
-    if (exponent >= 0) return fmt::format("{}{}", sign, digits);
-    const auto decimals = static_cast<std::size_t>(-exponent);
-    if (digits.size() <= decimals) digits.insert(0, decimals + 1 - digits.size(), '0');
-    const auto whole = digits.size() - decimals;
-    return fmt::format("{}{}.{}", sign, digits.substr(0, whole), digits.substr(whole));
+    const double size = Step{std::abs(number), exponent}.times(1);
+    return fmt::format("{}{:.{}f}", number < 0 ? "−" : "", size, std::max(0, -exponent));
 }
 
 /// The largest k with 10^k ≤ value.
@@ -98,15 +91,12 @@ std::vector<Tick> multiples(const Step& step, double low, double high) {
     const long double width = step.value(), from = std::ceil(low / width), to = std::floor(high / width);
     if (!(std::abs(from) * step.multiple < maximum && std::abs(to) * step.multiple < maximum && to - from < 1000))
         return {};
-    auto first = static_cast<long long>(from), last = static_cast<long long>(to);
-    // rounding in the division may have missed an end
-    if (step.times(first - 1) >= low) --first;
-    if (step.times(last + 1) <= high) ++last;
-    while (first <= last && step.times(first) < low) ++first;
-    while (first <= last && step.times(last) > high) --last;
     const double reach = std::max(std::abs(low), std::abs(high));
     std::vector<Tick> ticks;
-    for (long long k = first; k <= last; ++k) ticks.push_back({step.times(k), tick_text(step, k, reach)});
+    // rounding in the division may have missed an end
+    for (auto k = static_cast<long long>(from) - 1; k <= static_cast<long long>(to) + 1; ++k)
+        if (const double value = step.times(k); value >= low && value <= high)
+            ticks.push_back({value, tick_text(step, k, reach)});
     return ticks;
 }
 
@@ -144,36 +134,35 @@ std::vector<Tick> requested_ticks(const Axis& axis, const TickLabels& labels, do
     return {};
 }
 
-/// The given multiples of each decade, with labels.
-std::vector<Tick> subdivided(double low, double high, std::initializer_list<long long> multiples_of_it) {
+/// Ticks at the given multiples of each decade, with their labels.
+template <class Text>
+std::vector<Tick> multiples_of_decades(double low, double high, std::span<const long long> factors, const Text& text) {
     std::vector<Tick> ticks;
-    const bool plain = low >= 1e-4 && high < 1e6;
-    for (int exponent = decade_below(low); exponent <= decade_below(high); ++exponent) {
-        for (const long long nice : multiples_of_it) {
-            const double value = Step{nice, exponent}.times(1);
-            if (value < low || value > high) continue;
-            ticks.push_back({value, plain       ? decimal(nice, exponent)
-                                    : nice == 1 ? power_of_ten(exponent)
-                                                : fmt::format("{} × {}", nice, power_of_ten(exponent))});
-        }
-    }
+    for (int exponent = decade_below(low); exponent <= decade_below(high); ++exponent)
+        for (const long long factor : factors)
+            if (const double value = Step{factor, exponent}.times(1); value >= low && value <= high)
+                ticks.push_back({value, text(factor, exponent)});
     return ticks;
+}
+
+/// The given multiples of each decade, with labels.
+std::vector<Tick> subdivided(double low, double high, const std::vector<long long>& factors) {
+    return multiples_of_decades(low, high, factors, [&](long long factor, int exponent) {
+        if (low >= 1e-4 && high < 1e6) return decimal(factor, exponent);
+        const auto power = power_of_ten(exponent);
+        return factor == 1 ? power : fmt::format("{} × {}", factor, power);
+    });
 }
 
 /// Ticks at all decades, with a label at every n-th; if there is space, also unlabelled ticks inside the decades.
 std::vector<Tick> decades(const Axis& axis, double low, double high, int every) {
-    std::vector<Tick> ticks;
-    const int first = decade_below(low), last = decade_below(high);
-    const bool wide = std::abs(axis.to - axis.from) > 28 * static_cast<float>(last - first + 1);
-    for (int exponent = first; exponent <= last; ++exponent) {
-        for (long long within = 1; within <= (wide ? 9 : 1); ++within) {
-            const double value = Step{within, exponent}.times(1);
-            if (value < low || value > high) continue;
-            const bool named = within == 1 && exponent % every == 0;
-            ticks.push_back({value, named ? power_of_ten(exponent) : ""});
-        }
-    }
-    return ticks;
+    constexpr std::array<long long, 9> inside{1, 2, 3, 4, 5, 6, 7, 8, 9};
+    const int count = decade_below(high) - decade_below(low) + 1;
+    const bool is_wide = std::abs(axis.to - axis.from) > 28 * static_cast<float>(count);
+    return multiples_of_decades(low, high, std::span(inside).first(is_wide ? 9 : 1),
+                                [&](long long factor, int exponent) {
+                                    return factor == 1 && exponent % every == 0 ? power_of_ten(exponent) : "";
+                                });
 }
 
 std::size_t named(const std::vector<Tick>& ticks) {
@@ -186,20 +175,13 @@ std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels, 
     if (!(low > 0 && low < high)) return {};
     if (every) return decades(axis, low, high, static_cast<int>(*every));
     const double span = std::log10(high) - std::log10(low);
-    if (span < 2) {
-        auto ticks = subdivided(low, high, {1, 2, 5});
-        if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
-    }
-    if (span >= 1) {
-        for (const int n : {1, 2, 3, 5, 10, 20, 30, 50, 100, 200}) {
-            auto ticks = decades(axis, low, high, n);
-            if (named(ticks) >= 2 && fits(ticks, axis, labels)) return ticks;
-        }
-    }
-    if (span < 2) {  // less than two decades
-        auto ticks = subdivided(low, high, {1, 3});
-        if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
-    }
+    std::vector<std::vector<Tick>> all;  // in the order of preference
+    if (span < 2) all.push_back(subdivided(low, high, {1, 2, 5}));
+    for (const int n : {1, 2, 3, 5, 10, 20, 30, 50, 100, 200})
+        if (span >= 1) all.push_back(decades(axis, low, high, n));
+    if (span < 2) all.push_back(subdivided(low, high, {1, 3}));
+    for (auto& ticks : all)
+        if (named(ticks) >= 2 && fits(ticks, axis, labels)) return std::move(ticks);
     return linear_ticks(axis, labels);
 }
 

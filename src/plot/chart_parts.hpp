@@ -36,12 +36,8 @@ struct LabelNeeds {
 /// zero).
 PlotRanges fitted_ranges(const Plot& plot);
 
-/// Throws bad_input if a figure cannot be drawn: series of unequal length, no positive value on a logarithmic axis, …
-void check(const Figure& figure);
-
-/// Labelled ticks of a vertical axis, and of a horizontal one.
-std::vector<Tick> y_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style);
-std::vector<Tick> x_ticks(const Axis& axis, const PlotAxis& requested, const PlotStyle& style);
+/// Labelled ticks of a horizontal axis (`across`) or a vertical one.
+std::vector<Tick> ticks_of(const Axis& axis, const PlotAxis& requested, bool across, const PlotStyle& style);
 
 /// The axes whose texts a panel shows: the numbers at the ticks, and the label of the vertical axis above the panel.
 struct AxisWords {
@@ -87,9 +83,6 @@ struct Gutters {
 /// The gutters of a single panel in a cell of this size; adjacent panels share the largest.
 Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const AxisWords& words,
                 const PlotStyle& style);
-
-/// The larger of each side.
-Gutters united(const Gutters& a, const Gutters& b);
 
 /// Draws the panel in its cell, with the space `given` for the labels of curves. Returns the space that these labels
 /// need. Draws nothing if the axis labels leave no space. Sets the pixels of the axes in

@@ -11,111 +11,59 @@ struct Place {
     double x, y;
 };
 
-/// Collects a polyline segment by segment, clipped to an area.
-class Clipper {
-public:
-    Clipper(const Area& area, std::vector<std::vector<Point>>& lines) : area_(area), lines_(lines) {}
-
-    void lift() { down_ = false; }
-
-    void move(Place to) {
-        if (!down_) {
-            down_ = true;
-            joined_ = false;
+/// At most four points of each half pixel column: the first, the lowest, the highest and the last.
+std::vector<Place> thinned(const std::vector<Place>& piece) {
+    const auto column = [](const Place& place) { return std::floor(2 * place.x); };
+    const auto is_lower = [](const Place& a, const Place& b) { return a.y < b.y; };
+    std::vector<Place> kept;
+    for (auto first = piece.begin(); first != piece.end();) {
+        const auto end = std::find_if(first, piece.end(), [&](const Place& p) { return column(p) != column(*first); });
+        if (end - first <= 4) {
+            kept.insert(kept.end(), first, end);
         } else {
-            clip(last_, to);
+            const auto low = std::min_element(first + 1, end - 1, is_lower);
+            auto high = std::max_element(first + 1, end - 1, is_lower);
+            if (low == high) high = end - 2;
+            kept.insert(kept.end(), {*first, *std::min(low, high), *std::max(low, high), end[-1]});
         }
-        last_ = to;
+        first = end;
     }
+    return kept;
+}
 
-private:
-    void clip(Place from, Place to) {
-        const auto within = clip_segment(area_, from.x, from.y, to.x, to.y);
-        if (!within) {
-            joined_ = false;
-            return;
-        }
-        const double dx = to.x - from.x, dy = to.y - from.y;
+/// Adds the parts of a piece inside the area.
+void add_clipped(const std::vector<Place>& piece, const Area& area, std::vector<std::vector<Point>>& lines) {
+    bool is_joined = false;  // whether the last line ends at the previous point
+    for (std::size_t i = 1; i < piece.size(); ++i) {
+        const Place &from = piece[i - 1], &to = piece[i];
+        const auto within = clip_segment(area, from.x, from.y, to.x, to.y);
         const auto at = [&](double part) {
             // clamped, because rounding of a far point may exceed the panel
-            return Point{std::clamp(static_cast<float>(from.x + part * dx), area_.left, area_.right),
-                         std::clamp(static_cast<float>(from.y + part * dy), area_.top, area_.bottom)};
+            return Point{std::clamp(static_cast<float>(from.x + part * (to.x - from.x)), area.left, area.right),
+                         std::clamp(static_cast<float>(from.y + part * (to.y - from.y)), area.top, area.bottom)};
         };
-        if (within->from > 0 || !joined_) lines_.push_back({at(within->from)});
-        lines_.back().push_back(at(within->to));
-        joined_ = within->to == 1;
+        if (within && (within->from > 0 || !is_joined)) lines.push_back({at(within->from)});
+        if (within) lines.back().push_back(at(within->to));
+        is_joined = within && within->to == 1;
     }
-
-    Area area_;
-    std::vector<std::vector<Point>>& lines_;
-    Place last_{};
-    bool down_ = false, joined_ = false;  // state of the pen; whether the last piece ends at last_
-};
-
-/// Passes on at most four points of a dense line for each half pixel column.
-class PointReducer {
-public:
-    explicit PointReducer(Clipper& clipper) : clipper_(clipper) {}
-
-    void add(Place place) {
-        const double column = std::floor(2 * place.x);
-        if (held_.empty() || column != column_) {
-            flush();
-            column_ = column;
-        }
-        if (held_.size() < 4) {
-            held_.push_back(place);
-            return;
-        }
-        // replaces the previous point if it is neither first nor an extreme
-        held_.push_back(place);
-        std::size_t low = 1, high = 1;
-        for (std::size_t i = 1; i + 1 < held_.size(); ++i) {
-            if (held_[i].y < held_[low].y) low = i;
-            if (held_[i].y > held_[high].y) high = i;
-        }
-        for (std::size_t i = 1; i + 1 < held_.size(); ++i) {
-            if (i == low || i == high) continue;
-            held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(i));
-            return;
-        }
-    }
-
-    void flush() {
-        for (const Place& place : held_) clipper_.move(place);
-        held_.clear();
-    }
-
-    void lift() {
-        flush();
-        clipper_.lift();
-    }
-
-private:
-    Clipper& clipper_;
-    std::vector<Place> held_;
-    double column_ = 0;
-};
+}
 
 double pixel(const Axis& axis, double value) {
     if (axis.logarithmic && value <= 0) return std::nan("");
     return axis.from + (static_cast<double>(axis.to) - axis.from) * axis.share(value);
 }
 
-/// A thick or pale line behind the others.
-void draw_background(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-                     PageList& list) {
-    std::vector<std::vector<Point>> lines;
-    Clipper clipper(area, lines);
+/// The points of a curve, px, in pieces between values that cannot be drawn.
+std::vector<std::vector<Place>> pieces_of(const Curve& curve, const Axis& x, const Axis& y) {
+    std::vector<std::vector<Place>> pieces(1);
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
         const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
-        std::isfinite(at.x) && std::isfinite(at.y) ? clipper.move(at) : clipper.lift();
+        if (std::isfinite(at.x) && std::isfinite(at.y))
+            pieces.back().push_back(at);
+        else if (!pieces.back().empty())
+            pieces.emplace_back();
     }
-    if (curve.background == Background::band)
-        draw_line(lines, 6 * style.curve, false, mixed(style.theme.background, style.theme.open, 0.22f), style, list);
-    else
-        draw_line(lines, style.thin, curve.dashed,
-                  mixed(style.theme.background, curve_color(curve, style, false), 0.3f), style, list);
+    return pieces;
 }
 
 /// Above these numbers, marks are drawn smaller and as images, and lines are thin.
@@ -125,26 +73,17 @@ constexpr std::size_t many = 400;
 
 DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area) {
     DrawnCurve made;
-    if (curve.background != Background::none) return made;
-    Clipper clipper(area, made.lines);
-    PointReducer thinner(clipper);
-    const bool dense = static_cast<float>(curve.x.size()) > 2 * area.width();
-    for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
-        if (!std::isfinite(at.x) || !std::isfinite(at.y)) {
-            thinner.lift();
-            continue;
-        }
-        if (curve.mark == Mark::line || curve.mark == Mark::both) dense ? thinner.add(at) : clipper.move(at);
-        const bool inside = at.x >= area.left && at.x <= area.right && at.y >= area.top && at.y <= area.bottom;
+    const bool is_behind = curve.background != Background::none, has_line = curve.mark == Mark::line;
+    const bool is_dense = !is_behind && static_cast<float>(curve.x.size()) > 2 * area.width();
+    for (const auto& piece : pieces_of(curve, x, y)) {
+        if (is_behind || has_line || curve.mark == Mark::both)
+            add_clipped(is_dense ? thinned(piece) : piece, area, made.lines);
         // a value between two gaps is drawn as a dot, otherwise it would be invisible
-        const auto gap = [&](std::size_t k) {
-            return k >= curve.x.size() || !std::isfinite(pixel(x, curve.x[k]) + pixel(y, curve.y[k]));
-        };
-        if (inside && (curve.mark != Mark::line || (gap(i - 1) && gap(i + 1))))
-            made.points.push_back({static_cast<float>(at.x), static_cast<float>(at.y)});
+        if (is_behind || (has_line && piece.size() > 1)) continue;
+        for (const Place& at : piece)
+            if (at.x >= area.left && at.x <= area.right && at.y >= area.top && at.y <= area.bottom)
+                made.points.push_back({static_cast<float>(at.x), static_cast<float>(at.y)});
     }
-    thinner.flush();
     return made;
 }
 
@@ -157,7 +96,6 @@ Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
 
 void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
                PageList& list) {
-    if (curve.background != Background::none) draw_background(curve, x, y, area, style, list);
     if (curve.uncertainty.empty()) return;
     Polylines band{.lines = {}, .color = curve_color(curve, style, false).with_alpha(0.2f), .within = area};
     const auto place = [](double at_x, double at_y) {
@@ -196,6 +134,12 @@ void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool d
 
 void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
                 PageList& list) {
+    const Color background = style.theme.background;
+    if (curve.background == Background::band)
+        return draw_line(drawn.lines, 6 * style.curve, false, mixed(background, style.theme.open, 0.22f), style, list);
+    if (curve.background == Background::line)
+        return draw_line(drawn.lines, style.thin, curve.dashed,
+                         mixed(background, curve_color(curve, style, false), 0.3f), style, list);
     const Color color = curve_color(curve, style, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
     const bool thin = (curve.quiet && !over_map) || curve.x.size() > many;
     const float width = thin ? style.thin : style.curve;

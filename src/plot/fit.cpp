@@ -1,4 +1,3 @@
-#include "base/error.hpp"
 #include "plot/chart_parts.hpp"
 
 #include <algorithm>
@@ -15,8 +14,9 @@ class Extent {
 public:
     explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
 
+    bool can_show(double value) const { return std::isfinite(value) && (value > 0 || !logarithmic_); }
     void add(double value) {
-        if (!std::isfinite(value) || (logarithmic_ && value <= 0)) return;
+        if (!can_show(value)) return;
         low_ = std::min(low_, value);
         high_ = std::max(high_, value);
     }
@@ -60,38 +60,6 @@ private:
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
 
-void check(const PlotAxis& axis) {
-    for (const auto& end : {axis.low, axis.high}) {
-        if (end && !std::isfinite(*end))
-            throw bad_input("the axis \"{}\" must end at a number; it is {}", axis.label, *end);
-        if (end && axis.logarithmic && *end <= 0)
-            throw bad_input("the logarithmic axis \"{}\" must begin above 0; it is {}", axis.label, *end);
-    }
-    if (axis.every && !(*axis.every > 0 && std::isfinite(*axis.every)))
-        throw bad_input("ticks of the axis \"{}\" must be more than 0 apart; it is {}", axis.label, *axis.every);
-}
-
-void check(const Curve& curve) {
-    const std::size_t points = curve.x.size();
-    if (curve.y.size() != points)
-        throw bad_input("the curve \"{}\" has {} places x and {} values y", curve.label, points, curve.y.size());
-    if (!curve.uncertainty.empty() && curve.uncertainty.size() != points)
-        throw bad_input("the curve \"{}\" has {} points and {} uncertainties", curve.label, points,
-                        curve.uncertainty.size());
-    if (curve.hue < 0)
-        throw bad_input("the hue of the curve \"{}\" must be 0 or more; it is {}", curve.label, curve.hue);
-}
-
-void check(const HeatMap& map) {
-    if (map.columns == 0 || map.rows == 0 || map.values.size() / map.columns != map.rows ||
-        map.values.size() % map.columns)
-        throw bad_input("the map \"{}\" has {} values for {} × {} cells", map.label, map.values.size(), map.columns,
-                        map.rows);
-    check(PlotAxis{.label = map.label, .low = map.low, .high = map.high, .logarithmic = map.logarithmic});
-    for (const double edge : {map.x_low, map.x_high, map.y_low, map.y_high})
-        if (!std::isfinite(edge)) throw bad_input("an edge of the map \"{}\" is {}", map.label, edge);
-}
-
 }  // namespace
 
 PlotRanges fitted_ranges(const Plot& plot) {
@@ -99,10 +67,8 @@ PlotRanges fitted_ranges(const Plot& plot) {
     bool spread = !plot.map.has_value();
     for (const Curve& curve : plot.curves) {
         Extent& values = curve.right && plot.right ? right : y;
-        const bool log_y = curve.right && plot.right ? plot.right->logarithmic : plot.y.logarithmic;
         for (std::size_t i = 0; i < curve.x.size(); ++i) {
-            if (!std::isfinite(curve.y[i]) || !std::isfinite(curve.x[i])) continue;
-            if ((log_y && curve.y[i] <= 0) || (plot.x.logarithmic && curve.x[i] <= 0)) continue;
+            if (!x.can_show(curve.x[i]) || !values.can_show(curve.y[i])) continue;
             x.add(curve.x[i]);
             values.add(curve.y[i]);
             if (curve.uncertainty.empty()) continue;
@@ -131,23 +97,6 @@ MapScale::MapScale(const HeatMap& map) {
 Color MapScale::color(double share) const {
     constexpr double below = 0.3, above = 0.93;
     return map_color(!step ? share : share > *step ? above : below);
-}
-
-void check(const Figure& figure) {
-    if (figure.columns < 0) throw bad_input("a figure has 0 or more columns; it is {}", figure.columns);
-    for (const Plot& plot : figure.panels) {
-        check(plot.x);
-        check(plot.y);
-        if (plot.right) check(*plot.right);
-        if (plot.map) check(*plot.map);
-        for (const Curve& curve : plot.curves) {
-            check(curve);
-            if (curve.right && !plot.right) throw bad_input("the curve \"{}\" has no axis on the right", curve.label);
-        }
-        for (const Rule& rule : plot.rules)
-            if (!std::isfinite(rule.at))
-                throw bad_input("the rule \"{}\" must be at a number; it is {}", rule.label, rule.at);
-    }
 }
 
 }  // namespace doppel

@@ -40,6 +40,12 @@ void share_ranges(const std::vector<Plot>& panels, std::vector<PlotRanges>& rang
         }
 }
 
+/// The larger of each side.
+Gutters united(const Gutters& a, const Gutters& b) {
+    return {std::max(a.left, b.left), std::max(a.right, b.right), std::max(a.title, b.title),
+            std::max(a.labels, b.labels), std::max(a.bottom, b.bottom)};
+}
+
 /// The cells of all panels and the space for texts around the panels.
 struct Cells {
     std::vector<Gutters> columns, rows;

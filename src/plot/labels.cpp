@@ -138,45 +138,6 @@ LabelText text_for(const Curve& curve, float size, const PlotStyle& style, bool 
             plain ? style.theme.quiet_text : curve_color(curve, style, over_map)};
 }
 
-}  // namespace
-
-void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
-                 LabelPlacer& placer, PageList& list) {
-    const Area& area = placer.area();
-    for (const Rule& rule : rules) {
-        if (rule.label.empty()) continue;
-        const bool level = rule.orientation == Rule::Orientation::horizontal;
-        const double share = (level ? y : x).share(rule.at);
-        if (!(share >= 0 && share <= 1)) continue;
-        const float size = 0.9f * style.text, at = (level ? y : x).at(rule.at), gap = 0.35f * size;
-        LabelText text{rule.label, size, Weight::regular, over_map ? rgb(0xffffff) : style.theme.quiet_text};
-        text.size = fitting_size(text.text, size, text.weight, 0.94f * area.width());
-        const float w = text.width(), h = text.height();
-        std::optional<Found> best;
-        for (int place = 0; place <= 10; ++place) {
-            for (const int side : {0, 1}) {
-                // from the right end, or from the top
-                const float along = static_cast<float>(place) / 10;
-                const float left = level       ? area.right - gap - w - along * (area.width() - w - 2 * gap)
-                                   : side == 0 ? at + gap
-                                               : at - gap - w;
-                const float top = level ? (side == 0 ? at - gap - h : at + gap)
-                                        : area.top + gap + along * (area.height() - h - 2 * gap);
-                const Area box{left, top, left + w, top + h};
-                if (!placer.is_free(box.grown(0.2f * size, 0))) continue;
-                const float cost =
-                    0.5f * along + 0.2f * static_cast<float>(side) + 0.3f * static_cast<float>(placer.ink(box));
-                if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
-            }
-        }
-        if (!best) continue;
-        placer.add_text(text_area(best->label).grown(0.3f * size, 0.1f * size));
-        write(best->label, over_map, list);
-    }
-}
-
-namespace {
-
 /// The labels placed beside or on the curves, and the curves without space for one.
 struct PlacedLabels {
     std::vector<Label> labels;
@@ -266,6 +227,41 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
     for (const Capsule& leader : made.leaders) list.push_back(leader);
     for (const Label& label : made.labels) write(label, over_map, list);
     return needs;
+}
+
+void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
+                 LabelPlacer& placer, PageList& list) {
+    const Area& area = placer.area();
+    for (const Rule& rule : rules) {
+        if (rule.label.empty()) continue;
+        const bool level = rule.orientation == Rule::Orientation::horizontal;
+        const double share = (level ? y : x).share(rule.at);
+        if (!(share >= 0 && share <= 1)) continue;
+        const float size = 0.9f * style.text, at = (level ? y : x).at(rule.at), gap = 0.35f * size;
+        LabelText text{rule.label, size, Weight::regular, over_map ? rgb(0xffffff) : style.theme.quiet_text};
+        text.size = fitting_size(text.text, size, text.weight, 0.94f * area.width());
+        const float w = text.width(), h = text.height();
+        std::optional<Found> best;
+        for (int place = 0; place <= 10; ++place) {
+            for (const int side : {0, 1}) {
+                // from the right end, or from the top
+                const float along = static_cast<float>(place) / 10;
+                const float left = level       ? area.right - gap - w - along * (area.width() - w - 2 * gap)
+                                   : side == 0 ? at + gap
+                                               : at - gap - w;
+                const float top = level ? (side == 0 ? at - gap - h : at + gap)
+                                        : area.top + gap + along * (area.height() - h - 2 * gap);
+                const Area box{left, top, left + w, top + h};
+                if (!placer.is_free(box.grown(0.2f * size, 0))) continue;
+                const float cost =
+                    0.5f * along + 0.2f * static_cast<float>(side) + 0.3f * static_cast<float>(placer.ink(box));
+                if (!best || cost < best->cost) best = Found{text.at(left, top), cost};
+            }
+        }
+        if (!best) continue;
+        placer.add_text(text_area(best->label).grown(0.3f * size, 0.1f * size));
+        write(best->label, over_map, list);
+    }
 }
 
 }  // namespace doppel

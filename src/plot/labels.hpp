@@ -97,7 +97,4 @@ struct TextBlock {
     void draw(Point at, PageList& list) const;
 };
 
-/// One line of at most `width` px if possible. It is shrunk to three quarters at most, but not below 9 px, then broken.
-TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width);
-
 }  // namespace doppel

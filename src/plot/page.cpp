@@ -21,12 +21,6 @@ std::string text_of(const Metadata& metadata, std::string_view key) {
     return found == metadata.end() ? "" : found->second;
 }
 
-/// The program that makes the page, "Doppel …", by which made_by() recognises it.
-std::string maker_of(const Metadata& metadata) {
-    const auto maker = text_of(metadata, "encoder");
-    return maker.starts_with("Doppel") ? maker : "Doppel";
-}
-
 cairo_status_t append(void* file, const unsigned char* bytes, unsigned count) try {
     static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
     return CAIRO_STATUS_SUCCESS;
@@ -106,7 +100,8 @@ std::string page_file(const Page& page, PictureFormat format, double width_pt, c
     draw(page, surface.get(), units, false, never);
     cairo_surface_finish(surface.get());
     check_cairo(cairo_surface_status(surface.get()));
-    const auto maker = maker_of(metadata);
+    auto maker = text_of(metadata, "encoder");  // "Doppel …", by which made_by() recognises it
+    if (!maker.starts_with("Doppel")) maker = "Doppel";
     if (is_pdf) {  // the contents of a PDF may be compressed; a comment at its end is not
         file.resize(file.rfind("%%EOF"));
         return file + fmt::format("%%EOF\n% {}\n", maker);

@@ -71,13 +71,13 @@ void for_each_ring(float reach, const Add& add) {
     }
 }
 
-/// A straight part of a stroke with constant opacity, width and glow.
+/// A part of a stroke with constant opacity, width and glow.
 struct Part {
-    Point from, to;
+    std::vector<Point> line;
     float alpha, width, glow;  // alpha 0…1; px
 
-    bool continues(const Part& next) const {
-        return to.x == next.from.x && to.y == next.from.y && alpha == next.alpha && width == next.width &&
+    bool continues_with(Point from, const Part& next) const {
+        return line.back().x == from.x && line.back().y == from.y && alpha == next.alpha && width == next.width &&
                glow == next.glow;
     }
 };
@@ -102,11 +102,17 @@ std::vector<Part> parts_of(const Stroke& stroke) {
         };
         for (int k = 0; k < count; ++k) {
             const float share = (static_cast<float>(k) + 0.5f) / static_cast<float>(count);
-            parts.push_back({at(k), at(k + 1), std::lerp(from.alpha, to.alpha, share),
-                             stroke.width * std::lerp(from.width, to.width, share),
-                             stroke.glow * std::lerp(from.glow, to.glow, share)});
+            Part next{{at(k), at(k + 1)},
+                      std::lerp(from.alpha, to.alpha, share),
+                      stroke.width * std::lerp(from.width, to.width, share),
+                      stroke.glow * std::lerp(from.glow, to.glow, share)};
+            if (!parts.empty() && parts.back().continues_with(next.line[0], next))
+                parts.back().line.push_back(next.line[1]);
+            else
+                parts.push_back(std::move(next));
         }
     }
+    std::erase_if(parts, [&](const Part& part) { return !(stroke.color.a * part.alpha > 0); });
     return parts;
 }
 
@@ -183,29 +189,20 @@ void PagePainter::operator()(const Ring& ring) {
 void PagePainter::operator()(const Stroke& stroke) {
     if (!(stroke.color.a > 0 && stroke.width > 0)) return;
     const auto parts = parts_of(stroke);
-    const auto for_each_even_part = [&](const auto& draw) {
-        for (std::size_t i = 0; i < parts.size();) {
-            const Part& part = parts[i];
-            std::vector<Point> line{part.from};
-            do line.push_back(parts[i].to);
-            while (++i < parts.size() && parts[i - 1].continues(parts[i]));
-            if (stroke.color.a * part.alpha > 0) draw(part, line);
-        }
-    };
-    for_each_even_part([&](const Part& part, const std::vector<Point>& line) {
-        if (!(part.glow > 0.5f)) return;
+    for (const auto& part : parts) {
+        if (!(part.glow > 0.5f)) continue;
         for_each_ring(part.glow, [&](float beyond, float alpha) {
-            add_line(to_, line);
+            add_line(to_, part.line);
             this->stroke(part.width + 2 * beyond, stroke.color.with_alpha(stroke.color.a * part.alpha * alpha),
                          CAIRO_LINE_CAP_BUTT);
         });
-    });
-    for_each_even_part([&](const Part& part, const std::vector<Point>& line) {
+    }
+    for (const auto& part : parts) {
         const auto color = stroke.color.with_alpha(stroke.color.a * part.alpha);
-        add_line(to_, line);
+        add_line(to_, part.line);
         // transparent parts must not overlap
         this->stroke(part.width, color, color.a == 1 ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-    });
+    }
 }
 
 void PagePainter::operator()(const Polylines& polylines) {

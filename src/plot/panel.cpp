@@ -50,6 +50,10 @@ LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& 
     for (std::size_t i = 0; i < curves.size(); ++i) {
         all.push_back(drawn(curves[i], panel.x, panel.y_of(curves[i]), panel.area));
         const std::size_t owner = i % (LabelPlacer::no_owner - 1);
+        if (curves[i].background != Background::none) {
+            draw_curve(curves[i], all.back(), panel.area, style, over_map, list);
+            all.back() = {};  // labels may cover it
+        }
         for (const auto& line : all.back().lines)
             for (std::size_t k = 1; k < line.size(); ++k) placer.add_line(line[k - 1], line[k], owner);
         const float r = style.marker;
@@ -71,11 +75,6 @@ LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& 
 
 }  // namespace
 
-Gutters united(const Gutters& a, const Gutters& b) {
-    return {std::max(a.left, b.left), std::max(a.right, b.right), std::max(a.title, b.title),
-            std::max(a.labels, b.labels), std::max(a.bottom, b.bottom)};
-}
-
 Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const AxisWords& words,
                 const PlotStyle& style) {
     const float em = style.tick;
@@ -85,13 +84,14 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     made.bottom = words.x ? 1.75f * em + (plot.x.label.empty() ? 0 : 1.45f * style.axis) : 0.34f * em;
     const float tall = std::max(height - made.top(style) - made.bottom, 1.0f);
     made.left = 0.34f * em;
-    if (words.y) made.left = 0.55f * em + widest(y_ticks(placed(ranges.y, tall, 0), plot.y, style), em);
-    if (ranges.right) made.right = 0.55f * em + widest(y_ticks(placed(*ranges.right, tall, 0), *plot.right, style), em);
+    if (words.y) made.left = 0.55f * em + widest(ticks_of(placed(ranges.y, tall, 0), plot.y, false, style), em);
+    if (ranges.right)
+        made.right = 0.55f * em + widest(ticks_of(placed(*ranges.right, tall, 0), *plot.right, false, style), em);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
     if (!words.x) return made;
     // the first and last label below the axis extend beyond it by half their width
     const float wide = std::max(width - made.left - made.right, 1.0f);
-    const auto below = x_ticks(placed(ranges.x, 0, wide), plot.x, style);
+    const auto below = ticks_of(placed(ranges.x, 0, wide), plot.x, true, style);
     const float half = widest(below, em) / 2;
     made.left = std::max(made.left, std::min(half, 0.2f * width));
     made.right = std::max(made.right, std::min(half, 0.2f * width));
@@ -118,7 +118,8 @@ LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, co
     if (plot.map) {
         list.push_back(map_cells(*plot.map, panel.x, panel.y, area, style.theme));
         const float after =
-            plot.right ? 0.55f * style.tick + widest(y_ticks(*ranges.right, *plot.right, style), style.tick) : 0;
+            plot.right ? 0.55f * style.tick + widest(ticks_of(*ranges.right, *plot.right, false, style), style.tick)
+                       : 0;
         if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);
     }
     draw_axes(plot, panel.x, panel.y, plot.right ? &*ranges.right : nullptr, area, held, words, style, list);

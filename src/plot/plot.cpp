@@ -1,6 +1,5 @@
 #include "plot/plot.hpp"
 
-#include "base/error.hpp"
 #include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
 
@@ -12,6 +11,14 @@
 namespace doppel {
 namespace {
 
+/// One line of at most `width` px if possible. It is shrunk to three quarters at most, but not below 9 px, then broken.
+TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width) {
+    if (text.empty()) return {{}, size, weight, color};
+    const float shrunk =
+        std::max(fitting_size(text, size, weight, width), std::max(0.75f * size, std::min(size, 9.0f)));
+    return {evenly_wrapped(text, shrunk, weight, width), shrunk, weight, color};
+}
+
 /// The texts above and below the panels, and the area between.
 struct Layout {
     TextBlock title, subtitle;
@@ -21,34 +28,11 @@ struct Layout {
     std::string_view left_out;  // left out for lack of space
 };
 
-Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& style, bool subtitle, bool captions) {
-    Layout page;
-    const Theme& theme = style.theme;
-    const float width = sheet.width();
-    page.title = fitted_block(figure.title, style.title, Weight::bold, theme.text, width);
-    page.subtitle =
-        fitted_block(subtitle ? figure.subtitle : "", style.subtitle, Weight::regular, theme.quiet_text, width);
-    page.body = sheet;
-    page.body.top += page.title.height() + page.subtitle.height();
-    if (page.body.top > sheet.top) page.body.top += 0.75f * style.subtitle;
-    float height = 0;
-    for (const std::string& caption : figure.captions) {
-        if (!captions) break;
-        page.captions.push_back({evenly_wrapped(caption, style.caption, Weight::regular, width), style.caption,
-                                 Weight::regular, theme.quiet_text});
-        height += page.captions.back().height();
-    }
-    page.captions_top = sheet.bottom - height;
-    if (height > 0) page.body.bottom = page.captions_top - 0.9f * style.caption;
-    return page;
-}
-
 /// Whether the contents of the body are large enough to read.
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
     if (figure.panels.empty()) return body.height() >= 0;
     const auto rows = static_cast<float>(grid_of(figure, body).rows);
-    const auto [share, lines] = style.on_paper ? std::pair{0.5f, 9.5f} : std::pair{0.5f, 12.5f};
-    return body.height() >= std::max(share * sheet.height(), lines * style.tick * rows);
+    return body.height() >= std::max(0.5f * sheet.height(), (style.on_paper ? 9.5f : 12.5f) * style.tick * rows);
 }
 
 /// Whether the panels have space besides their labels and ticks.
@@ -63,8 +47,25 @@ bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
 /// subtitle.
 Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& style) {
     Layout page;
+    const Theme& theme = style.theme;
+    const float width = sheet.width();
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}, {false, false}}) {
-        page = figure_layout(figure, sheet, style, subtitle, captions);
+        page = {};
+        page.title = fitted_block(figure.title, style.title, Weight::bold, theme.text, width);
+        page.subtitle =
+            fitted_block(subtitle ? figure.subtitle : "", style.subtitle, Weight::regular, theme.quiet_text, width);
+        page.body = sheet;
+        page.body.top += page.title.height() + page.subtitle.height();
+        if (page.body.top > sheet.top) page.body.top += 0.75f * style.subtitle;
+        float height = 0;
+        for (const std::string& caption : figure.captions) {
+            if (!captions) break;
+            page.captions.push_back({evenly_wrapped(caption, style.caption, Weight::regular, width), style.caption,
+                                     Weight::regular, theme.quiet_text});
+            height += page.captions.back().height();
+        }
+        page.captions_top = sheet.bottom - height;
+        if (height > 0) page.body.bottom = page.captions_top - 0.9f * style.caption;
         if (legible(figure, page.body, sheet, style)) break;
     }
     const bool lacks_subtitle = page.subtitle.lines.empty() && !figure.subtitle.empty();
@@ -79,9 +80,6 @@ Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& s
 }  // namespace
 
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale, std::optional<float> unit) {
-    if (!(scale > 0 && std::isfinite(scale)))
-        throw bad_input("the scale of a figure must be more than 0; it is {}", scale);
-    check(figure);
     Page made{.size = size, .scale = scale, .items = {}};
     for (;; made.scale *= 0.8f) {
         const float width = static_cast<float>(size.width) / made.scale;

@@ -115,9 +115,9 @@ float widest(const std::vector<std::string>& lines, float size) {
 }
 
 float widest(const std::vector<Tick>& ticks, float size) {
-    float width = 0;
-    for (const Tick& tick : ticks) width = std::max(width, text_width(tick.text, size));
-    return width;
+    std::vector<std::string> texts;
+    for (const Tick& tick : ticks) texts.push_back(tick.text);
+    return widest(texts, size);
 }
 
 void TextBlock::draw(Point at, PageList& list) const {
@@ -126,13 +126,6 @@ void TextBlock::draw(Point at, PageList& list) const {
         list.push_back(Label{line, {at.x, baseline}, size, Align::left, weight, color});
         baseline += line_height();
     }
-}
-
-TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width) {
-    if (text.empty()) return {{}, size, weight, color};
-    const float shrunk =
-        std::max(fitting_size(text, size, weight, width), std::max(0.75f * size, std::min(size, 9.0f)));
-    return {evenly_wrapped(text, shrunk, weight, width), shrunk, weight, color};
 }
 
 }  // namespace doppel

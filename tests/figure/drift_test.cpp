@@ -22,11 +22,12 @@ struct Found {
     std::map<std::string, std::string> words;
 
     explicit Found(const FigurePreset& figure) {
-        for (const auto& finding : figure.experiment->findings(computed(figure)))
-            if (const auto* number = std::get_if<double>(&finding.value))
-                numbers[finding.key] = *number;
+        const auto findings = figure.experiment->findings(computed(figure));
+        for (const auto& [key, value] : findings.items())
+            if (value.is_number())
+                numbers[key] = value;
             else
-                words[finding.key] = std::get<std::string>(finding.value);
+                words[key] = value;
     }
     double number(const std::string& key) const {
         const auto found = numbers.find(key);

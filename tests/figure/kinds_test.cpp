@@ -12,8 +12,9 @@ namespace kinds_test {
 
 std::map<std::string, double> findings_of(const FigurePreset& figure) {
     std::map<std::string, double> found;
-    for (const auto& finding : figure.experiment->findings(computed(figure)))
-        if (const auto* number = std::get_if<double>(&finding.value)) found[finding.key] = *number;
+    const auto findings = figure.experiment->findings(computed(figure));
+    for (const auto& [key, value] : findings.items())
+        if (value.is_number()) found[key] = value;
     return found;
 }
 

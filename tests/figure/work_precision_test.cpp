@@ -141,15 +141,14 @@ TEST(WorkPrecision, KnowsItsProblems) {
         {by_evaluations, "work_precision.problems=[\"P1\", \"P3\", \"P4\"]", "work_precision.models=[\"angles\"]",
          "work_precision.methods=[\"euler\", \"taylor\"]", "work_precision.most_evaluations=20000"});
     const auto trials = computed(figure);
-    std::map<std::string, double> found;
-    for (const auto& finding : figure.experiment->findings(trials))
-        if (const auto* value = std::get_if<double>(&finding.value)) found[finding.key] = *value;
-    EXPECT_NEAR(found.at("P1_sensitivity"), 80, 1);
-    EXPECT_NEAR(found.at("P3_sensitivity"), 320, 1);
-    EXPECT_NEAR(found.at("P4_sensitivity"), 1040, 5);
+    const auto found = figure.experiment->findings(trials);
+    EXPECT_NEAR(found.at("P1_sensitivity").get<double>(), 80, 1);
+    EXPECT_NEAR(found.at("P3_sensitivity").get<double>(), 320, 1);
+    EXPECT_NEAR(found.at("P4_sensitivity").get<double>(), 1040, 5);
     for (const auto* name : {"P1", "P3", "P4"}) {
-        EXPECT_LT(found.at(std::string(name) + "_reference_disagreement"), 5e-30) << name;  // measured 9e-31
-        EXPECT_LT(found.at(std::string(name) + "_1e-12_cost"), 6000) << name;               // measured 4706
+        EXPECT_LT(found.at(std::string(name) + "_reference_disagreement").get<double>(), 5e-30)
+            << name;                                                                         // measured 9e-31
+        EXPECT_LT(found.at(std::string(name) + "_1e-12_cost").get<double>(), 6000) << name;  // measured 4706
     }
     // the error of the study's program at its step
     const std::map<std::string, double> study{{"P1", 0.13}, {"P3", 0.12}, {"P4", 0.66}};
@@ -287,11 +286,10 @@ TEST(WorkPrecision, ADivergedRunHasFailed) {
     for (const auto* name : {"angles euler", "angles adams", "constraints euler", "mechanism adams"})
         EXPECT_GT(failed[name], 0) << name;
     EXPECT_EQ(failed["constraints rattle"], 3);  // its iteration for the multipliers does not converge
-    std::map<std::string, Finding> found;
-    for (const auto& finding : figure.experiment->findings(trials)) found[finding.key] = finding;
-    EXPECT_EQ(std::get<std::string>(found.at("butterfly_1e-12_best").value), "adams, angles");
-    EXPECT_GT(std::get<double>(found.at("butterfly_1e-12_cost").value), 1000);  // was 93, of an energy of 1e185
-    EXPECT_NE(std::get<std::string>(found.at("butterfly_1e-3_best").value), "euler, angles");
+    const auto found = figure.experiment->findings(trials);
+    EXPECT_EQ(found.at("butterfly_1e-12_best"), "adams, angles");
+    EXPECT_GT(found.at("butterfly_1e-12_cost").get<double>(), 1000);  // was 93, of an energy of 1e185
+    EXPECT_NE(found.at("butterfly_1e-3_best"), "euler, angles");
 }
 
 TEST(WorkPrecision, ResolvedReadsBackToTheSame) {

@@ -130,21 +130,6 @@ TEST(Plot, LabelsAllNamedCurves) {
     for (int order = 1; order <= 8; ++order) EXPECT_EQ(words["order " + std::to_string(order)], 1) << order;
 }
 
-TEST(Plot, SaysWhatCannotBeDrawn) {
-    const auto refused = [](auto change) {
-        Figure figure = sweep();
-        change(figure);
-        EXPECT_THROW(composed(figure, {480, 270}, light), Error);
-    };
-    refused([](Figure& f) { f.panels[0].curves[0].y.pop_back(); });
-    refused([](Figure& f) { f.panels[0].curves[0].uncertainty.pop_back(); });
-    refused([](Figure& f) { f.panels[0].x.every = 0; });
-    refused([](Figure& f) { f.panels[0].y = {.low = 0, .high = 1, .logarithmic = true}; });
-    refused([](Figure& f) { f.panels[0].right.reset(); });
-    refused([](Figure& f) { f.panels[0].map = HeatMap{.columns = 2, .rows = 2, .values = {1, 2, 3}}; });
-    EXPECT_THROW(compose(sweep(), {480, 270}, light, 0), Error);
-}
-
 TEST(Plot, ReportsTextsLeftOut) {
     const Figure figure{.title = "title", .subtitle = "subtitle", .panels = sweep().panels, .captions = {"caption"}};
     EXPECT_TRUE(compose(figure, {1600, 900}, light).notes.empty());
