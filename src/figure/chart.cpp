@@ -85,19 +85,23 @@ void chart_fields(KeyVisitor& visit, ChartSpec& chart) {
         chart.captions);
 }
 
-ChartLayout layout_of(const ChartSpec& chart) {
+ChartLayout layout_of(const ChartSpec& chart, double growth) {
     double width = chart.size.width, height = chart.size.height, pt = pt_per_px, scale = chart.scale;
     if (chart.width_cm) {
-        const double high = chart.height_cm.value_or(*chart.width_cm * height / width);
+        const double high = chart.height_cm.value_or(growth * *chart.width_cm * height / width);
         pt = chart.font_pt / label_px;
         width = *chart.width_cm * pt_per_cm / pt, height = high * pt_per_cm / pt;
         scale = chart.dpi / cm_per_inch * *chart.width_cm / width;
     }
-    if (chart.format != PictureFormat::png) scale = chart.format == PictureFormat::html ? page_scale : paths_scale;
-    ChartLayout layout{
-        .picture = {static_cast<int>(std::lround(width * scale)), static_cast<int>(std::lround(height * scale))},
-        .scale = static_cast<float>(scale),
-        .width_pt = width * pt};
+    // all formats have the same layout: the grid of paths is some times finer than that of the PNG
+    const double finest = chart.format == PictureFormat::png    ? scale
+                          : chart.format == PictureFormat::html ? page_scale
+                                                                : paths_scale;
+    const int finer = static_cast<int>(std::max(std::ceil(finest / scale), 1.0));
+    ChartLayout layout{.picture = {finer * static_cast<int>(std::lround(width * scale)),
+                                   finer * static_cast<int>(std::lround(height * scale))},
+                       .scale = static_cast<float>(finer * scale),
+                       .width_pt = width * pt};
     if (chart.width_cm) layout.unit = 1;
     return layout;
 }

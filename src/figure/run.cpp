@@ -233,8 +233,15 @@ private:
 }  // namespace
 
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
-    const auto layout = layout_of(figure.chart);
-    return compose(page_of(figure, trials), layout.picture, theme_named(figure.chart.theme), layout.scale, layout.unit);
+    const auto& chart = figure.chart;
+    const auto page = page_of(figure, trials);
+    constexpr double most_growth = 3;
+    for (double growth = 1;; growth += 0.1) {
+        const auto layout = layout_of(chart, growth);
+        auto made = compose(page, layout.picture, theme_named(chart.theme), layout.scale, layout.unit);
+        const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
+        if (made.notes.empty() || !may_grow) return made;
+    }
 }
 
 std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options) {

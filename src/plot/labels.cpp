@@ -188,14 +188,15 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
     constexpr int many = 10;  // so many curves leave little space beside each
     const auto& curves = plot.curves;
     const bool over_map = plot.map.has_value();
-    const float small = 0.8f * style.text;
+    const float small = style.on_paper ? style.text : 0.8f * style.text;  // on paper, the size that is asked for
     bool dense = given.small ||
                  std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
     const auto tried = [&](float size, const LabelPlacer& left) {
         return place_labels(curves, drawn, size, dense, others, style, over_map, left);
     };
-    float size = dense ? small : style.text;
+    bool is_small = dense;
+    float size = is_small ? small : style.text;
     PlacedLabels made = tried(size, placer);
     // prefers small labels at all curves to a legend, and labels on the curves to a legend that covers them
     if (!dense && !made.left_out.empty()) {
@@ -203,7 +204,7 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
         const auto legend = fitted_legend(curves, made.left_out, size, placer);
         dense = !fine.left_out.empty() && (plot.needs_no_legend || !legend);
         if (dense) fine = tried(small, placer);
-        if (dense || fine.left_out.empty()) made = std::move(fine), size = small;
+        if (dense || fine.left_out.empty()) made = std::move(fine), size = small, is_small = true;
     }
     // the legend is larger and placed first; curves that then have no space beside it join it
     std::optional<Legend> legend;
@@ -214,7 +215,7 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
         if (legend) left.add_text(legend->box);
         made = tried(size, left);
     }
-    const LabelNeeds needs{given.small || size == small,
+    const LabelNeeds needs{given.small || is_small,
                            others.empty() || legend ? given.legend : legend_gutter(curves, size)};
     if (!others.empty() && !legend && given.legend > 0) {
         const bool covers_map = false;

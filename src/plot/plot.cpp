@@ -11,11 +11,13 @@
 namespace doppel {
 namespace {
 
-/// One line of at most `width` px if possible. It is shrunk to three quarters at most, but not below 9 px, then broken.
-TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width) {
+/// One line of at most `width` px if possible. It is shrunk, on paper to the size of labels, otherwise to three quarters
+/// but not below 9 px, then broken.
+TextBlock fitted_block(std::string_view text, float size, Weight weight, Color color, float width,
+                       const PlotStyle& style) {
     if (text.empty()) return {{}, size, weight, color};
-    const float shrunk =
-        std::max(fitting_size(text, size, weight, width), std::max(0.75f * size, std::min(size, 9.0f)));
+    const float minimum = style.on_paper ? style.text : std::max(0.75f * size, 9.0f);
+    const float shrunk = std::max(fitting_size(text, size, weight, width), std::min(size, minimum));
     return {evenly_wrapped(text, shrunk, weight, width), shrunk, weight, color};
 }
 
@@ -51,9 +53,9 @@ Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& s
     const float width = sheet.width();
     for (const auto& [subtitle, captions] : {std::pair{true, true}, {true, false}, {false, false}}) {
         page = {};
-        page.title = fitted_block(figure.title, style.title, Weight::bold, theme.text, width);
-        page.subtitle =
-            fitted_block(subtitle ? figure.subtitle : "", style.subtitle, Weight::regular, theme.quiet_text, width);
+        page.title = fitted_block(figure.title, style.title, Weight::bold, theme.text, width, style);
+        page.subtitle = fitted_block(subtitle ? figure.subtitle : "", style.subtitle, Weight::regular, theme.quiet_text,
+                                     width, style);
         page.body = sheet;
         page.body.top += page.title.height() + page.subtitle.height();
         if (page.body.top > sheet.top) page.body.top += 0.75f * style.subtitle;
