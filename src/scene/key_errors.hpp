@@ -44,7 +44,7 @@ private:
 /// wrong.
 class KeyErrors {
 public:
-    explicit KeyErrors(const std::vector<Override>& overrides);
+    explicit KeyErrors(const std::vector<Override>& overrides) : overrides_(overrides) {}
 
     /// The place of a value that this command line option gave.
     ErrorPlace of_option(const std::string& origin) const;
@@ -61,10 +61,7 @@ public:
     void throw_if_any() const;
 
 private:
-    bool may_be_caused(const Entry& error) const;
-    static bool may_have_one_cause(const Entry& error, const Entry& other);
-
-    std::vector<std::string> options_;
+    std::vector<Override> overrides_;
     std::vector<Entry> errors_;
 };
 

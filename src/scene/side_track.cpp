@@ -27,7 +27,7 @@ void read_file(TrackSpec& spec, const std::string& preset_path, bool from_comman
 
 void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side) {
     if (side.track.is_none()) return;
-    auto table = side_table.inner(side_table.read_table("track"), fmt::format("[{}.track]", side_table.bare_name()));
+    auto table = side_table.inner("track");
     std::string_view key = "file";
     try {
         if (!side.particles.empty() || side.links() != 2)
