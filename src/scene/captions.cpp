@@ -23,10 +23,6 @@ struct Statement {
     std::string plain = text;  // in plain wording, without symbols
 };
 
-std::string step_words(const Rational& step) {
-    return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
-}
-
 std::string model_words(const Side& side) {
     std::string words(name_of(side.motion.model));
     if (side.motion.stabilise == Stabilise::baumgarte) words += " (Baumgarte)";
@@ -251,7 +247,9 @@ std::string subscript(std::size_t number) {
 }
 
 std::string step_control_text(const Side& side) {
-    return side.method.adaptive ? "tolerance " + tolerance_text(side.motion.tolerance) : step_words(side.step);
+    if (side.method.adaptive) return "tolerance " + tolerance_text(side.motion.tolerance);
+    const auto& step = side.step;
+    return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
 }
 
 std::string tolerance_text(const Quad& tolerance) {

@@ -177,8 +177,7 @@ MethodChooser::SideRequirement MethodChooser::requirement(char name, const SideS
             .accuracy = static_cast<double>(*spec.accuracy),
             .swing_samples = std::lround(std::min(swing, static_cast<double>(samples_))),
             .reference = std::make_shared<const ReferenceTrajectory>(
-                reference_trajectory(any.motion, samples_, any.reach, max_error, stop)),
-            .tried = {}};
+                reference_trajectory(any.motion, samples_, any.reach, max_error, stop))};
 }
 
 const ErrorHistory& MethodChooser::tried(SideRequirement& side, const StepLevels& method, int level,

@@ -124,12 +124,6 @@ void check_layout(const TomlReader& table, const VideoSpec& video) {
         throw table.error("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
-void check_style(const TomlReader& table, const VideoSpec& video) {
-    if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
-        throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
-                          *video.glow_px);
-}
-
 /// A quarter of the pixels and the least effort; the command line overrides this.
 void make_preview(TomlReader& table, VideoSpec& video) {
     const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(size_field.bounds.low)); };
@@ -153,7 +147,9 @@ void read_video(TomlReader& table, VideoSpec& video) {
     table.check_together([&] {
         check_layout(table, video);
         check_format(table, format_error(video.options({1, 1})));
-        check_style(table, video);
+        if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
+            throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
+                              *video.glow_px);
     });
     if (is_preview) make_preview(table, video);
 }
@@ -169,15 +165,7 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     fonts({.key = key}, given);
     if (given.empty()) return !fonts.has(key);
     video.text_font = path_beside(document.path, given, fonts.from_command_line(key));
-    try {
-        video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
-    } catch (const Error& error) {
-        const auto key_error = fonts.error(key, "{}", error.what());
-        if (error.code() != ExitCode::bad_input) throw Error(error.code(), error.what());
-        fonts.refuse(key_error, key);
-        return false;
-    }
-    return true;
+    return fonts.guarded(key, [&] { video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font)); });
 }
 
 /// If members of an ensemble are listed, its pair is the first and the last one. Throws if the file gives a side other

@@ -156,10 +156,6 @@ std::optional<double> SideRun::energy_error(const Observation& seen) const {
     return seen.energy_change / proportion_.energy;
 }
 
-std::optional<double> SideRun::mean_energy(const Observation& seen) const {
-    return energy_ ? energy_->at(scene_.time(now_), seen.energy) : seen.energy;
-}
-
 RunFailure SideRun::broken(const std::string& what) const {
     return {fmt::format("{}: side {} failed by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_, scene_.time(now_),
                         what, name_of(side_.motion.model), side_.method.title, step_control_text(side_)),

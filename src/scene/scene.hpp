@@ -221,7 +221,9 @@ public:
     /// Relative (analysis/watched_motion.hpp); nothing if damping reduces the energy, so that its change is no error.
     std::optional<double> energy_error(const Observation& seen) const;
     /// J; for a driven side the mean over the last drive period, once one is over.
-    std::optional<double> mean_energy(const Observation& seen) const;
+    std::optional<double> mean_energy(const Observation& seen) const {
+        return energy_ ? energy_->at(scene_.time(now_), seen.energy) : seen.energy;
+    }
     Effort effort() const { return motion_->effort(); }
 
 private:

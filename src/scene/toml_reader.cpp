@@ -83,16 +83,9 @@ ErrorPlace TomlReader::error_place(std::string_view key) const {
     return at.line > 0 ? ErrorPlace{at.line, at.column} : ErrorPlace{};
 }
 
-void TomlReader::note(std::string_view key, const Error& error) const {
-    const auto* known = dynamic_cast<const KeyError*>(&error);
-    // errors in a title are independent of the tables
-    errors_->add({error.what(), error_place(key), name_.empty() ? std::string(key) : group_, std::string(key),
-                  known ? known->beside() : std::nullopt});
-}
-
 void TomlReader::refuse(const KeyError& error, std::string_view key) const {
     if (!errors_) throw KeyError(error);
-    errors_->add({error.what(), error.place(), group_, std::string(key), error.beside()});
+    errors_->add({error.what(), error.place, group_, std::string(key), error.beside});
 }
 
 const toml::node* TomlReader::find(std::string_view key) {

@@ -83,6 +83,18 @@ public:
     void check_together(const std::function<void()>& check) const;
     /// Records the error, or throws it.
     void refuse(const KeyError& error, std::string_view key) const;
+    /// Calls read(), whose errors in the input are errors of the key. Returns whether there was none.
+    template <class Read>
+    bool guarded(std::string_view key, const Read& read) const {
+        try {
+            read();
+            return true;
+        } catch (const Error& thrown) {
+            if (thrown.code() != ExitCode::bad_input) throw;
+            refuse(error(key, "{}", thrown.what()), key);
+            return false;
+        }
+    }
     /// The other key of an error, if it is given in this table; otherwise empty: it may be given elsewhere, or
     /// misspelt.
     std::string beside(std::string_view key) const {
@@ -128,7 +140,6 @@ public:
 private:
     const toml::node* find(std::string_view key);
     std::optional<toml::source_region> source_of(std::string_view key) const;
-    void note(std::string_view key, const Error& error) const;
     bool counts(const Field& field);
     void require(const Field& field, bool given) const;
     bool is_ruled_out(const Field& field) const;

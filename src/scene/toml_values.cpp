@@ -458,7 +458,11 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
         std::visit(read, member);
     } catch (const Error& error) {
         if (!errors_ || error.code() != ExitCode::bad_input) throw;
-        note(field.key, error);
+        const auto* known = dynamic_cast<const KeyError*>(&error);
+        const std::string key(field.key);
+        // errors in a title are independent of the tables
+        errors_->add(
+            {error.what(), error_place(key), name_.empty() ? key : group_, key, known ? known->beside : std::nullopt});
     }
 }
 
