@@ -145,4 +145,10 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
     return is_start ? std::optional<std::string>(*longer) : std::nullopt;
 }
 
+std::string did_you_mean(std::string_view before, std::string_view word,
+                         const std::vector<std::string_view>& candidates, std::string_view otherwise) {
+    const auto meant = nearest(word, candidates);
+    return meant ? fmt::format("{}did you mean \"{}\"?", before, *meant) : std::string(otherwise);
+}
+
 }  // namespace doppel

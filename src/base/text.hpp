@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace doppel {
 
@@ -42,5 +43,8 @@ std::string duration_text(double seconds);
 
 /// The candidate that differs from `word` by a typing error, if there is one.
 std::optional<std::string> nearest(std::string_view word, std::span<const std::string_view> candidates);
+/// The question after `before` whether the nearest candidate was meant, or `otherwise` if there is none.
+std::string did_you_mean(std::string_view before, std::string_view word,
+                         const std::vector<std::string_view>& candidates, std::string_view otherwise = "");
 
 }  // namespace doppel

@@ -4,8 +4,6 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
-#include <string>
-
 namespace doppel {
 namespace {
 

@@ -1,4 +1,3 @@
-#include "base/error.hpp"
 #include "cli/options.hpp"
 #include "fit/start.hpp"
 #include "scene/resolved.hpp"

@@ -48,33 +48,6 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
     return chosen;
 }
 
-/// Progress of several figures. The computation of one may overlap with the drawing of another.
-class Reports {
-public:
-    Reports(const std::vector<FigurePreset>& figures, ProgressStyle style, std::string streamed)
-        : figures_(figures), style_(style), streamed_(std::move(streamed)), reports_(figures.size()) {}
-
-    template <class Tell>
-    void operator()(std::size_t figure, Tell&& tell) {
-        const std::lock_guard lock(mutex_);
-        auto& report = reports_[figure];
-        if (!report) report.emplace(style_, figures_[figure].name, figures_[figure].experiment->unit(), streamed_);
-        tell(*report);
-    }
-
-    void clear() {
-        for (auto& report : reports_)
-            if (report) report->clear();
-    }
-
-private:
-    const std::vector<FigurePreset>& figures_;
-    ProgressStyle style_;
-    std::string streamed_;
-    std::mutex mutex_;
-    std::vector<std::optional<ProgressReport>> reports_;
-};
-
 void make_figures(const FigureCommandOptions& options) {
     std::vector<FigurePreset> figures;
     Replacing replacing{.force = options.force};
@@ -100,20 +73,24 @@ void make_figures(const FigureCommandOptions& options) {
     }
     const Destination to(options.out, figures.size(), fmt::format(".{}", name_of(figures.front().chart.format)));
     run.out = to.folder();
-    Reports reports(figures, progress_style(options.progress), to.streamed());
-    const FigureReport report{
-        [&](std::size_t k, const FigureProgress& progress) {
-            reports(k, [&](auto& r) { r({std::lround(progress.done), std::lround(progress.total)}); });
-        },
-        [&](std::size_t k, const std::string& sentence) { reports(k, [&](auto& r) { r.note(sentence); }); },
-        [&](std::size_t k, const RunResult& result) { reports(k, [&](auto& r) { r.done(result); }); }};
+    // the computation of one figure may overlap with the drawing of another
+    std::mutex mutex;
+    std::vector<std::optional<ProgressReport>> reports(figures.size());
+    const auto tell = [&](std::size_t k, const auto& what) {
+        const std::lock_guard lock(mutex);
+        if (!reports[k])
+            reports[k].emplace(progress_style(options.progress), figures[k].name, figures[k].experiment->unit(),
+                               to.streamed());
+        what(*reports[k]);
+    };
     ignore_sigpipe();
-    try {
-        run_figures(figures, run, watch_interrupts(), report);
-    } catch (...) {
-        reports.clear();
-        throw;
-    }
+    run_figures(
+        figures, run, watch_interrupts(),
+        {[&](std::size_t k, const FigureProgress& progress) {
+             tell(k, [&](auto& report) { report({std::lround(progress.done), std::lround(progress.total)}); });
+         },
+         [&](std::size_t k, const std::string& sentence) { tell(k, [&](auto& report) { report.note(sentence); }); },
+         [&](std::size_t k, const RunResult& result) { tell(k, [&](auto& report) { report.done(result); }); }});
 }
 
 }  // namespace

@@ -35,14 +35,9 @@ void fit(const FitCommandOptions& options) {
         return list_outputs(options, name,
                             {name + ".toml", name + ".residuals.csv", name + ".png", name + ".fit.json"});
     ProgressReport report(progress_style(options.progress), name, "models");
-    try {
-        const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
-        for (const auto& sentence : done.sentences) report.note(sentence);
-        report.done(done.run);
-    } catch (...) {
-        report.clear();
-        throw;
-    }
+    const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
+    for (const auto& sentence : done.sentences) report.note(sentence);
+    report.done(done.run);
 }
 
 }  // namespace

@@ -25,22 +25,22 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Entry {
-    std::string name, title, kind;  // if the file cannot be read, the kind is empty and the title is the reason
-    std::string path;               // of a file in this folder; empty for a built-in preset
+    std::string title, kind;  // if the file cannot be read, the kind is empty and the title is the reason
+    std::string path;         // of a file in this folder; empty for a built-in preset
 };
 
 Entry entry_of(const PresetText& preset, const std::string& path) {
     try {
         const auto kind = kind_of_preset(preset);
-        return {preset.name, kind == pair_kind ? read_preset(preset).title : read_figure(preset).title, kind, path};
+        return {kind == pair_kind ? read_preset(preset).title : read_figure(preset).title, kind, path};
     } catch (const Error& error) {
         if (path.empty() || error.code() != ExitCode::bad_input) throw;
-        return {preset.name, error.what(), "", path};
+        return {error.what(), "", path};
     }
 }
 
 /// Presets by name: those in this folder, and built-in ones without a file here.
-std::vector<Entry> all_presets() {
+std::map<std::string, Entry> all_presets() {
     std::map<std::string, Entry> entries;
     for (const auto& path : preset_files_here()) {
         if (entries.contains(path.stem().string())) continue;
@@ -49,9 +49,7 @@ std::vector<Entry> all_presets() {
     }
     for (const auto& preset : builtin_presets())
         if (!entries.contains(preset.name)) entries.emplace(preset.name, entry_of(preset, ""));
-    std::vector<Entry> all;
-    for (auto& [name, entry] : entries) all.push_back(std::move(entry));
-    return all;
+    return entries;
 }
 
 void list_presets() {
@@ -61,25 +59,28 @@ void list_presets() {
     };
     for (const std::string_view heading : {"", "figures, for doppel figure:", "cannot be read:"}) {
         std::size_t width = 0;
-        for (const auto& entry : all)
-            if (heading == heading_of(entry)) width = std::max(width, entry.name.size());
+        for (const auto& [name, entry] : all)
+            if (heading == heading_of(entry)) width = std::max(width, name.size());
         if (width > 0 && !heading.empty()) {
             print_line("");
             print_line("{}", heading);
         }
-        for (const auto& entry : all)
-            if (heading == heading_of(entry)) print_line("{:<{}}  {}", entry.name, width, entry.title);
+        for (const auto& [name, entry] : all)
+            if (heading == heading_of(entry)) print_line("{:<{}}  {}", name, width, entry.title);
     }
 }
 
 void list_as_json() {
     auto list = Json::array();
-    for (const auto& [name, title, kind, path] : all_presets()) {
-        Json entry{{"name", name}, {"title", title}, {"kind", kind}, {"path", path}};
-        if (kind.empty())
-            entry = {{"name", name}, {"title", nullptr}, {"kind", nullptr}, {"path", path}, {"error", title}};
-        if (path.empty()) entry["path"] = nullptr;
-        list.push_back(std::move(entry));
+    const auto or_null = [](bool has_it, const std::string& text) { return has_it ? Json(text) : Json(nullptr); };
+    for (const auto& [name, entry] : all_presets()) {
+        const auto& [title, kind, path] = entry;
+        const bool can_be_read = !kind.empty();
+        list.push_back({{"name", name},
+                        {"title", or_null(can_be_read, title)},
+                        {"kind", or_null(can_be_read, kind)},
+                        {"path", or_null(!path.empty(), path)}});
+        if (!can_be_read) list.back()["error"] = title;
     }
     print_json(list);
 }
@@ -99,6 +100,13 @@ void show(const std::string& text) {
     if (!isatty(STDOUT_FILENO)) return write_out(text);
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) print_line("{}", line);
+}
+
+constexpr std::string_view directive = "#:schema ", address_of_file = "file://";
+
+bool is_file(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_regular_file(path, ignored);
 }
 
 }  // namespace
@@ -137,28 +145,6 @@ void add_list(CLI::App& app) {
     });
 }
 
-void add_show(CLI::App& app) {
-    auto name = std::make_shared<std::string>();
-    auto& command = *app.add_subcommand("show", "Prints the TOML of a preset, to start your own from");
-    command.footer("Example:\n  doppel show butterfly > mine.toml");
-    command.add_option("PRESET", *name, "Name (see doppel list) or path")->required();
-    command.callback([name] {
-        const auto preset = find_preset(*name, &watch_interrupts());
-        show(preset.call == preset.name ? with_schema_line(preset.text) : preset.text);
-    });
-}
-
-namespace {
-
-constexpr std::string_view directive = "#:schema ", address_of_file = "file://";
-
-bool is_file(const fs::path& path) {
-    std::error_code ignored;
-    return fs::is_regular_file(path, ignored);
-}
-
-}  // namespace
-
 std::string schema_line(const fs::path& folder) {
     std::error_code ignored;
     if (const fs::path here = "presets/preset.schema.json"; is_file(here)) {
@@ -170,8 +156,17 @@ std::string schema_line(const fs::path& folder) {
     return is_file(installed) ? fmt::format("{}{}{}\n", directive, address_of_file, installed.string()) : "";
 }
 
-std::string with_schema_line(const std::string& text) {
-    return text.starts_with(directive) ? schema_line() + text.substr(text.find('\n') + 1) : text;
+void add_show(CLI::App& app) {
+    auto name = std::make_shared<std::string>();
+    auto& command = *app.add_subcommand("show", "Prints the TOML of a preset, to start your own from");
+    command.footer("Example:\n  doppel show butterfly > mine.toml");
+    command.add_option("PRESET", *name, "Name (see doppel list) or path")->required();
+    command.callback([name] {
+        const auto preset = find_preset(*name, &watch_interrupts());
+        // of a built-in preset, the schema line is replaced
+        const bool replaces = preset.call == preset.name && preset.text.starts_with(directive);
+        show(replaces ? schema_line() + preset.text.substr(preset.text.find('\n') + 1) : preset.text);
+    });
 }
 
 std::optional<std::string> schema_line_error(const PresetText& preset) {

@@ -79,10 +79,6 @@ SingleFile::~SingleFile() {
     std::filesystem::remove(place_, ignored);
 }
 
-void SingleFile::publish() const {
-    rename_file(place_, path_);
-}
-
 void list_outputs(const OutOptions& options, const std::string& name, const std::vector<std::string>& files) {
     if (options.out == "-") return print_line("-");
     for (const auto& file : files) print_line("{}", (std::filesystem::path(options.out) / name / file).string());

@@ -122,7 +122,7 @@ public:
 
     /// The path to write to.
     const std::filesystem::path& place() const { return place_; }
-    void publish() const;
+    void publish() const { rename_file(place_, path_); }
 
 private:
     std::filesystem::path path_, place_;
@@ -139,9 +139,6 @@ std::vector<std::filesystem::path> preset_files_here();
 /// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ of the current folder, or the
 /// installed one; empty if there is neither.
 std::string schema_line(const std::filesystem::path& folder = ".");
-
-/// The text of a built-in preset, with that line in place of its own.
-std::string with_schema_line(const std::string& text);
 
 /// The error in the schema line of a preset's file: it names a missing file, or not this program's schema.
 std::optional<std::string> schema_line_error(const PresetText& preset);

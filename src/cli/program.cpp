@@ -27,10 +27,9 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const auto* command : app.get_subcommands({})) names.push_back(command->get_name());
     if (std::find(names.begin(), names.end(), word) != names.end()) return;
-    const auto meant = nearest(word, std::vector<std::string_view>(names.begin(), names.end()));
     throw bad_input(
         "there is no command \"{}\"; {}", word,
-        meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
+        did_you_mean("", word, {names.begin(), names.end()}, fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
 /// An empty argument is usually an unset variable of a script; treating it as missing could apply the command to

@@ -40,55 +40,6 @@ std::vector<std::string> columns_of_option(const std::string& text) {
     return names;
 }
 
-}  // namespace
-
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
-    auto overrides = overrides_of(options);
-    overrides.insert(overrides.end(), more.begin(), more.end());
-    const auto& stop = watch_interrupts();
-    std::vector<Scene> scenes;
-    std::vector<std::string> names;
-    for (const auto& name : options.presets) {
-        const auto text = find_preset(name, &stop);
-        const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
-        scenes.push_back(make_scene(read_preset(text, all), stop));
-        names.push_back(scenes.back().preset.name);
-        check_names(names, options.presets);
-    }
-    return scenes;
-}
-
-std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
-                                             const std::vector<Scene>& scenes) {
-    std::vector<std::filesystem::path> inputs;
-    for (const auto& name : presets)
-        if (std::error_code error; std::filesystem::is_regular_file(name, error)) inputs.emplace_back(name);
-    for (const auto& scene : scenes) {
-        const auto& preset = scene.preset;
-        for (const auto* side : {&preset.a, &preset.b})
-            if (!side->track.is_none()) inputs.emplace_back(side->track.file);
-        if (preset.video.text_font) inputs.emplace_back(*preset.video.text_font);
-    }
-    return inputs;
-}
-
-void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
-                 const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work) {
-    const auto style = progress_style(progress);
-    ignore_sigpipe();
-    for (const auto& scene : scenes) {
-        ProgressReport report(style, scene.preset.name, unit, streamed);
-        try {
-            work(scene, report);
-        } catch (...) {
-            report.clear();
-            throw;
-        }
-    }
-}
-
-namespace {
-
 void add_recording_option(CLI::App& command, std::string& file, const std::string& help) {
     refuse_dash(add_value(command, "--recording", file, "FILE", help));
 }
@@ -144,6 +95,46 @@ std::vector<Override> overrides(const RenderOptions& options) {
 }
 
 }  // namespace
+
+std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
+    auto overrides = overrides_of(options);
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    const auto& stop = watch_interrupts();
+    std::vector<Scene> scenes;
+    std::vector<std::string> names;
+    for (const auto& name : options.presets) {
+        const auto text = find_preset(name, &stop);
+        const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
+        scenes.push_back(make_scene(read_preset(text, all), stop));
+        names.push_back(scenes.back().preset.name);
+        check_names(names, options.presets);
+    }
+    return scenes;
+}
+
+std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets,
+                                             const std::vector<Scene>& scenes) {
+    std::vector<std::filesystem::path> inputs;
+    for (const auto& name : presets)
+        if (std::error_code error; std::filesystem::is_regular_file(name, error)) inputs.emplace_back(name);
+    for (const auto& scene : scenes) {
+        const auto& preset = scene.preset;
+        for (const auto* side : {&preset.a, &preset.b})
+            if (!side->track.is_none()) inputs.emplace_back(side->track.file);
+        if (preset.video.text_font) inputs.emplace_back(*preset.video.text_font);
+    }
+    return inputs;
+}
+
+void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+                 const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work) {
+    const auto style = progress_style(progress);
+    ignore_sigpipe();
+    for (const auto& scene : scenes) {
+        ProgressReport report(style, scene.preset.name, unit, streamed);
+        work(scene, report);
+    }
+}
 
 void add_render(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();

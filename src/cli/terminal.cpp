@@ -25,33 +25,6 @@ namespace {
 std::atomic<bool> stop_requested = false, termination_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-}  // namespace
-
-const std::atomic<bool>& watch_interrupts() {
-    struct sigaction action {};
-    action.sa_handler = [](int signal) {
-        termination_requested = signal == SIGTERM;
-        stop_requested = true;
-    };
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-    // the terminal was closed; nohup's setting is respected
-    struct sigaction before {};
-    if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
-    return stop_requested;
-}
-
-bool was_terminated() {
-    return termination_requested;
-}
-
-void ignore_sigpipe() {
-    std::signal(SIGPIPE, SIG_IGN);
-}
-
-namespace {
-
 /// Writes to standard output without buffering; returns errno, or 0.
 int write_error(std::string_view text) {
     return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 ? 0 : errno;
@@ -106,6 +79,29 @@ void stream_file(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+const std::atomic<bool>& watch_interrupts() {
+    struct sigaction action {};
+    action.sa_handler = [](int signal) {
+        termination_requested = signal == SIGTERM;
+        stop_requested = true;
+    };
+    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    // the terminal was closed; nohup's setting is respected
+    struct sigaction before {};
+    if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+    return stop_requested;
+}
+
+bool was_terminated() {
+    return termination_requested;
+}
+
+void ignore_sigpipe() {
+    std::signal(SIGPIPE, SIG_IGN);
+}
 
 void write_out(std::string_view text) {
     check_written(write_error(text));
@@ -163,10 +159,6 @@ void ProgressReport::operator()(const Progress& progress) {
         print_to(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
                  100 * share, rate, unit_, duration(left));
     }
-}
-
-void ProgressReport::note(const std::string& sentence) {
-    if (style_ != ProgressStyle::none) warn(sentence);
 }
 
 void ProgressReport::warn(const std::string& sentence) {

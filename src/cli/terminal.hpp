@@ -49,15 +49,20 @@ class ProgressReport {
 public:
     /// `streamed` = extension of the one file that goes to standard output after the run; empty: none.
     ProgressReport(ProgressStyle style, std::string name, std::string unit, std::string streamed = {});
+    ~ProgressReport() { clear(); }
+    ProgressReport(const ProgressReport&) = delete;
+    ProgressReport& operator=(const ProgressReport&) = delete;
 
     void operator()(const Progress& progress);
-    void note(const std::string& sentence);
+    void note(const std::string& sentence) {
+        if (style_ != ProgressStyle::none) warn(sentence);
+    }
     /// Prints a warning, in every style.
     void warn(const std::string& sentence);
     /// Reports the end of the run and its files. Throws Error (exit 4) if that cannot be written, unless the reader has
     /// left.
     void done(const RunResult& result);
-    /// Removes the bar from the screen before an error is printed.
+    /// Removes the bar from the screen, as the destructor does before an error is printed.
     void clear();
 
 private:

@@ -14,16 +14,14 @@
 namespace doppel {
 namespace {
 
+const QuadPair at_rest{0, 0};  // m/s
+
 /// A statement about a side. The statements at the same index for both sides are about the same property.
 struct Statement {
     std::string text;
     bool is_start_angle = false;
     std::string plain = text;  // in plain wording, without symbols
 };
-
-std::string step_words(const Rational& step) {
-    return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
-}
 
 std::string model_words(const Side& side) {
     std::string words(name_of(side.motion.model));
@@ -42,20 +40,14 @@ void state_links(std::string_view symbol, const std::vector<Quad>& values, const
         return std::all_of(of.begin(), of.end(), [&](const Quad& value) { return value == of[0]; });
     };
     const bool listed = values.size() <= max_listed;
-    if (!listed && alike(values) && alike(others)) {
-        all.push_back({fmt::format("all {} = {}{}", symbol, text_of(values[0]), unit), angle});
-        return;
-    }
-    if (!listed && values == others) {
-        all.push_back(
-            {fmt::format("{0}₁ = {1}{3}, {0}₂ = {2}{3} …", symbol, text_of(values[0]), text_of(values[1]), unit),
-             angle});
-        return;
-    }
+    const auto number = [&](std::size_t i) { return fmt::format("{}{}", text_of(values[i]), unit); };
+    if (!listed && alike(values) && alike(others))
+        return all.push_back({fmt::format("all {} = {}", symbol, number(0)), angle});
+    if (!listed && values == others)
+        return all.push_back({fmt::format("{0}₁ = {1}, {0}₂ = {2} …", symbol, number(0), number(1)), angle});
     for (std::size_t i = 0; i < values.size(); ++i)
         if (listed || values[i] != others[i])
-            all.push_back({fmt::format("{}{} = {}{}", symbol, subscript(i + 1), text_of(values[i]), unit), angle,
-                           fmt::format("{}{}", text_of(values[i]), unit)});
+            all.push_back({fmt::format("{}{} = {}", symbol, subscript(i + 1), number(i)), angle, number(i)});
 }
 
 /// "1.2e-03" → "1.2 × 10⁻³"; other numbers are unchanged.
@@ -83,12 +75,10 @@ std::string offset_words(const QuadPair& from, const QuadPair& to) {
 
 /// "bob pushed at 1 mm/s", if the other side's velocity is zero.
 std::string speed_words(const QuadPair& velocity, const QuadPair& other) {
-    const auto speed = [](const QuadPair& v) {
-        return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]));
-    };
-    if (speed(velocity) == 0) return "at rest";
-    if (speed(other) == 0) return fmt::format("pushed at {}/s", length_words(speed(velocity)));
-    return fmt::format("with ({}, {}) m/s", text_of(velocity[0]), text_of(velocity[1]));
+    if (velocity == at_rest) return "at rest";
+    if (other != at_rest) return fmt::format("with ({}, {}) m/s", text_of(velocity[0]), text_of(velocity[1]));
+    const double speed = std::hypot(static_cast<double>(velocity[0]), static_cast<double>(velocity[1]));
+    return fmt::format("pushed at {}/s", length_words(speed));
 }
 
 /// How the particles of a side differ from those of side a, or, for side a, from the other side's. Particles with the
@@ -235,14 +225,9 @@ SideCaptions difference_captions(const std::array<std::vector<Statement>, 2>& al
 
 std::string physical_words(const PhysicalSpec& physical) {
     std::vector<std::string> words;
-    const auto has = [](const std::vector<Quad>& list) { return !is_zero(list); };
-    if (has(physical.rod_mass_kg) || has(physical.inertia_kg_m2) || !physical.center_m.empty())
-        words.push_back("links with mass");
-    if (has(physical.joint_viscous_N_m_s) || has(physical.joint_coulomb_N_m)) words.push_back("friction");
-    if (has(physical.arm_drag_linear_N_m_s) || has(physical.arm_drag_quadratic_N_m_s2) ||
-        has(physical.air_drag_quadratic_N_m_s2) || has(physical.drag_linear_N_s_per_m) ||
-        has(physical.drag_quadratic_N_s2_per_m2))
-        words.push_back("drag");
+    for (const auto& property : PhysicalSpec::properties)
+        if (physical.has(property) && (words.empty() || words.back() != property.kind))
+            words.emplace_back(property.kind);
     if (physical.pivot.amplitude_m != 0) words.push_back("a moving pivot");
     if (!physical.torques.empty()) words.push_back("motors");
     return fmt::format("{}", fmt::join(words, ", "));
@@ -262,7 +247,9 @@ std::string subscript(std::size_t number) {
 }
 
 std::string step_control_text(const Side& side) {
-    return side.method.adaptive ? "tolerance " + tolerance_text(side.motion.tolerance) : step_words(side.step);
+    if (side.method.adaptive) return "tolerance " + tolerance_text(side.motion.tolerance);
+    const auto& step = side.step;
+    return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
 }
 
 std::string tolerance_text(const Quad& tolerance) {
@@ -313,12 +300,9 @@ std::string scene_caption(const Scene& scene, Wording wording) {
     if (scene.is_single() && scene.a.replay) return "a real double pendulum";
     if (scene.a.replay && scene.b.replay) return "two real double pendulums";
     if (scene.a.replay || scene.b.replay) return "a real double pendulum and its simulation";
-    const auto at_rest = [](const SideSpec& side) {
-        const auto rests = [](const ParticleSpec& particle) {
-            return particle.velocity_m_per_s[0] == 0 && particle.velocity_m_per_s[1] == 0;
-        };
-        if (!side.particles.empty()) return std::all_of(side.particles.begin(), side.particles.end(), rests);
-        return is_zero(side.omega_deg_per_s);
+    const auto is_at_rest = [](const SideSpec& side) {
+        const auto is_moving = [](const ParticleSpec& particle) { return particle.velocity_m_per_s != at_rest; };
+        return side.particles.empty() ? is_zero(side.omega_deg_per_s) : std::ranges::none_of(side.particles, is_moving);
     };
     std::vector<std::string> common;
     if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
@@ -334,7 +318,7 @@ std::string scene_caption(const Scene& scene, Wording wording) {
     const auto physical = physical_words(scene.preset.a.physical);
     const bool alike = !physical.empty() && physical == physical_words(scene.preset.b.physical);
     return fmt::format("{}{}{}{}{}", systems, alike ? " with " + physical : "",
-                       !alike && at_rest(scene.preset.a) && at_rest(scene.preset.b) ? ", released at rest" : "",
+                       !alike && is_at_rest(scene.preset.a) && is_at_rest(scene.preset.b) ? ", released at rest" : "",
                        common.empty() ? "" : " · ", joined(common));
 }
 

@@ -3,7 +3,6 @@
 #include "scene/side_keys.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace doppel {
 namespace {
@@ -26,8 +25,7 @@ void check_droplets(const Scene& scene, const Side& side) {
         if (attraction >= rounding) continue;
         throw bad_input(
             "{}: the droplet attracts with {:.2g} m/s², below the rounding of g in double ({:.2g}): both sides would "
-            "move "
-            "identically{}",
+            "move identically{}",
             scene.preset.name, attraction, rounding, remedy<double>);
     }
 }

@@ -4,23 +4,13 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 namespace doppel {
 void FieldTable::key(const Field& field, const KeyMember& by_default) {
     ListedField listed{field, value_type(by_default), {}, {field.names.begin(), field.names.end()}};
     if (is_widest) listed.bounds = field.otherwise.value_or(field.bounds);
     if (listed.choices.empty()) listed.choices.assign(field.known.begin(), field.known.end());
-    std::visit(
-        [&]<class M>(const M& member) {
-            if constexpr (std::is_same_v<M, ChosenName>)
-                listed.choices.assign(member.names.begin(), member.names.end());
-            if constexpr (std::is_same_v<M, Panels*>) {
-                listed.choices = {"pendulums"};
-                listed.choices.insert(listed.choices.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
-            }
-        },
-        by_default);
+    if (const auto* choice = std::get_if<ChosenName>(&by_default))
+        listed.choices.assign(choice->names.begin(), choice->names.end());
     const auto value = toml_value(by_default);
     listed.by_default = !field.needed_by.empty() ? must_be_given
                         : !field.absent.empty()  ? field.absent
@@ -117,9 +107,7 @@ std::vector<FieldTable> film_tables() {
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
     scene(kind_field, std::string(pair_kind));
-    clock_fields(scene, preset);
-    column_fields(scene, preset);
-    certify_field(scene, preset);
+    film_fields(scene, preset);
     side_fields(system, preset.a);
     particle({.key = "name",
               .help = "the name that constraints and forces refer to",
@@ -143,10 +131,7 @@ std::vector<FieldTable> film_tables() {
     tables.push_back(side_text_table());
     video(size_field, preset.video.size);
     video(preview_field, false);
-    format_fields(video, preset.video);
-    time_fields(video, preset.video);
-    layout_fields(video, preset.video);
-    style_fields(video, preset.video);
+    video_fields(video, preset.video);
     tables.push_back(video);
     return tables;
 }

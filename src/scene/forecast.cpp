@@ -81,10 +81,7 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
         known ? *known : reference_trajectory(side.motion, scene.samples, side.reach, diverged_error, stop);
     const auto history = error_history(side.motion, reference, diverged_error, stop);
     if (history.error.empty()) throw method_failed("the method fails at once");
-    Forecast seen{.error = history.error.back(),
-                  .error_s = scene.time(static_cast<long>(history.error.size()) - 1),
-                  .exponent = std::nullopt,
-                  .limit = std::nullopt};
+    Forecast seen{.error = history.error.back(), .error_s = scene.time(static_cast<long>(history.error.size()) - 1)};
 
     constexpr std::size_t max_links = 12;
     if (is_plain_chain(side.motion) && side.motion.chain->links() <= max_links) {

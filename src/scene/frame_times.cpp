@@ -1,9 +1,9 @@
-#include "base/error.hpp"
 #include "scene/preset_fields.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace doppel {
 namespace {
@@ -63,12 +63,8 @@ Moment FrameTimes::at(long frame) const {
 }
 
 long FrameTimes::first_from(const Moment& moment) const {
-    long low = 0, high = count;
-    while (low < high) {
-        const long middle = low + (high - low) / 2;
-        at(middle) < moment ? low = middle + 1 : high = middle;
-    }
-    return low;
+    const auto frames = std::views::iota(0L, count);
+    return *std::ranges::lower_bound(frames, moment, {}, [&](long frame) { return at(frame); });
 }
 
 double film_time(const VideoSpec& video, double time) {

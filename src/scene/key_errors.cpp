@@ -14,38 +14,32 @@ bool meet(std::string_view group, std::string_view other) {
     return group == other || group.empty() || other.empty();
 }
 
-}  // namespace
-
-KeyErrors::KeyErrors(const std::vector<Override>& overrides) {
-    for (const auto& change : overrides) options_.push_back(change.origin);
-}
-
-ErrorPlace KeyErrors::of_option(const std::string& origin) const {
-    const auto at = std::find(options_.begin(), options_.end(), origin);
-    return {ErrorPlace::no_line + 1 + static_cast<std::size_t>(at - options_.begin()), 0};
-}
-
-bool KeyErrors::concern(std::string_view group) const {
-    return std::any_of(errors_.begin(), errors_.end(), [&](const Entry& error) { return meet(error.group, group); });
-}
-
-bool KeyErrors::may_be_caused(const Entry& error) const {
-    if (!error.beside) return false;
-    const auto& key = *error.beside;
-    return std::any_of(errors_.begin(), errors_.end(), [&](const Entry& other) {
-        return !other.beside && meet(other.group, error.group) && (key.empty() || other.key == key);
-    });
-}
-
 /// Whether one wrong key may cause both: the same message, or two keys that conflict with the same third key.
-bool KeyErrors::may_have_one_cause(const Entry& error, const Entry& other) {
+bool may_have_one_cause(const KeyErrors::Entry& error, const KeyErrors::Entry& other) {
     if (error.message == other.message) return true;
     if (!error.beside || !other.beside || !meet(error.group, other.group)) return false;
     const auto &key = *error.beside, &third = *other.beside;
     return key == third || key.empty() || third.empty();
 }
 
+}  // namespace
+
+ErrorPlace KeyErrors::of_option(const std::string& origin) const {
+    const auto at = std::ranges::find(overrides_, origin, &Override::origin);
+    return {ErrorPlace::no_line + 1 + static_cast<std::size_t>(at - overrides_.begin()), 0};
+}
+
+bool KeyErrors::concern(std::string_view group) const {
+    return std::any_of(errors_.begin(), errors_.end(), [&](const Entry& error) { return meet(error.group, group); });
+}
+
 void KeyErrors::throw_if_any() const {
+    const auto may_be_caused = [&](const Entry& error) {
+        return error.beside && std::any_of(errors_.begin(), errors_.end(), [&](const Entry& other) {
+                   return !other.beside && meet(other.group, error.group) &&
+                          (error.beside->empty() || other.key == *error.beside);
+               });
+    };
     std::vector<Entry> counting;
     for (const auto& error : errors_) {
         const bool exists = std::any_of(counting.begin(), counting.end(),

@@ -23,19 +23,15 @@ struct ErrorPlace {
 
 /// An error in a key (exit 2). If the key is only wrong together with another key of the same table, that key is
 /// `beside`; it may be the wrong one. An empty `beside` stands for any key of the group.
-class KeyError : public Error {
-public:
-    KeyError(const std::string& message, ErrorPlace place, std::optional<std::string> beside = {})
-        : Error(ExitCode::bad_input, message), place_(place), beside_(std::move(beside)) {}
+struct KeyError : Error {
+    KeyError(const std::string& message, ErrorPlace at, std::optional<std::string> with_key = {})
+        : Error(ExitCode::bad_input, message), place(at), beside(std::move(with_key)) {}
 
-    ErrorPlace place() const { return place_; }
-    const std::optional<std::string>& beside() const { return beside_; }
     /// The same error, caused together with other keys.
-    KeyError with(std::string keys) const { return {what(), place_, std::move(keys)}; }
+    KeyError with(std::string keys) const { return {what(), place, std::move(keys)}; }
 
-private:
-    ErrorPlace place_;
-    std::optional<std::string> beside_;
+    ErrorPlace place;
+    std::optional<std::string> beside;
 };
 
 /// Collects the errors of a preset to report them together. Each belongs to a group of tables that are checked
@@ -44,7 +40,7 @@ private:
 /// wrong.
 class KeyErrors {
 public:
-    explicit KeyErrors(const std::vector<Override>& overrides);
+    explicit KeyErrors(const std::vector<Override>& overrides) : overrides_(overrides) {}
 
     /// The place of a value that this command line option gave.
     ErrorPlace of_option(const std::string& origin) const;
@@ -61,10 +57,7 @@ public:
     void throw_if_any() const;
 
 private:
-    bool may_be_caused(const Entry& error) const;
-    static bool may_have_one_cause(const Entry& error, const Entry& other);
-
-    std::vector<std::string> options_;
+    std::vector<Override> overrides_;
     std::vector<Entry> errors_;
 };
 

@@ -103,6 +103,78 @@ Side make_measured_side(const SideSpec& spec, const Rational& sample_hz) {
     return side;
 }
 
+Place<Quad> place(const QuadPair& xy) {
+    return {xy[0], xy[1]};
+}
+
+/// Builds constraints and forces of an assembly, whose particles have these names, from the preset's entries.
+class PartBuilder {
+public:
+    PartBuilder(std::vector<std::string> names, const Assembly<Quad>& assembly)
+        : names_(std::move(names)), assembly_(assembly) {
+        for (std::size_t i = 0; i < names_.size(); ++i) indices_.emplace(names_[i], i);
+    }
+
+    Constraint<Quad> constraint(const PartSpec& part) const {
+        if (part.kind == PartKind::rod) {
+            const auto [a, b] = ends(part);
+            return Rod<Quad>{a, b, length(part, a, b)};
+        }
+        const auto particle = index(part, part.particle);
+        const auto at = part.position_m ? place(*part.position_m) : start(particle);
+        if (part.kind == PartKind::anchor) return Anchor<Quad>{particle, at};
+        if (part.kind == PartKind::slot_line) return SlotLine<Quad>{particle, at, place(part.direction)};
+        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : distance(particle, at)};
+    }
+    Force<Quad> force(const PartSpec& part) const {
+        const auto constant = part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>());
+        if (part.kind == PartKind::droplet) return Droplet<Quad>{place(*part.position_m), part.mass_kg, constant};
+        const auto [a, b] = ends(part);
+        if (part.kind == PartKind::spring)
+            return Spring<Quad>{a, b, part.stiffness_N_per_m, length(part, a, b), part.damping_N_s_per_m};
+        const auto* other = std::get_if<std::size_t>(&b);
+        if (!other) throw bad_input("an attraction needs two particles; use a \"droplet\" for a fixed body");
+        return Attraction<Quad>{a, *other, constant};
+    }
+
+private:
+    /// The number of the particle that an entry names.
+    std::size_t index(const PartSpec& part, const std::string& name) const {
+        if (const auto found = indices_.find(name); found != indices_.end()) return found->second;
+        throw bad_input("{}{} names the particle \"{}\", which does not exist{}", name_of(part.kind),
+                        part.name.empty() ? "" : fmt::format(" \"{}\"", part.name), name,
+                        did_you_mean("; ", name, {names_.begin(), names_.end()}));
+    }
+    End<Quad> end(const PartSpec& part, const EndSpec& spec) const {
+        if (const auto* name = std::get_if<std::string>(&spec)) return index(part, *name);
+        return place(std::get<QuadPair>(spec));
+    }
+    /// The two ends; a fixed end comes second.
+    std::pair<std::size_t, End<Quad>> ends(const PartSpec& part) const {
+        auto from = end(part, *part.from), to = end(part, *part.to);
+        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
+        if (!std::holds_alternative<std::size_t>(from))
+            throw bad_input("a {} joins two fixed places; at least one end must be a particle", name_of(part.kind));
+        return {std::get<std::size_t>(from), to};
+    }
+    Place<Quad> start(const End<Quad>& end) const {
+        const auto* particle = std::get_if<std::size_t>(&end);
+        return particle ? assembly_.particles[*particle].place : std::get<Place<Quad>>(end);
+    }
+    Quad distance(const End<Quad>& one, const End<Quad>& other) const {
+        using std::sqrt;
+        const Place<Quad> r = start(one) - start(other);
+        return sqrt(Quad(r[0] * r[0] + r[1] * r[1]));
+    }
+    Quad length(const PartSpec& part, const End<Quad>& a, const End<Quad>& b) const {
+        return part.length_m ? *part.length_m : distance(a, b);
+    }
+
+    std::vector<std::string> names_;
+    std::map<std::string, std::size_t> indices_;  // for each name
+    const Assembly<Quad>& assembly_;
+};
+
 }  // namespace
 
 Side make_side(const SideSpec& spec, const Rational& sample_hz) {
@@ -130,96 +202,6 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
     return side;
 }
 
-namespace {
-
-Place<Quad> place(const QuadPair& xy) {
-    return {xy[0], xy[1]};
-}
-
-class ParticleNames {
-public:
-    ParticleNames(std::vector<std::string> names, const Assembly<Quad>& assembly)
-        : names_(std::move(names)), assembly_(assembly) {
-        for (std::size_t i = 0; i < names_.size(); ++i) indices_.emplace(names_[i], i);
-    }
-
-    /// The number of the particle that an entry, `what`, names.
-    std::size_t index(const std::string& what, const std::string& name) const {
-        if (const auto found = indices_.find(name); found != indices_.end()) return found->second;
-        const auto meant = nearest(name, std::vector<std::string_view>(names_.begin(), names_.end()));
-        throw bad_input("{} names the particle \"{}\", which does not exist{}", what, name,
-                        meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
-    }
-    End<Quad> end(const std::string& what, const EndSpec& spec) const {
-        if (const auto* name = std::get_if<std::string>(&spec)) return index(what, *name);
-        return place(std::get<QuadPair>(spec));
-    }
-    Place<Quad> start(const End<Quad>& end) const {
-        const auto* particle = std::get_if<std::size_t>(&end);
-        return particle ? assembly_.particles[*particle].place : std::get<Place<Quad>>(end);
-    }
-    Quad distance(const End<Quad>& one, const End<Quad>& other) const {
-        using std::sqrt;
-        const Place<Quad> r = start(one) - start(other);
-        return sqrt(Quad(r[0] * r[0] + r[1] * r[1]));
-    }
-
-private:
-    std::vector<std::string> names_;
-    std::map<std::string, std::size_t> indices_;  // for each name
-    const Assembly<Quad>& assembly_;
-};
-
-/// Builds a constraint or a force from its preset entry.
-class PartBuilder {
-public:
-    PartBuilder(const ParticleNames& by_name, const PartSpec& part)
-        : by_name_(by_name),
-          part_(part),
-          what_(fmt::format("{}{}", name_of(part.kind), part.name.empty() ? "" : fmt::format(" \"{}\"", part.name))) {}
-
-    Constraint<Quad> constraint() const {
-        if (part_.kind == PartKind::rod) {
-            const auto [a, b] = ends();
-            return Rod<Quad>{a, b, length(a, b)};
-        }
-        const auto particle = by_name_.index(what_, part_.particle);
-        const auto at = part_.position_m ? place(*part_.position_m) : by_name_.start(particle);
-        if (part_.kind == PartKind::anchor) return Anchor<Quad>{particle, at};
-        if (part_.kind == PartKind::slot_line) return SlotLine<Quad>{particle, at, place(part_.direction)};
-        return SlotCircle<Quad>{particle, at, part_.radius_m ? *part_.radius_m : by_name_.distance(particle, at)};
-    }
-    Force<Quad> force() const {
-        const auto constant = part_.constant_m3_per_kg_s2.value_or(newton_constant<Quad>());
-        if (part_.kind == PartKind::droplet) return Droplet<Quad>{place(*part_.position_m), part_.mass_kg, constant};
-        const auto [a, b] = ends();
-        if (part_.kind == PartKind::spring)
-            return Spring<Quad>{a, b, part_.stiffness_N_per_m, length(a, b), part_.damping_N_s_per_m};
-        const auto* other = std::get_if<std::size_t>(&b);
-        if (!other) throw bad_input("an attraction needs two particles; use a \"droplet\" for a fixed body");
-        return Attraction<Quad>{a, *other, constant};
-    }
-
-private:
-    /// The two ends; a fixed end comes second.
-    std::pair<std::size_t, End<Quad>> ends() const {
-        auto from = by_name_.end(what_, *part_.from), to = by_name_.end(what_, *part_.to);
-        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
-        if (!std::holds_alternative<std::size_t>(from))
-            throw bad_input("a {} joins two fixed places; at least one end must be a particle", name_of(part_.kind));
-        return {std::get<std::size_t>(from), to};
-    }
-    Quad length(const End<Quad>& a, const End<Quad>& b) const {
-        return part_.length_m ? *part_.length_m : by_name_.distance(a, b);
-    }
-
-    const ParticleNames& by_name_;
-    const PartSpec& part_;
-    std::string what_;  // kind and name, for errors
-};
-
-}  // namespace
-
 Assembly<Quad> assembly_of(const SideSpec& spec) {
     Assembly<Quad> assembly;
     std::vector<std::string> names;
@@ -231,11 +213,11 @@ Assembly<Quad> assembly_of(const SideSpec& spec) {
         assembly.particles.push_back({particle.mass_kg, place(particle.position_m), place(particle.velocity_m_per_s)});
         names.push_back(particle.name);
     }
-    const ParticleNames by_name(names, assembly);
-    for (const auto& part : spec.constraints) assembly.constraints.push_back(PartBuilder(by_name, part).constraint());
+    const PartBuilder builder(names, assembly);
+    for (const auto& part : spec.constraints) assembly.constraints.push_back(builder.constraint(part));
     if (!spec.particles.empty() && spec.gravity_m_per_s2 != 0)
         assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
-    for (const auto& part : spec.forces) assembly.forces.push_back(PartBuilder(by_name, part).force());
+    for (const auto& part : spec.forces) assembly.forces.push_back(builder.force(part));
     return assembly;
 }
 

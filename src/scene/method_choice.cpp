@@ -1,7 +1,6 @@
 #include "scene/method_choice.hpp"
 
 #include "integrate/turns.hpp"
-#include "scene/captions.hpp"
 #include "scene/side_keys.hpp"
 
 #include <algorithm>
@@ -72,6 +71,20 @@ bool choose_together(const SideSpec& a, const SideSpec& b) {
            a.stabilise_rate_per_s == b.stabilise_rate_per_s;
 }
 
+/// The loosest level that passes, searched level by level from the start. Finer levels are only tried while the work is
+/// worthwhile.
+template <class Does, class IsWorth>
+std::optional<int> loosest(const StepLevels& method, const Does& does, const IsWorth& is_worth) {
+    int level = method.start;
+    if (does(level)) {
+        while (level > 0 && does(level - 1)) --level;
+        return level;
+    }
+    while (level < method.finest && is_worth(level))
+        if (does(++level)) return level;
+    return std::nullopt;
+}
+
 }  // namespace
 
 // The rule, and the few costs it uses; tests/scene/choice_study_test.cpp measures its quality.
@@ -125,29 +138,11 @@ Side StepLevels::side(SideSpec spec, const Rational& sample_hz, int level) const
     return make_side(spec, sample_hz);
 }
 
-namespace {
-
-/// The loosest level that passes, searched level by level from the start. Finer levels are only tried while the work is
-/// worthwhile.
-template <class Does, class IsWorth>
-std::optional<int> loosest(const StepLevels& method, const Does& does, const IsWorth& is_worth) {
-    int level = method.start;
-    if (does(level)) {
-        while (level > 0 && does(level - 1)) --level;
-        return level;
-    }
-    while (level < method.finest && is_worth(level))
-        if (does(++level)) return level;
-    return std::nullopt;
-}
-
-}  // namespace
-
 MethodChooser::MethodChooser(const Preset& preset, const std::atomic<bool>& stop)
     : preset_(preset), samples_(product(preset.duration_s, preset.sample_hz)->numerator) {
     for (const char name : {'a', 'b'}) {
         const auto& spec = name == 'a' ? preset_.a : preset_.b;
-        if (!spec.accuracy || !spec.track.is_none()) continue;
+        if (!spec.is_chosen()) continue;
         if (groups_.empty() || !choose_together(groups_.front().sides.front().spec, spec)) groups_.emplace_back();
         auto& group = groups_.back();
         if (!group.sides.empty() && differing_keys(group.sides.front().spec, spec).empty())
@@ -182,8 +177,7 @@ MethodChooser::SideRequirement MethodChooser::requirement(char name, const SideS
             .accuracy = static_cast<double>(*spec.accuracy),
             .swing_samples = std::lround(std::min(swing, static_cast<double>(samples_))),
             .reference = std::make_shared<const ReferenceTrajectory>(
-                reference_trajectory(any.motion, samples_, any.reach, max_error, stop)),
-            .tried = {}};
+                reference_trajectory(any.motion, samples_, any.reach, max_error, stop))};
 }
 
 const ErrorHistory& MethodChooser::tried(SideRequirement& side, const StepLevels& method, int level,
@@ -297,19 +291,19 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
 
 void use_common_method(Preset& pair, const Preset& first, const std::atomic<bool>& stop) {
     const std::array sides{&pair.a, &pair.b};
-    const auto asks = [](const SideSpec* side) { return side->accuracy && side->track.is_none(); };
-    if (std::ranges::none_of(sides, asks)) return;
+    if (!pair.a.is_chosen() && !pair.b.is_chosen()) return;
     // ideal chains of two or three links in angles always reach this accuracy for one swing in double
     const auto surely_keeps = [&](const SideSpec* side) {
-        return !asks(side) || (*side->accuracy >= Quad(1e-13) && side->physical.is_none() && !side->is_mechanism() &&
-                               side->stabilise == Stabilise::none && side->links() <= 3 &&
-                               (side->model == ModelChoice::automatic || side->model == ModelChoice::angles));
+        return !side->is_chosen() ||
+               (*side->accuracy >= Quad(1e-13) && side->physical.is_none() && !side->is_mechanism() &&
+                side->stabilise == Stabilise::none && side->links() <= 3 &&
+                (side->model == ModelChoice::automatic || side->model == ModelChoice::angles));
     };
     std::array<std::optional<Side>, 2> chosen;
     if (!std::ranges::all_of(sides, surely_keeps)) chosen = MethodChooser(first, stop).choose(1, stop);
     for (std::size_t i = 0; i < 2; ++i) {
         auto& side = *sides[i];
-        if (!asks(&side)) continue;
+        if (!side.is_chosen()) continue;
         const bool by_series = !chosen[i] || chosen[i]->method.name == "taylor";
         side.accuracy.reset();
         side.step_s.reset();

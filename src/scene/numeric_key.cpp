@@ -112,33 +112,27 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
 void find_in(SideSpec side, const TomlReader& table, std::string_view key, NumericKey& number) {
     const Place place(number.inside);
     const auto found = find_number(side, place);
+    const auto refuse = [&](std::string_view why) { throw table.error(key, "\"{}\" {}", number.path, why); };
     if (!found.field) {
-        if (place.key == "accuracy") throw table.error(key, "\"{}\" needs an accuracy in the preset", number.path);
-        if (found.names.empty() && !place.table.empty())
-            throw table.error(key, "\"{}\" names no particle, constraint or force of the preset", number.path);
-        throw table.error(key, "\"{}\" is not a number of the preset; there are {}", number.path,
-                          fmt::join(found.names, ", "));
+        if (place.key == "accuracy") refuse("needs an accuracy in the preset");
+        if (found.names.empty() && !place.table.empty()) refuse("names no particle, constraint or force of the preset");
+        refuse(fmt::format("is not a number of the preset; there are {}", fmt::join(found.names, ", ")));
     }
     const auto& field = *found.field;
     const auto& values = found.values;
     number.is_whole = found.is_whole;
     number.is_step = found.step != nullptr;
-    const bool is_real = !found.is_whole && !found.step,
-               is_array = is_real && (!field.each.empty() || values.size() > 1);
-    const auto require_counting = [&] {
-        if (!field.only.applies && !field.only.error.empty())
-            throw table.error(key, "\"{}\" {}", number.path, field.only.error);
-    };
-    if (is_real) require_counting();
-    if (!is_array && number.element) throw table.error(key, "\"{}\" is a number, not an array", number.path);
-    require_counting();
+    const bool is_real = !found.is_whole && !found.step, applies = field.only.applies || field.only.error.empty();
+    const bool is_array = is_real && (!field.each.empty() || values.size() > 1);
+    if (is_real && !applies) refuse(field.only.error);
+    if (!is_array && number.element) refuse("is a number, not an array");
+    if (!applies) refuse(field.only.error);
     number.bounds = field.bounds;
     number.label = label_of(number, field);
     if (number.element && *number.element >= values.size())
-        throw table.error(key, "\"{}\" is beyond the array, whose last element is [{}]", number.path,
-                          values.size() - 1);
+        refuse(fmt::format("is beyond the array, whose last element is [{}]", values.size() - 1));
     if (!number.element && field.each.empty() && values.size() > 1)
-        throw table.error(key, "\"{}\" has two numbers; give {}[0] or {}[1]", number.path, number.path, number.path);
+        refuse(fmt::format("has two numbers; give {0}[0] or {0}[1]", number.path));
 }
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {

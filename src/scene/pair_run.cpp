@@ -12,10 +12,6 @@
 
 namespace doppel {
 
-PairState PairRun::next(const std::atomic<bool>& stop) {
-    return advance_to({sample_ + 1}, stop);
-}
-
 void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
     if (!b_) {
         now.a = now.b = a_.advance_to(now.moment(), stop);

@@ -105,23 +105,45 @@ struct PhysicalSpec {
     PivotSpec pivot;
     std::vector<TorqueSpec> torques;
 
-    /// The lists with one number per link, except center_m.
-    static constexpr std::array<std::vector<Quad> PhysicalSpec::*, 9> lists{&PhysicalSpec::rod_mass_kg,
-                                                                            &PhysicalSpec::inertia_kg_m2,
-                                                                            &PhysicalSpec::joint_viscous_N_m_s,
-                                                                            &PhysicalSpec::joint_coulomb_N_m,
-                                                                            &PhysicalSpec::arm_drag_linear_N_m_s,
-                                                                            &PhysicalSpec::arm_drag_quadratic_N_m_s2,
-                                                                            &PhysicalSpec::air_drag_quadratic_N_m_s2,
-                                                                            &PhysicalSpec::drag_linear_N_s_per_m,
-                                                                            &PhysicalSpec::drag_quadratic_N_s2_per_m2};
+    /// A key with one number per link.
+    struct Property {
+        std::string_view key;
+        std::vector<Quad> PhysicalSpec::*member;
+        std::string_view unit, kind, caption, help;  // `kind` = what such chains are said to have
+        std::string_view absent = {};                // meaning of an empty list; the others are never empty
+    };
+    static const std::array<Property, 10> properties;
 
     friend bool operator==(const PhysicalSpec&, const PhysicalSpec&) = default;
 
-    /// Whether no property is given.
+    /// Whether the property is given.
+    bool has(const Property& property) const;
     bool is_none() const;
-    bool has_coulomb() const;
+    bool has_coulomb() const { return !is_zero(joint_coulomb_N_m); }
 };
+
+inline constexpr std::array<PhysicalSpec::Property, 10> PhysicalSpec::properties{{
+    {"rod_mass_kg", &PhysicalSpec::rod_mass_kg, "kg", "links with mass", "",
+     "mass of each uniform rod, in addition to mass_kg"},
+    {"center_m", &PhysicalSpec::center_m, "m", "links with mass", "centre of mass",
+     "makes mass_kg a rigid body: distance from its joint to the centre of mass", "at the end"},
+    {"inertia_kg_m2", &PhysicalSpec::inertia_kg_m2, "kg m²", "links with mass", "",
+     "moment of inertia of this body about its centre of mass"},
+    {"joint_viscous_N_m_s", &PhysicalSpec::joint_viscous_N_m_s, "N m s", "friction", "viscous friction",
+     "friction at each joint, proportional to its rate"},
+    {"joint_coulomb_N_m", &PhysicalSpec::joint_coulomb_N_m, "N m", "friction", "Coulomb friction",
+     "Coulomb friction at each joint, independent of its rate"},
+    {"arm_drag_linear_N_m_s", &PhysicalSpec::arm_drag_linear_N_m_s, "N m s", "drag", "linear drag on links",
+     "drag on each link, proportional to its own rate"},
+    {"arm_drag_quadratic_N_m_s2", &PhysicalSpec::arm_drag_quadratic_N_m_s2, "N m s²", "drag", "drag on links",
+     "drag on each link, proportional to the square of its own rate"},
+    {"air_drag_quadratic_N_m_s2", &PhysicalSpec::air_drag_quadratic_N_m_s2, "N m s²", "drag", "air drag",
+     "drag on each link, proportional to the square of the normal velocity at its centre of oscillation"},
+    {"drag_linear_N_s_per_m", &PhysicalSpec::drag_linear_N_s_per_m, "N s/m", "drag", "linear drag",
+     "drag on each end of a link, proportional to its speed"},
+    {"drag_quadratic_N_s2_per_m2", &PhysicalSpec::drag_quadratic_N_s2_per_m2, "N s²/m²", "drag", "quadratic drag",
+     "drag on each end of a link, proportional to the square of its speed"},
+}};
 
 bool differ_in_numbers_only(const PhysicalSpec& one, const PhysicalSpec& other);
 
@@ -165,12 +187,21 @@ struct SideSpec {
         return tolerance.value_or(precision == Precision::in_quad ? usual_quad_tolerance : usual_tolerance);
     }
 
+    /// Whether method and step size are chosen by the accuracy.
+    bool is_chosen() const { return accuracy && track.is_none(); }
     std::size_t links() const { return mass_kg.size(); }
+    /// The number of particles, or of ends of links.
+    std::size_t masses() const { return particles.empty() ? links() : particles.size(); }
     /// If the number changes, all links are released horizontally, at rest.
     void set_links(std::size_t links);
     /// Whether the system is more than a chain under gravity.
     bool is_mechanism() const { return !particles.empty() || !constraints.empty() || !forces.empty(); }
 };
+
+inline constexpr std::array<Release::List, 3> Release::lists{
+    {{"angle_deg", &Release::angle_deg, &SideSpec::angle_deg, "θ", "°"},
+     {"mass_kg", &Release::mass_kg, &SideSpec::mass_kg, "m", " kg"},
+     {"length_m", &Release::length_m, &SideSpec::length_m, "l", " m"}}};
 
 /// A scene described by a preset file: read, completed and checked, not yet computed.
 struct Preset {

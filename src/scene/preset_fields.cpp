@@ -1,19 +1,168 @@
 #include "scene/preset_fields.hpp"
 
-#include <algorithm>
-
 namespace doppel {
 namespace {
 
 constexpr auto picture_sizes = from_to(64, 16384);  // more than any OpenGL supports, which reports its own limit
 constexpr double max_hz = 1e6;                      // of a drive: far above the response of a pendulum
 
-std::vector<std::string_view> theme_names() {
+const auto known_themes = [] {
     std::vector<std::string_view> names;
     for (const auto& known : themes) names.push_back(known.name);
     return names;
+}();
+const auto panel_names = [] {
+    std::vector<std::string_view> names{"pendulums"};
+    names.insert(names.end(), names_of<StripKind>.begin(), names_of<StripKind>.end());
+    return names;
+}();
+
+/// A key with one number per link.
+Field of_links(std::string_view key, std::string_view help, std::string_view unit, const Bounds& bounds,
+               std::string_view symbol = "", std::string_view caption = "") {
+    return {.key = key,
+            .help = help,
+            .unit = unit,
+            .bounds = bounds,
+            .each = "one a link",
+            .caption = caption,
+            .symbol = symbol};
 }
-const auto known_themes = theme_names();
+
+void format_fields(KeyVisitor& visit, VideoSpec& video) {
+    static const auto codecs = codecs_of(FilmFormat::webm);
+    visit({"format", "file format; png: one picture a frame; html: a page to use in a browser; y4m, rgb: uncompressed"},
+          video.format);
+    const auto only = [&](bool applies, const char* what) {
+        return Condition{applies, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
+                         visit.from_command_line("format"), false, "format"};
+    };
+    const FormatRow& row = format_row(video.format, video.codec);
+    const bool is_webm = video.format == FilmFormat::webm;
+    const auto encoded = only(row.is_encoded(), "of mp4 and webm");
+    visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
+    visit({"pixel_format", "of mp4, webm and y4m", "", {}, "", only(row.is_yuv(), "of mp4, webm and y4m")},
+          video.pixel_format);
+    visit({.key = "transparent",
+           .help = "no background; of png, apng, html, rgb and webm (VP9)",
+           .only = {.applies = video.transparent}},
+          video.transparent);
+    visit({"position_bits", "of html: bits of a position, where the page holds the motion", "", from_to(16, 24), "",
+           only(video.format == FilmFormat::html, "of html")},
+          video.position_bits);
+    constexpr std::string_view effort = "of mp4 and webm: preset of the encoder; \"doppel\": tuned for these pictures";
+    visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
+    visit({.key = "crf",
+           .help = "of mp4 and webm: lower is better; at most 51 for mp4",
+           .bounds = from_to(0, row.largest_crf),
+           .only = encoded,
+           .otherwise = from_to(0, 63)},
+          video.crf);
+}
+
+/// Times and speeds.
+void time_fields(KeyVisitor& visit, VideoSpec& video) {
+    constexpr auto seconds = from_to(0, 3600, "none");
+    constexpr std::string_view all_samples = "sample_hz · speed, of a gif up to 30; where the speed changes sample_hz";
+    constexpr std::string_view rates =
+        "frames a second; 23.976, 29.97 and 59.94 mean 24000/1001, 30000/1001, 60000/1001";
+    visit({"fps", rates, "1/s", positive, all_samples}, video.fps);
+    visit({"speed", "seconds of motion a second of film; in a list, each speed is reached at its time", "", positive},
+          video.speed);
+    const Condition of_changes{video.speed.changes_over_time(),
+                               "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, false,
+                               "speed"};
+    constexpr std::string_view ease =
+        "time of motion before a change of speed, in which the speed changes by 3u² − 2u³";
+    visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
+    visit({"hold_start_s", "hold time of the first frame", "s", seconds}, video.hold_start_s);
+    visit({"hold_end_s", "hold time of the last frame", "s", seconds}, video.hold_end_s);
+    visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
+    visit({"end_card_s", "a card with the result after the film", "s", seconds}, video.end_card_s);
+    visit({"poster_s", "NAME.poster.png: the frame nearest to this time", "s", not_negative}, video.poster_s);
+    constexpr std::string_view moments = "NAME.contact.png: frames at equal intervals, across and down";
+    visit({"contact_sheet", moments, "", from_to(1, 32), "", {}, "frames across and down"}, video.contact_sheet);
+}
+
+void layout_fields(KeyVisitor& visit, VideoSpec& video) {
+    visit({"layout", "how the pendulums are placed"}, video.layout);
+    const auto only = [&](Arrangement layout) {
+        return Condition{video.layout == layout,
+                         fmt::format("is for the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)),
+                         false, false, "layout"};
+    };
+    const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
+    constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
+    constexpr std::string_view members =
+        "of an ensemble: pendulums from side a to side b, or a list of angles, [[120, 120], [120.01, 120]], or of "
+        "tables with angle_deg, mass_kg, length_m, color";
+    visit({"members", members, "", some, "", of_ensemble}, video.members);
+    visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
+          video.phase);
+    visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
+    visit({.key = "panels", .help = "\"pendulums\" and strips, in their order", .names = panel_names},
+          static_cast<Panels&>(video));
+    visit({.key = "show",
+           .help =
+               "what is shown besides trails; credit: Doppel's name on the end card; twin: the other side as a shadow",
+           .names = shown_parts},
+          video.show);
+    visit.table("view", [&](KeyVisitor& table) {
+        table({"follow", "the mass that stays in the middle, from 1; 0 = none", "", from_to(0, 10'000)},
+              video.view.follow);
+        const Condition still{video.view.follow == 0, "is for a view that follows no mass", false, false, "follow"};
+        table({.key = "center_m",
+               .help = "the place in the middle of a panel, [x, y]",
+               .unit = "m",
+               .absent = "the pivot, or that of the motion",
+               .only = still},
+              video.view.center_m);
+        table({"height_m", "what the height of a panel shows", "m", positive, "all of the motion"},
+              video.view.height_m);
+    });
+    visit({"model_limit_s", "how long a fitted model predicts what was measured: a line in the first strip", "s",
+           positive},
+          video.model_limit_s);
+    constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
+    for (std::size_t i = 0; i < strip_kinds; ++i) {
+        const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
+        visit({range_keys[i], help, "", bounds, fitted, {}, "lowest and highest"}, video.ranges[i]);
+    }
+}
+
+/// Colours, widths, fonts, text sizes, and trails.
+void style_fields(KeyVisitor& visit, VideoSpec& video) {
+    visit(theme_field, video.theme);
+    constexpr std::string_view of_theme = "the theme's";
+    visit({"side_colors", "of side a and side b", "", {}, of_theme}, video.side_colors);
+    visit.table("colors", [&](KeyVisitor& table) {
+        for (std::size_t i = 0; i < color_names.size(); ++i)
+            table({color_names[i].key, color_names[i].help, "", {}, of_theme}, video.colors[i]);
+    });
+    visit.table("widths_px", [&](KeyVisitor& table) {
+        constexpr std::string_view fitted = "by the size of the panel";
+        for (const auto& [key, member, help] : width_names)
+            table({key, help, "px", from_to(0, 200, "nothing")}, video.widths.*member);
+        table({"rod", "rods", "px", from_to(0, 200, "nothing"), fitted}, video.widths.rod);
+        table({"bob", "radius of the heaviest bob", "px", from_to(0, 200, "nothing"), fitted}, video.widths.bob);
+    });
+    visit.table("fonts", [&](KeyVisitor& table) {
+        table({"text",
+               "font file (TrueType, OpenType); path from the preset or from the current folder",
+               "",
+               {},
+               "built in"},
+              video.text_font);
+    });
+    visit.table("fonts_px", [&](KeyVisitor& table) {
+        for (const auto& [key, member, help] : font_size_names)
+            table({key, help, "px", from_to(4, 400)}, video.fonts.*member);
+    });
+    constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
+    visit({"glow_px", "glow radius of trails and bobs", "px", glow, of_theme}, video.glow_px);
+    visit({"trail_s", "duration of the trail of the last bob; ensembles: 0.3, or 1 with a list of members", "s", trail},
+          video.trail_s);
+}
 
 }  // namespace
 
@@ -40,34 +189,23 @@ void clock_fields(KeyVisitor& visit, Preset& preset) {
     visit({"sample_hz", "samples a second; divides the steps a second", "Hz", positive}, preset.sample_hz);
 }
 
-void certify_field(KeyVisitor& visit, Preset& preset) {
-    visit({"certify",
-           "proves, for two ideal links, how long the run follows the true motion: in the manifest, the strip and "
-           "`check`"},
+void film_fields(KeyVisitor& visit, Preset& preset) {
+    clock_fields(visit, preset);
+    const Condition of_columns{.applies = preset.energy_columns || preset.member_columns};
+    visit({.key = "energy_columns",
+           .help = "kinetic and potential energies as last columns of the CSV",
+           .only = of_columns},
+          preset.energy_columns);
+    visit({.key = "member_columns",
+           .help = "of an ensemble: angles, rates, places and velocities of each member as last columns",
+           .only = of_columns},
+          preset.member_columns);
+    visit({.key = "certify",
+           .help = "proves, for two ideal links, how long the run follows the true motion: in the manifest, the strip "
+                   "and `check`",
+           .only = {.applies = preset.certify}},
           preset.certify);
 }
-
-void column_fields(KeyVisitor& visit, Preset& preset) {
-    visit({"energy_columns", "kinetic and potential energies as last columns of the CSV"}, preset.energy_columns);
-    visit({"member_columns", "of an ensemble: angles, rates, places and velocities of each member as last columns"},
-          preset.member_columns);
-}
-
-namespace {
-
-/// A key with one number per link.
-Field of_links(std::string_view key, std::string_view help, std::string_view unit, const Bounds& bounds,
-               std::string_view symbol = "", std::string_view caption = "") {
-    return {.key = key,
-            .help = help,
-            .unit = unit,
-            .bounds = bounds,
-            .each = "one a link",
-            .caption = caption,
-            .symbol = symbol};
-}
-
-}  // namespace
 
 void link_fields(KeyVisitor& visit, SideSpec& side, const Bounds& masses) {
     auto links = static_cast<int>(side.links());
@@ -90,35 +228,12 @@ void chain_fields(KeyVisitor& visit, SideSpec& side, const Bounds& masses) {
 }
 
 void physical_fields(KeyVisitor& visit, PhysicalSpec& physical) {
-    const auto list = [&](std::string_view key, std::string_view caption, std::string_view unit, std::string_view help,
-                          std::vector<Quad>& values) {
-        auto field = of_links(key, help, unit, not_negative, "", caption);
-        field.only.applies = !is_zero(values);
-        visit(field, values);
-    };
-    list("rod_mass_kg", "", "kg", "mass of each uniform rod, in addition to mass_kg", physical.rod_mass_kg);
-    auto center = of_links("center_m", "makes mass_kg a rigid body: distance from its joint to the centre of mass", "m",
-                           not_negative, "", "centre of mass");
-    center.absent = "at the end";
-    center.only.applies = !physical.center_m.empty();
-    visit(center, physical.center_m);
-    list("inertia_kg_m2", "", "kg m²", "moment of inertia of this body about its centre of mass",
-         physical.inertia_kg_m2);
-    list("joint_viscous_N_m_s", "viscous friction", "N m s", "friction at each joint, proportional to its rate",
-         physical.joint_viscous_N_m_s);
-    list("joint_coulomb_N_m", "Coulomb friction", "N m", "Coulomb friction at each joint, independent of its rate",
-         physical.joint_coulomb_N_m);
-    list("arm_drag_linear_N_m_s", "linear drag on links", "N m s", "drag on each link, proportional to its own rate",
-         physical.arm_drag_linear_N_m_s);
-    list("arm_drag_quadratic_N_m_s2", "drag on links", "N m s²",
-         "drag on each link, proportional to the square of its own rate", physical.arm_drag_quadratic_N_m_s2);
-    list("air_drag_quadratic_N_m_s2", "air drag", "N m s²",
-         "drag on each link, proportional to the square of the normal velocity at its centre of oscillation",
-         physical.air_drag_quadratic_N_m_s2);
-    list("drag_linear_N_s_per_m", "linear drag", "N s/m", "drag on each end of a link, proportional to its speed",
-         physical.drag_linear_N_s_per_m);
-    list("drag_quadratic_N_s2_per_m2", "quadratic drag", "N s²/m²",
-         "drag on each end of a link, proportional to the square of its speed", physical.drag_quadratic_N_s2_per_m2);
+    for (const auto& property : PhysicalSpec::properties) {
+        auto field = of_links(property.key, property.help, property.unit, not_negative, "", property.caption);
+        field.absent = property.absent;
+        field.only.applies = physical.has(property);
+        visit(field, physical.*property.member);
+    }
     visit.table("pivot", [&pivot = physical.pivot](KeyVisitor& table) {
         table({"direction_deg", "direction of the prescribed motion, from the x axis: 90 = up", "deg", angle_bounds},
               pivot.direction_deg);
@@ -249,141 +364,11 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
               part.constant_m3_per_kg_s2);
 }
 
-void format_fields(KeyVisitor& visit, VideoSpec& video) {
-    static const auto codecs = codecs_of(FilmFormat::webm);
-    visit({"format", "file format; png: one picture a frame; html: a page to use in a browser; y4m, rgb: uncompressed"},
-          video.format);
-    const auto only = [&](bool applies, const char* what) {
-        return Condition{applies, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
-                         visit.from_command_line("format"), false, "format"};
-    };
-    const FormatRow& row = format_row(video.format, video.codec);
-    const bool is_webm = video.format == FilmFormat::webm;
-    const auto encoded = only(row.is_encoded(), "of mp4 and webm");
-    visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
-    visit({"pixel_format", "of mp4, webm and y4m", "", {}, "", only(row.is_yuv(), "of mp4, webm and y4m")},
-          video.pixel_format);
-    visit({"transparent",
-           "no background; of png, apng, html, rgb and webm (VP9)",
-           "",
-           {},
-           "",
-           {.applies = video.transparent}},
-          video.transparent);
-    visit({"position_bits", "of html: bits of a position, where the page holds the motion", "", from_to(16, 24), "",
-           only(video.format == FilmFormat::html, "of html")},
-          video.position_bits);
-    constexpr std::string_view effort = "of mp4 and webm: preset of the encoder; \"doppel\": tuned for these pictures";
-    visit({"preset", effort, "", {}, "", encoded, "", encoder_presets}, video.preset);
-    visit({.key = "crf",
-           .help = "of mp4 and webm: lower is better; at most 51 for mp4",
-           .bounds = from_to(0, row.largest_crf),
-           .only = encoded,
-           .otherwise = from_to(0, 63)},
-          video.crf);
-}
-
-void time_fields(KeyVisitor& visit, VideoSpec& video) {
-    constexpr auto seconds = from_to(0, 3600, "none");
-    constexpr std::string_view all_samples = "sample_hz · speed, of a gif up to 30; where the speed changes sample_hz";
-    constexpr std::string_view rates =
-        "frames a second; 23.976, 29.97 and 59.94 mean 24000/1001, 30000/1001, 60000/1001";
-    visit({"fps", rates, "1/s", positive, all_samples}, video.fps);
-    visit({"speed", "seconds of motion a second of film; in a list, each speed is reached at its time", "", positive},
-          video.speed);
-    const Condition of_changes{video.speed.changes_over_time(),
-                               "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, false,
-                               "speed"};
-    constexpr std::string_view ease =
-        "time of motion before a change of speed, in which the speed changes by 3u² − 2u³";
-    visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
-    visit({"hold_start_s", "hold time of the first frame", "s", seconds}, video.hold_start_s);
-    visit({"hold_end_s", "hold time of the last frame", "s", seconds}, video.hold_end_s);
-    visit({"title_card_s", "a card with the title before the film", "s", seconds}, video.title_card_s);
-    visit({"end_card_s", "a card with the result after the film", "s", seconds}, video.end_card_s);
-    visit({"poster_s", "NAME.poster.png: the frame nearest to this time", "s", not_negative}, video.poster_s);
-    constexpr std::string_view moments = "NAME.contact.png: frames at equal intervals, across and down";
-    visit({"contact_sheet", moments, "", from_to(1, 32), "", {}, "frames across and down"}, video.contact_sheet);
-}
-
-void layout_fields(KeyVisitor& visit, VideoSpec& video) {
-    visit({"layout", "how the pendulums are placed"}, video.layout);
-    const auto only = [&](Arrangement layout) {
-        return Condition{video.layout == layout,
-                         fmt::format("is for the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)),
-                         false, false, "layout"};
-    };
-    const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
-    constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
-    constexpr std::string_view members =
-        "of an ensemble: pendulums from side a to side b, or a list of angles, [[120, 120], [120.01, 120]], or of "
-        "tables with "
-        "angle_deg, mass_kg, length_m, color";
-    visit({"members", members, "", some, "", of_ensemble}, video.members);
-    visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
-          video.phase);
-    visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
-    visit({.key = "panels", .help = "\"pendulums\" and strips, in their order"}, static_cast<Panels&>(video));
-    visit({.key = "show",
-           .help =
-               "what is shown besides trails; credit: Doppel's name on the end card; twin: the other side as a shadow",
-           .names = shown_parts},
-          video.show);
-    visit.table("view", [&](KeyVisitor& table) {
-        table({"follow", "the mass that stays in the middle, from 1; 0 = none", "", from_to(0, 10'000)},
-              video.view.follow);
-        const Condition still{video.view.follow == 0, "is for a view that follows no mass", false, false, "follow"};
-        table({"center_m",
-               "the place in the middle of a panel, [x, y]",
-               "m",
-               {},
-               "the pivot, or that of the motion",
-               still},
-              video.view.center_m);
-        table({"height_m", "what the height of a panel shows", "m", positive, "all of the motion"},
-              video.view.height_m);
-    });
-    visit({"model_limit_s", "how long a fitted model predicts what was measured: a line in the first strip", "s",
-           positive},
-          video.model_limit_s);
-    constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
-    for (std::size_t i = 0; i < strip_kinds; ++i) {
-        const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
-        visit({range_keys[i], help, "", bounds, fitted, {}, "lowest and highest"}, video.ranges[i]);
-    }
-}
-
-void style_fields(KeyVisitor& visit, VideoSpec& video) {
-    visit(theme_field, video.theme);
-    constexpr std::string_view of_theme = "the theme's";
-    visit({"side_colors", "of side a and side b", "", {}, of_theme}, video.side_colors);
-    visit.table("colors", [&](KeyVisitor& table) {
-        for (std::size_t i = 0; i < color_names.size(); ++i)
-            table({color_names[i].key, color_names[i].help, "", {}, of_theme}, video.colors[i]);
-    });
-    visit.table("widths_px", [&](KeyVisitor& table) {
-        constexpr std::string_view fitted = "by the size of the panel";
-        for (const auto& [key, member, help] : width_names)
-            table({key, help, "px", from_to(0, 200, "nothing")}, video.widths.*member);
-        table({"rod", "rods", "px", from_to(0, 200, "nothing"), fitted}, video.widths.rod);
-        table({"bob", "radius of the heaviest bob", "px", from_to(0, 200, "nothing"), fitted}, video.widths.bob);
-    });
-    visit.table("fonts", [&](KeyVisitor& table) {
-        table({"text",
-               "font file (TrueType, OpenType); path from the preset or from the current folder",
-               "",
-               {},
-               "built in"},
-              video.text_font);
-    });
-    visit.table("fonts_px", [&](KeyVisitor& table) {
-        for (const auto& [key, member, help] : font_size_names)
-            table({key, help, "px", from_to(4, 400)}, video.fonts.*member);
-    });
-    constexpr auto glow = from_to(0, 100, "none"), trail = from_to(0, 3600, "none");
-    visit({"glow_px", "glow radius of trails and bobs", "px", glow, of_theme}, video.glow_px);
-    visit({"trail_s", "duration of the trail of the last bob; ensembles: 0.3, or 1 with a list of members", "s", trail},
-          video.trail_s);
+void video_fields(KeyVisitor& visit, VideoSpec& video) {
+    format_fields(visit, video);
+    time_fields(visit, video);
+    layout_fields(visit, video);
+    style_fields(visit, video);
 }
 
 std::vector<SideEntry> entries_of(SideSpec& side) {

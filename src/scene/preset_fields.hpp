@@ -24,11 +24,10 @@ inline constexpr std::array<std::string_view, 5> scene_kinds{pair_kind, "grid", 
 extern const Field title_field, subtitle_field, kind_field, model_field, accuracy_field, size_field, preview_field,
     theme_field;
 
-/// [scene], except `kind`.
+/// [scene] of a figure, except `kind`.
 void clock_fields(KeyVisitor& visit, Preset& preset);
-/// Further keys of [scene] about a film's table.
-void certify_field(KeyVisitor& visit, Preset& preset);
-void column_fields(KeyVisitor& visit, Preset& preset);
+/// [scene] of a film, except `kind`.
+void film_fields(KeyVisitor& visit, Preset& preset);
 
 // Keys of [system], [a] and [b].
 
@@ -51,14 +50,8 @@ void part_fields(KeyVisitor& visit, TorqueSpec& torque);
 void part_fields(KeyVisitor& visit, ParticleSpec& particle);
 void part_fields(KeyVisitor& visit, PartSpec& part);
 
-// Keys of [video].
-
-void format_fields(KeyVisitor& visit, VideoSpec& video);
-/// Times and speeds.
-void time_fields(KeyVisitor& visit, VideoSpec& video);
-void layout_fields(KeyVisitor& visit, VideoSpec& video);
-/// Colours, widths, fonts, text sizes, and trails.
-void style_fields(KeyVisitor& visit, VideoSpec& video);
+/// [video], except `size` and `preview`.
+void video_fields(KeyVisitor& visit, VideoSpec& video);
 
 /// An entry of [[system.torque]], particle, constraint or force.
 struct SideEntry {

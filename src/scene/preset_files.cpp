@@ -22,6 +22,14 @@ constexpr std::array<std::string_view, 2> folders{"presets/", "presets/figures/"
 
 constexpr std::size_t max_bytes = std::size_t{8} << 20;  // 10 000 links with every number to 34 digits take 4 MB
 
+PresetText read_file(const fs::path& path, const std::string& call, const std::atomic<bool>* stop) {
+    PresetText preset{.name = path.stem().string(), .path = path.string(), .text = {}, .call = call};
+    constexpr WantedFile wanted{"a preset is a TOML file", max_bytes, "there is no such preset"};
+    preset.text = read_whole_file(path, wanted, stop);
+    check_preset_name(preset.path, preset.name);
+    return preset;
+}
+
 }  // namespace
 
 void check_preset_name(const std::string& path, const std::string& name) {
@@ -37,18 +45,6 @@ void check_preset_name(const std::string& path, const std::string& name) {
     if (name.size() > longest_preset_name)
         refuse(fmt::format("has {} bytes; at most {} are possible", name.size(), longest_preset_name));
 }
-
-namespace {
-
-PresetText read_file(const fs::path& path, const std::string& call, const std::atomic<bool>* stop) {
-    PresetText preset{.name = path.stem().string(), .path = path.string(), .text = {}, .call = call};
-    constexpr WantedFile wanted{"a preset is a TOML file", max_bytes, "there is no such preset"};
-    preset.text = read_whole_file(path, wanted, stop);
-    check_preset_name(preset.path, preset.name);
-    return preset;
-}
-
-}  // namespace
 
 std::string path_beside(const std::string& preset_path, const std::string& given, bool from_command_line) {
     std::error_code ignored;
@@ -83,10 +79,8 @@ PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>*
         names.push_back(preset.name);
     }
     if (fs::is_regular_file(name_or_path, ignored)) return read_file(name_or_path, name_or_path, stop);
-    const auto meant = nearest(name_or_path, names);
-    throw bad_input(
-        "there is no preset \"{}\"; {}", name_or_path,
-        meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("there are {}", fmt::join(names, ", ")));
+    throw bad_input("there is no preset \"{}\"; {}", name_or_path,
+                    did_you_mean("", name_or_path, names, fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
 }  // namespace doppel

@@ -39,13 +39,10 @@ void check_single(const Preset& preset, TomlReader& top, const TomlReader& video
 
 /// A view must follow an existing mass; only ensembles have columns of members.
 void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene) {
-    const auto masses = [](const SideSpec& side) {
-        return side.particles.empty() ? side.links() : side.particles.size();
-    };
-    const auto maximum = std::min(masses(preset.a), masses(preset.b));
+    const auto maximum = std::min(preset.a.masses(), preset.b.masses());
     if (const auto follow = preset.video.view.follow; follow > static_cast<int>(maximum))
-        throw video.inner(video.read_table("view"), "[video.view]")
-            .error("follow", "must be from 0 to {}, as there are masses; it is {}", maximum, follow);
+        throw video.inner("view").error("follow", "must be from 0 to {}, as there are masses; it is {}", maximum,
+                                        follow);
     const auto& view = preset.video.view;
     if (!preset.video.pendulums && (view.follow > 0 || view.center_m || view.height_m))
         throw video.error("view",
@@ -105,9 +102,8 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
         std::string name;
         entry({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
-        const auto meant = nearest(name, others);
         throw entry.error("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
-                          meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
+                          did_you_mean("; ", name, others));
     }
     if (names.size() == others.size())
         throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
@@ -128,19 +124,6 @@ void check_layout(const TomlReader& table, const VideoSpec& video) {
         throw table.error("panels", "must contain \"pendulums\" for the layout \"{}\"", name_of(video.layout));
 }
 
-/// By default, members of an ensemble have short trails without glow.
-void read_style(TomlReader& table, VideoSpec& video) {
-    const bool is_ensemble = video.layout == Arrangement::ensemble;
-    if (is_ensemble) video.trail_s = video.members.releases.empty() ? 0.3 : 1;
-    style_fields(table, video);
-}
-
-void check_style(const TomlReader& table, const VideoSpec& video) {
-    if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
-        throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
-                          *video.glow_px);
-}
-
 /// A quarter of the pixels and the least effort; the command line overrides this.
 void make_preview(TomlReader& table, VideoSpec& video) {
     const auto half = [](int pixels) { return std::max(pixels / 4 * 2, static_cast<int>(size_field.bounds.low)); };
@@ -154,17 +137,19 @@ void read_video(TomlReader& table, VideoSpec& video) {
     bool is_preview = false;
     table(preview_field, is_preview);
     table(size_field, video.size);
-    format_fields(table, video);
-    time_fields(table, video);
-    layout_fields(table, video);
+    video_fields(table, video);
     if (video.layout == Arrangement::portrait && !table.has("size")) video.size = {1080, 1920};
     if (video.layout == Arrangement::single && !table.has("panels")) video.strips = {StripKind::energies_a};
-    read_style(table, video);
+    // members of an ensemble have short trails
+    if (video.layout == Arrangement::ensemble && !table.has("trail_s"))
+        video.trail_s = video.members.releases.empty() ? 0.3 : 1;
     table.finish();
     table.check_together([&] {
         check_layout(table, video);
         check_format(table, format_error(video.options({1, 1})));
-        check_style(table, video);
+        if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
+            throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
+                              *video.glow_px);
     });
     if (is_preview) make_preview(table, video);
 }
@@ -174,21 +159,13 @@ void read_video(TomlReader& table, VideoSpec& video) {
 /// known.
 bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) {
     auto table = document.table(top, "video");
-    auto fonts = table.inner(table.read_table("fonts"), "[video.fonts]");
+    auto fonts = table.inner("fonts");
     constexpr std::string_view key = "text";
     std::string given;
     fonts({.key = key}, given);
     if (given.empty()) return !fonts.has(key);
     video.text_font = path_beside(document.path, given, fonts.from_command_line(key));
-    try {
-        video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font));
-    } catch (const Error& error) {
-        const auto key_error = fonts.error(key, "{}", error.what());
-        if (error.code() != ExitCode::bad_input) throw Error(error.code(), error.what());
-        fonts.refuse(key_error, key);
-        return false;
-    }
-    return true;
+    return fonts.guarded(key, [&] { video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font)); });
 }
 
 /// If members of an ensemble are listed, its pair is the first and the last one. Throws if the file gives a side other
@@ -201,7 +178,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
             if (const auto count = (members[k].*list.member).size(); count > 0 && count != preset.a.links())
                 throw video.error("members", "must have {} numbers each, one a link; {} of [{}] has {}",
                                   preset.a.links(), list.key, k, count);
-    const auto place = [&](const Release::List& list, std::vector<Quad> SideSpec::*of_side) {
+    for (const auto& list : Release::lists) {
         const auto &first = members.front().*list.member, &last = members.back().*list.member;
         const auto check_side = [&](const char* table, const std::vector<Quad>& given,
                                     const std::vector<Quad>& member) {
@@ -211,15 +188,12 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
             throw video.error("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
                               table, list.key, toml_value(given), toml_value(member));
         };
-        check_side("a", preset.a.*of_side, first);
-        check_side("b", preset.b.*of_side, last);
-        check_side("system", preset.a.*of_side, first);
-        if (!first.empty()) preset.a.*of_side = first;
-        if (!last.empty()) preset.b.*of_side = last;
-    };
-    place(Release::lists[0], &SideSpec::angle_deg);
-    place(Release::lists[1], &SideSpec::mass_kg);
-    place(Release::lists[2], &SideSpec::length_m);
+        check_side("a", preset.a.*list.of_side, first);
+        check_side("b", preset.b.*list.of_side, last);
+        check_side("system", preset.a.*list.of_side, first);
+        if (!first.empty()) preset.a.*list.of_side = first;
+        if (!last.empty()) preset.b.*list.of_side = last;
+    }
 }
 
 }  // namespace
@@ -296,9 +270,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     if (errors.concern("scene")) errors.throw_if_any();  // without the kind it is unknown which tables are allowed
     if (kind != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
-    clock_fields(scene, preset);
-    column_fields(scene, preset);
-    certify_field(scene, preset);
+    film_fields(scene, preset);
     scene.finish();
     read_sides(document, {&top}, preset, true);
     auto video = document.table(top, "video");

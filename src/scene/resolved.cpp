@@ -8,8 +8,6 @@
 
 #include <toml++/toml.h>
 
-#include <cmath>
-
 namespace doppel {
 
 std::string toml_text(const std::string& text) {
@@ -26,14 +24,6 @@ std::string toml_text(const std::string& text) {
     return quoted + '"';
 }
 
-std::string toml_ratio(const Rational& value) {
-    return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text());
-}
-
-std::string toml_value(const Color& color) {
-    return fmt::format("\"{}\"", hexadecimal(color));
-}
-
 std::string toml_value(const Panels& panels) {
     std::vector<std::string> names;
     if (panels.pendulums) names.emplace_back("pendulums");
@@ -47,14 +37,6 @@ std::string toml_value(const Speed& speed) {
     for (const auto& [at_s, to] : speed.changes)
         changes.push_back(fmt::format("[{}, {}]", toml_ratio(at_s), toml_ratio(to)));
     return fmt::format("[{}]", fmt::join(changes, ", "));
-}
-
-std::string toml_value(const ChosenText& text) {
-    return text.own ? toml_value(*text.own) : toml_value(text.shown);
-}
-
-std::string toml_value(const TomlValues& values) {
-    return fmt::format("[{}]", fmt::join(values.texts, ", "));
 }
 
 std::string toml_value(const Members& members) {
@@ -133,14 +115,37 @@ std::string side_toml(const std::string& name, SideSpec side) {
            entries_toml(name, side);
 }
 
+/// A number with more than the 17 digits of a double becomes text.
+Json json_of(const toml::node& node, const TomlText& text) {
+    if (const auto* table = node.as_table()) {
+        Json object = Json::object();
+        for (auto&& [key, value] : *table) object[std::string(key.str())] = json_of(value, text);
+        return object;
+    }
+    if (const auto* array = node.as_array()) {
+        Json list = Json::array();
+        for (const auto& element : *array) list.push_back(json_of(element, text));
+        return list;
+    }
+    if (const auto* number = node.as_floating_point()) {
+        const auto& at = node.source().begin;
+        const Quad exact = parse_quad(text.literal_at(at.line, at.column));
+        constexpr std::size_t of_double = 17;
+        auto decimals = text_of(exact);
+        if (significant_digits(decimals).size() > of_double) return decimals;
+        return number->get();
+    }
+    if (const auto* whole = node.as_integer()) return whole->get();
+    if (const auto* flag = node.as_boolean()) return flag->get();
+    return node.value_or<std::string>("");
+}
+
 }  // namespace
 
 std::string resolved_pair(const Preset& preset) {
     TomlWriter writer;
     auto clock = preset;
-    clock_fields(writer, clock);
-    if (preset.energy_columns || preset.member_columns) column_fields(writer, clock);
-    if (preset.certify) certify_field(writer, clock);
+    film_fields(writer, clock);
     return writer.text() + resolved_sides(preset);
 }
 
@@ -173,41 +178,9 @@ std::string resolved_toml(const Preset& preset) {
     return fmt::format("{}\n[scene]\nkind = \"{}\"\n", top.text(), pair_kind) + resolved_pair(preset) +
            table_text("[video]", [video = preset.video](TomlWriter& writer) mutable {
                writer(size_field, video.size);
-               format_fields(writer, video);
-               time_fields(writer, video);
-               layout_fields(writer, video);
-               style_fields(writer, video);
+               video_fields(writer, video);
            });
 }
-
-namespace {
-
-/// A number with more than the 17 digits of a double becomes text.
-Json json_of(const toml::node& node, const TomlText& text) {
-    if (const auto* table = node.as_table()) {
-        Json object = Json::object();
-        for (auto&& [key, value] : *table) object[std::string(key.str())] = json_of(value, text);
-        return object;
-    }
-    if (const auto* array = node.as_array()) {
-        Json list = Json::array();
-        for (const auto& element : *array) list.push_back(json_of(element, text));
-        return list;
-    }
-    if (const auto* number = node.as_floating_point()) {
-        const auto& at = node.source().begin;
-        const Quad exact = parse_quad(text.literal_at(at.line, at.column));
-        constexpr std::size_t of_double = 17;
-        auto decimals = text_of(exact);
-        if (significant_digits(decimals).size() > of_double) return decimals;
-        return number->get();
-    }
-    if (const auto* whole = node.as_integer()) return whole->get();
-    if (const auto* flag = node.as_boolean()) return flag->get();
-    return node.value_or<std::string>("");
-}
-
-}  // namespace
 
 Json json_of_toml(const std::string& toml) {
     return json_of(toml::parse(toml), TomlText(toml));

@@ -16,14 +16,13 @@ namespace doppel {
 
 std::string toml_text(const std::string& text);
 /// A whole number, or "a/b" in quotes.
-std::string toml_ratio(const Rational& value);
+inline std::string toml_ratio(const Rational& value) {
+    return value.is_whole() ? value.text() : fmt::format("\"{}\"", value.text());
+}
 
-std::string toml_value(const Color& color);
 std::string toml_value(const Panels& panels);
 std::string toml_value(const Speed& speed);
 std::string toml_value(const Members& members);
-std::string toml_value(const ChosenText& text);
-std::string toml_value(const TomlValues& values);
 template <class T>
 std::string toml_value(const T& value) {
     if constexpr (std::is_same_v<T, std::string>) {
@@ -40,6 +39,12 @@ std::string toml_value(const T& value) {
         return fmt::format("[{}, {}]", value.width, value.height);
     } else if constexpr (std::is_same_v<T, Range>) {
         return fmt::format("[{}, {}]", value.low, value.high);
+    } else if constexpr (std::is_same_v<T, Color>) {
+        return fmt::format("\"{}\"", hexadecimal(value));
+    } else if constexpr (std::is_same_v<T, TomlValues>) {
+        return fmt::format("[{}]", fmt::join(value.texts, ", "));
+    } else if constexpr (std::is_same_v<T, ChosenText>) {
+        return value.own ? toml_value(*value.own) : toml_value(value.shown);
     } else if constexpr (std::is_same_v<T, EndSpec>) {
         return std::visit([](const auto& end) { return toml_value(end); }, value);
     } else {

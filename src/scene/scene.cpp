@@ -69,11 +69,9 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     const auto& requested = scene.preset.video.members;
     for (std::size_t k = 0; k < requested.size(); ++k) {
         auto member = between(first, last, Quad(k) / Quad(requested.size() - 1));
-        for (const auto& [given, into] : {std::pair{&Release::angle_deg, &SideSpec::angle_deg},
-                                          {&Release::mass_kg, &SideSpec::mass_kg},
-                                          {&Release::length_m, &SideSpec::length_m}})
-            if (!requested.releases.empty() && !(requested.releases[k].*given).empty())
-                member.*into = requested.releases[k].*given;
+        for (const auto& list : Release::lists)
+            if (!requested.releases.empty() && !(requested.releases[k].*list.member).empty())
+                member.*list.of_side = requested.releases[k].*list.member;
         members.push_back(scene.a.motion);
         members.back().chain = chain_of(member);
         if (!member.physical.is_none()) members.back().physical = physical_of(member);
@@ -82,11 +80,33 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     return members;
 }
 
+/// The first number of the observation that is not finite, in words; nothing if all are.
+std::optional<std::string> not_finite(const Observation& seen, bool has_angles) {
+    for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
+        const auto& bob = seen.bobs[i];
+        const auto name = [&](std::string_view symbol, double value) {
+            return fmt::format("{}{} is {}", symbol, i + 1, value);
+        };
+        if (has_angles && !std::isfinite(bob.omega)) return name("the rate ω", bob.omega);
+        if (has_angles && !std::isfinite(bob.theta)) return name("the angle θ", bob.theta);
+        if (!std::isfinite(bob.x) || !std::isfinite(bob.y)) return name("the place of mass ", bob.x + bob.y);
+        if (!std::isfinite(bob.vx) || !std::isfinite(bob.vy)) return name("the velocity of mass ", bob.vx + bob.vy);
+    }
+    if (!std::isfinite(seen.energy)) return fmt::format("the energy is {}", seen.energy);
+    if (!std::isfinite(seen.length_error)) return fmt::format("the rod error is {}", seen.length_error);
+    return std::nullopt;
+}
+
+std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
+    return for_side(scene.preset, name,
+                    [&] { return side.replay ? make_replay(side.motion, *side.replay) : make_motion(side.motion); });
+}
+
 }  // namespace
 
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
-    const auto asks = [](const SideSpec& side) { return side.accuracy && side.track.is_none(); };
-    const auto chooser = asks(preset.a) || asks(preset.b) ? std::make_shared<MethodChooser>(preset, stop) : nullptr;
+    const bool chooses = preset.a.is_chosen() || preset.b.is_chosen();
+    const auto chooser = chooses ? std::make_shared<MethodChooser>(preset, stop) : nullptr;
     auto chosen = chooser ? chooser->choose(1, stop) : std::array<std::optional<Side>, 2>{};
     const auto side_of = [&](const SideSpec& spec, std::size_t place) {
         return chosen[place] ? std::move(*chosen[place])
@@ -96,9 +116,6 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
                 .a = side_of(preset.a, 0),
                 .b = side_of(preset.b, 1),
                 .samples = product(preset.duration_s, preset.sample_hz)->numerator,
-                .members = {},
-                .fps = {},
-                .frames = {},
                 .chooser = chooser};
     scene.fps = preset.video.fps ? *preset.video.fps : *product(preset.sample_hz, preset.video.speed.constant);
     scene.frames = frame_times(preset, scene.fps, scene.samples);
@@ -125,32 +142,6 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     return scene;
 }
 
-namespace {
-
-/// The first number of the observation that is not finite, in words; nothing if all are.
-std::optional<std::string> not_finite(const Observation& seen, bool has_angles) {
-    for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
-        const auto& bob = seen.bobs[i];
-        const auto name = [&](std::string_view symbol, double value) {
-            return fmt::format("{}{} is {}", symbol, i + 1, value);
-        };
-        if (has_angles && !std::isfinite(bob.omega)) return name("the rate ω", bob.omega);
-        if (has_angles && !std::isfinite(bob.theta)) return name("the angle θ", bob.theta);
-        if (!std::isfinite(bob.x) || !std::isfinite(bob.y)) return name("the place of mass ", bob.x + bob.y);
-        if (!std::isfinite(bob.vx) || !std::isfinite(bob.vy)) return name("the velocity of mass ", bob.vx + bob.vy);
-    }
-    if (!std::isfinite(seen.energy)) return fmt::format("the energy is {}", seen.energy);
-    if (!std::isfinite(seen.length_error)) return fmt::format("the rod error is {}", seen.length_error);
-    return std::nullopt;
-}
-
-std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
-    return for_side(scene.preset, name,
-                    [&] { return side.replay ? make_replay(side.motion, *side.replay) : make_motion(side.motion); });
-}
-
-}  // namespace
-
 SideRun::SideRun(const Scene& scene, const Side& side, char name)
     : scene_(scene),
       side_(side),
@@ -163,10 +154,6 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
 std::optional<double> SideRun::energy_error(const Observation& seen) const {
     if (!side_.has_energy_error) return std::nullopt;
     return seen.energy_change / proportion_.energy;
-}
-
-std::optional<double> SideRun::mean_energy(const Observation& seen) const {
-    return energy_ ? energy_->at(scene_.time(now_), seen.energy) : seen.energy;
 }
 
 RunFailure SideRun::broken(const std::string& what) const {
@@ -182,10 +169,6 @@ void SideRun::watch(const Observation& seen) {
     if (seen.length_error > proportion_.reach)
         throw broken(fmt::format("the length of a rod has an error of {:.3g} m, more than the length of the chain",
                                  seen.length_error));
-}
-
-Observation SideRun::next(const std::atomic<bool>& stop) {
-    return advance_to({now_.sample + 1}, stop);
 }
 
 Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {

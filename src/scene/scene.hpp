@@ -137,9 +137,9 @@ struct Scene {
     Preset preset;
     Side a, b;
     long samples;                            // of the run: 0 … samples, inclusive
-    std::vector<MotionSpec> members;         // of an ensemble: from a to b in equal steps of all numbers, inclusive
-    Rational fps;                            // frames/s of the video
-    FrameTimes frames;                       // the moments they show
+    std::vector<MotionSpec> members = {};    // of an ensemble: from a to b in equal steps of all numbers, inclusive
+    Rational fps = {};                       // frames/s of the video
+    FrameTimes frames = {};                  // the moments they show
     std::shared_ptr<MethodChooser> chooser;  // if a side requires an accuracy
     std::shared_ptr<const Certificate> certificate{};  // if the preset requires it (scene/certificate.hpp)
 
@@ -213,7 +213,7 @@ public:
 
     /// Returns sample 0, then 1, 2, … Throws RunFailure with time and quantity if a number is not finite, errors of
     /// energy or rods are far too large, or a step fails; exit 130 soon after `stop` is set.
-    Observation next(const std::atomic<bool>& stop);
+    Observation next(const std::atomic<bool>& stop) { return advance_to({now_.sample + 1}, stop); }
     /// Advances to a moment up to the next sample. With a fixed step, Motion::advance_within() says what that gives.
     /// Throws as next().
     Observation advance_to(const Moment& moment, const std::atomic<bool>& stop);
@@ -221,7 +221,9 @@ public:
     /// Relative (analysis/watched_motion.hpp); nothing if damping reduces the energy, so that its change is no error.
     std::optional<double> energy_error(const Observation& seen) const;
     /// J; for a driven side the mean over the last drive period, once one is over.
-    std::optional<double> mean_energy(const Observation& seen) const;
+    std::optional<double> mean_energy(const Observation& seen) const {
+        return energy_ ? energy_->at(scene_.time(now_), seen.energy) : seen.energy;
+    }
     Effort effort() const { return motion_->effort(); }
 
 private:
@@ -258,7 +260,7 @@ public:
     }
 
     /// Returns sample 0, then 1, 2, … For a single pendulum, side b is a copy of side a. Throws as SideRun does.
-    PairState next(const std::atomic<bool>& stop);
+    PairState next(const std::atomic<bool>& stop) { return advance_to({sample_ + 1}, stop); }
     PairState advance_to(const Moment& moment, const std::atomic<bool>& stop);
 
     Effort effort_a() const { return a_.effort(); }

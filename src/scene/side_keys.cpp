@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -44,10 +45,6 @@ std::vector<SideKey> keys_of(SideSpec side) {
         if (!key.numbers.empty() || !key.text.empty()) all.push_back(std::move(key));
     });
     return all;
-}
-
-bool have_equal_values(const SideKey& one, const SideKey& other) {
-    return one.numbers == other.numbers && one.text == other.text;
 }
 
 }  // namespace
@@ -92,36 +89,31 @@ std::string caption_of(const Field& field) {
     return words;
 }
 
-std::string SideKey::name() const {
-    return fmt::format("{}{}{}", place, place.empty() || key.empty() ? "" : " ", key);
-}
-
 std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b) {
-    using Name = std::pair<std::string_view, std::string_view>;  // place and key
-    using Index = std::map<Name, const SideKey*>;
-    const auto of_a = keys_of(a), of_b = keys_of(b);
-    const auto index_of = [](const std::vector<SideKey>& keys) {
-        Index index;
-        for (const auto& key : keys) index.emplace(Name(key.place, key.key), &key);
-        return index;
-    };
-    const auto in_a = index_of(of_a), in_b = index_of(of_b);
     std::vector<KeyDifference> all;
-    const auto counterpart_of = [](const SideKey& key, const Index& others) -> std::optional<SideKey> {
-        const auto other = others.find(Name(key.place, key.key));
-        return other == others.end() ? std::nullopt : std::optional(*other->second);
-    };
-    // if the other side lacks the entry, its keys are not listed one by one
-    const auto is_of_entry = [](const SideKey& key, const Index& others) {
-        return !key.place.empty() && !key.key.empty() && !others.contains(Name(key.place, ""));
-    };
-    for (const auto& key : of_a) {
-        const auto other = counterpart_of(key, in_b);
-        if (other ? !have_equal_values(key, *other) : !is_of_entry(key, in_b)) all.push_back({key, other});
+    std::map<std::string, std::size_t> indices;  // of names
+    for (auto& key : keys_of(a)) {
+        indices.emplace(key.name(), all.size());
+        all.push_back({std::move(key), std::nullopt});
     }
-    for (const auto& key : of_b)
-        if (!counterpart_of(key, in_a) && !is_of_entry(key, in_a)) all.push_back({std::nullopt, key});
-    return all;
+    for (auto& key : keys_of(b)) {
+        const auto [index, is_new] = indices.emplace(key.name(), all.size());
+        if (is_new)
+            all.push_back({std::nullopt, std::move(key)});
+        else
+            all[index->second].b = std::move(key);
+    }
+    // of an entry that only one side has, the keys are not listed one by one
+    const auto is_listed = [&](const KeyDifference& one) {
+        if (one.a && one.b) return one.a->numbers != one.b->numbers || one.a->text != one.b->text;
+        const auto& key = one.any();
+        if (key.place.empty() || key.key.empty()) return true;
+        const auto entry = indices.find(key.place);
+        return entry != indices.end() && all[entry->second].a && all[entry->second].b;
+    };
+    std::vector<KeyDifference> differing;
+    std::ranges::copy_if(all, std::back_inserter(differing), is_listed);
+    return differing;
 }
 
 std::string KeyDifference::words(bool of_b) const {

@@ -2,6 +2,8 @@
 
 #include "scene/member.hpp"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <span>
 #include <string>
@@ -21,7 +23,7 @@ struct SideKey {
     bool is_of_part = false;         // of a constraint, a spring or an attraction
 
     /// "spring 1 stiffness_N_per_m"
-    std::string name() const;
+    std::string name() const { return fmt::format("{}{}{}", place, place.empty() || key.empty() ? "" : " ", key); }
 };
 
 /// A key in which two sides differ, with its value on each; nothing for a side without it.

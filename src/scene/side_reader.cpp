@@ -95,9 +95,8 @@ bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const s
 
 /// A chain, with the properties of rigid-body chains.
 void read_physical_chain(TomlReader& table, SideSpec& side) {
-    const auto& rods = side.physical.rod_mass_kg;
-    const bool has_rods = table.has("rod_mass_kg") || !table.elements_of("rod_mass_kg").empty() ||
-                          std::any_of(rods.begin(), rods.end(), [](const Quad& mass) { return mass > 0; });
+    const bool has_rods =
+        table.has("rod_mass_kg") || !table.elements_of("rod_mass_kg").empty() || !is_zero(side.physical.rod_mass_kg);
     chain_fields(table, side, has_rods ? not_negative : positive);
     if (table.has("center_m")) side.physical.center_m.resize(side.links());
     physical_fields(table, side.physical);
@@ -199,7 +198,7 @@ void SideSpec::set_links(std::size_t links) {
     length_m.assign(links, 1);
     angle_deg.assign(links, 90);
     omega_deg_per_s.assign(links, 0);
-    for (const auto list : PhysicalSpec::lists) (physical.*list).assign(links, 0);
+    for (const auto& property : PhysicalSpec::properties) (physical.*property.member).assign(links, 0);
     physical.center_m.clear();
 }
 
@@ -207,18 +206,18 @@ bool is_zero(const std::vector<Quad>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](const Quad& value) { return value == 0; });
 }
 
-bool PhysicalSpec::has_coulomb() const {
-    return !is_zero(joint_coulomb_N_m);
+bool PhysicalSpec::has(const Property& property) const {
+    const auto& values = this->*property.member;
+    return property.absent.empty() ? !is_zero(values) : !values.empty();
 }
 
 bool PhysicalSpec::is_none() const {
-    return center_m.empty() && torques.empty() && pivot.amplitude_m == 0 &&
-           std::ranges::all_of(lists, [&](auto list) { return is_zero(this->*list); });
+    return torques.empty() && pivot.amplitude_m == 0 &&
+           std::ranges::none_of(properties, [&](const Property& property) { return has(property); });
 }
 
 bool differ_in_kind(const SideSpec& a, const SideSpec& b) {
-    if (a.particles.empty() != b.particles.empty()) return true;
-    return a.particles.empty() ? a.links() != b.links() : a.particles.size() != b.particles.size();
+    return a.particles.empty() != b.particles.empty() || a.masses() != b.masses();
 }
 
 void read_release(TomlReader& table, SideSpec& side, bool is_physical) {

@@ -27,22 +27,16 @@ void read_file(TrackSpec& spec, const std::string& preset_path, bool from_comman
 
 void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side) {
     if (side.track.is_none()) return;
-    auto table = side_table.inner(side_table.read_table("track"), fmt::format("[{}.track]", side_table.bare_name()));
-    std::string_view key = "file";
-    try {
+    auto table = side_table.inner("track");
+    const bool is_read = table.guarded("file", [&] {
         if (!side.particles.empty() || side.links() != 2)
             throw bad_input("a track needs two links; the side has {}",
                             side.particles.empty()
                                 ? fmt::format("{} link{}", side.links(), side.links() == 1 ? "" : "s")
                                 : "particles");
-        read_file(side.track, document.path, table.from_command_line(key));
-        key = "start_s";
-        replay_of(side.track);
-    } catch (const Error& error) {
-        const auto key_error = table.error(key, "{}", error.what());
-        if (error.code() != ExitCode::bad_input) throw Error(error.code(), error.what());
-        table.refuse(key_error, key);
-    }
+        read_file(side.track, document.path, table.from_command_line("file"));
+    });
+    if (is_read) table.guarded("start_s", [&] { replay_of(side.track); });
 }
 
 Replay replay_of(const TrackSpec& spec) {

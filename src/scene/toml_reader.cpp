@@ -62,9 +62,9 @@ TomlReader::TomlReader(const toml::table* table, std::string name, std::string p
 /// The source of the key's name, with the command line option that gave it; nothing if the key is absent.
 std::optional<toml::source_region> TomlReader::source_of(std::string_view key) const {
     if (!table_) return std::nullopt;
-    for (auto&& [name, node] : *table_)
-        if (name.str() == key) return is_typed(node) ? node.source() : name.source();
-    return std::nullopt;
+    const auto entry = table_->find(key);
+    if (entry == table_->end()) return std::nullopt;
+    return is_typed(entry->second) ? entry->second.source() : entry->first.source();
 }
 
 std::string TomlReader::place(std::string_view key) const {
@@ -83,20 +83,9 @@ ErrorPlace TomlReader::error_place(std::string_view key) const {
     return at.line > 0 ? ErrorPlace{at.line, at.column} : ErrorPlace{};
 }
 
-void TomlReader::note(std::string_view key, const Error& error) const {
-    const auto* known = dynamic_cast<const KeyError*>(&error);
-    // errors in a title are independent of the tables
-    errors_->add({error.what(), error_place(key), name_.empty() ? std::string(key) : group_, std::string(key),
-                  known ? known->beside() : std::nullopt});
-}
-
 void TomlReader::refuse(const KeyError& error, std::string_view key) const {
     if (!errors_) throw KeyError(error);
-    errors_->add({error.what(), error.place(), group_, std::string(key), error.beside()});
-}
-
-std::string TomlReader::subject(std::string_view key) const {
-    return name_.empty() ? std::string(key) : fmt::format("{} {}", name_, key);
+    errors_->add({error.what(), error.place, group_, std::string(key), error.beside});
 }
 
 const toml::node* TomlReader::find(std::string_view key) {
@@ -114,10 +103,6 @@ std::vector<std::pair<std::string_view, std::size_t>> TomlReader::elements_of(st
             elements.emplace_back(name.str(), *element);
     }
     return elements;
-}
-
-bool TomlReader::has(std::string_view key) {
-    return find(key) != nullptr;
 }
 
 bool TomlReader::from_command_line(std::string_view key) {
@@ -165,10 +150,9 @@ void TomlReader::finish() const {
     for (auto&& [name, node] : *table_) {
         if (known_.contains(name.str())) continue;
         const std::vector<std::string_view> keys(known_.begin(), known_.end());
-        const auto meant = nearest(name.str(), keys);
         const auto message = fmt::format(
             "{}: {} no \"{}\"; {}", place(name.str()), name_.empty() ? "a preset has" : name_ + " has", name.str(),
-            meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("it has {}", fmt::join(keys, ", ")));
+            did_you_mean("", name.str(), keys, fmt::format("it has {}", fmt::join(keys, ", "))));
         const auto hidden = hidden_.find(name.str());
         refuse({message, error_place(name.str()),
                 hidden == hidden_.end() ? std::nullopt : std::optional(beside(hidden->second))},
@@ -177,7 +161,7 @@ void TomlReader::finish() const {
 }
 
 void TomlReader::table(std::string_view key, const std::function<void(KeyVisitor&)>& fields) {
-    auto inside = inner(read_table(key), fmt::format("[{}.{}]", bare_name(), key));
+    auto inside = inner(key);
     fields(inside);
     inside.finish();
 }

@@ -69,7 +69,7 @@ public:
     TomlReader(const toml::table* table, std::string name, std::string path, const TomlTexts& texts,
                const Typeface* typeface = &built_in_typeface, KeyErrors* errors = nullptr);
 
-    bool has(std::string_view key);
+    bool has(std::string_view key) { return find(key) != nullptr; }
     /// Elements of a list given on the command line: the keys "mass_kg[1]", 1.
     std::vector<std::pair<std::string_view, std::size_t>> elements_of(std::string_view key) const;
     /// Whether the key was given on the command line, and not in the preset's file.
@@ -83,6 +83,18 @@ public:
     void check_together(const std::function<void()>& check) const;
     /// Records the error, or throws it.
     void refuse(const KeyError& error, std::string_view key) const;
+    /// Calls read(), whose errors in the input are errors of the key. Returns whether there was none.
+    template <class Read>
+    bool guarded(std::string_view key, const Read& read) const {
+        try {
+            read();
+            return true;
+        } catch (const Error& thrown) {
+            if (thrown.code() != ExitCode::bad_input) throw;
+            refuse(error(key, "{}", thrown.what()), key);
+            return false;
+        }
+    }
     /// The other key of an error, if it is given in this table; otherwise empty: it may be given elsewhere, or
     /// misspelt.
     std::string beside(std::string_view key) const {
@@ -101,6 +113,8 @@ public:
     std::string_view bare_name() const {
         return name_.empty() ? name_ : std::string_view(name_).substr(1, name_.size() - 2);
     }
+    /// A reader of the table [NAME.key].
+    TomlReader inner(std::string_view key) { return inner(read_table(key), fmt::format("[{}.{}]", bare_name(), key)); }
     /// A reader of an inner table, called `name` in errors.
     TomlReader inner(const toml::table* table, std::string name) const {
         return {table, std::move(name), path_, *texts_, typeface_, errors_};
@@ -118,13 +132,14 @@ public:
     /// "path:line:column" of a key, the command line option that gave it, or the path if it is absent.
     [[nodiscard]] std::string place(std::string_view key) const;
     ErrorPlace error_place(std::string_view key) const;
-    std::string subject(std::string_view key) const;
+    std::string subject(std::string_view key) const {
+        return name_.empty() ? std::string(key) : fmt::format("{} {}", name_, key);
+    }
     const TomlTexts& texts() const { return *texts_; }
 
 private:
     const toml::node* find(std::string_view key);
     std::optional<toml::source_region> source_of(std::string_view key) const;
-    void note(std::string_view key, const Error& error) const;
     bool counts(const Field& field);
     void require(const Field& field, bool given) const;
     bool is_ruled_out(const Field& field) const;

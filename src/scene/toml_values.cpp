@@ -38,9 +38,8 @@ public:
         if (field_.is_drawn) table_.require_drawable(field_.key, into);
         const auto& names = field_.names;
         if (names.empty() || std::find(names.begin(), names.end(), into) != names.end()) return;
-        const auto meant = nearest(into, names);
         throw error("must be {}; it is \"{}\"{}", listed(names), into,
-                    meant ? fmt::format("; did you mean \"{}\"?", *meant) : "");
+                    did_you_mean("; ", into, {names.begin(), names.end()}));
     }
 
     void read(const toml::node& node, int& into) const {
@@ -271,22 +270,17 @@ public:
     /// "pendulums" and the strips, in order.
     void read(const toml::node& node, Panels& into) const {
         const auto panels = texts_in(node);
-        const auto& names = names_of<StripKind>;
         into = {false, {}};
         for (const auto& panel : panels) {
-            if (panel == "pendulums") {
-                into.pendulums = true;
-                continue;
-            }
-            if (std::find(names.begin(), names.end(), panel) == names.end())
-                throw error("may contain \"pendulums\", \"{}\"; \"{}\" is none of them", fmt::join(names, "\", \""),
-                            panel);
+            if (std::ranges::find(field_.names, panel) == field_.names.end())
+                throw error("may contain \"{}\"; \"{}\" is none of them", fmt::join(field_.names, "\", \""), panel);
             const auto kind = value_named<StripKind>(panel);
-            if (std::find(into.strips.begin(), into.strips.end(), kind) == into.strips.end())
+            if (panel == "pendulums")
+                into.pendulums = true;
+            else if (std::ranges::find(into.strips, kind) == into.strips.end())
                 into.strips.push_back(kind);
         }
-        if (panels.empty())
-            throw error("must contain at least one of \"pendulums\", \"{}\"", fmt::join(names, "\", \""));
+        if (panels.empty()) throw error("must contain at least one of \"{}\"", fmt::join(field_.names, "\", \""));
     }
 
 private:
@@ -427,20 +421,21 @@ std::string significant_digits(std::string_view decimal) {
 
 void TomlReader::key(const Field& field, const KeyMember& member) {
     const auto read = [&]<class M>(M into) {
+        constexpr bool is_choice = std::is_same_v<M, ChosenName>;
         const bool does_count = counts(field);
         const auto* node = does_count ? find(field.key) : nullptr;
-        if constexpr (std::is_same_v<M, ChosenName>) {
+        if constexpr (is_choice) {
             std::string name(into.name);
             if (node) ValueReader(*this, {.key = field.key, .names = into.names}).read(*node, name);
             into.choose(static_cast<std::size_t>(std::ranges::find(into.names, name) - into.names.begin()));
         } else if constexpr (is_optional<std::remove_pointer_t<M>>) {
-            if (!does_count) return into->reset();
+            if (!does_count) into->reset();
             if (node) {
                 typename std::remove_pointer_t<M>::value_type value{};
                 ValueReader(*this, field).read(*node, value);
                 *into = std::move(value);
             }
-            require(field, into->has_value());
+            if (does_count) require(field, into->has_value());
         } else {
             if (node) {
                 auto value = *into;
@@ -450,23 +445,24 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
             if constexpr (requires { into->empty(); })
                 if (does_count) require(field, !into->empty());
         }
+        for (const auto& [key, element] : elements_of(field.key)) {
+            auto one = field;
+            one.key = key;
+            if constexpr (is_choice)
+                throw error(key, "is not an element of a list of numbers");
+            else
+                ValueReader(*this, one).read_element(*find(key), element, *into);
+        }
     };
     try {
         std::visit(read, member);
-        for (const auto& given : elements_of(field.key)) {  // clang 14 cannot capture structured bindings
-            auto one = field;
-            one.key = given.first;
-            const auto put = [&]<class M>(M into) {
-                if constexpr (!std::is_same_v<M, ChosenName>)
-                    ValueReader(*this, one).read_element(*find(one.key), given.second, *into);
-                else
-                    throw error(one.key, "is not an element of a list of numbers");
-            };
-            std::visit(put, member);
-        }
     } catch (const Error& error) {
         if (!errors_ || error.code() != ExitCode::bad_input) throw;
-        note(field.key, error);
+        const auto* known = dynamic_cast<const KeyError*>(&error);
+        const std::string key(field.key);
+        // errors in a title are independent of the tables
+        errors_->add(
+            {error.what(), error_place(key), name_.empty() ? key : group_, key, known ? known->beside : std::nullopt});
     }
 }
 

@@ -50,9 +50,14 @@ Json any_of(std::initializer_list<Json> schemas) {
 
 using L = const ListedField&;
 
-Json number_schema(L field) {
-    return within(field.bounds);
-}
+constexpr auto number_schema = [](L field) { return within(field.bounds); };
+constexpr auto ratio_schema = [](L field) { return ratio_within(field.bounds); };
+constexpr auto pair_schema = [](L field) { return list_schema(within(field.bounds), 2, 2); };
+constexpr auto truth_schema = [](L) { return Json{{"type", "boolean"}}; };
+constexpr auto color_schema = [](L) { return Json{{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}}; };
+template <int minimum>
+constexpr auto texts_schema =
+    [](L field) { return list_schema(text_schema(field), minimum, field.is_drawn ? max_texts : 0); };
 
 Json whole_schema(L field) {
     auto schema = within(field.bounds);
@@ -60,36 +65,15 @@ Json whole_schema(L field) {
     return schema;
 }
 
-Json ratio_schema(L field) {
-    return ratio_within(field.bounds);
-}
-
 Json numbers_schema(L field) {
     const auto number = within(field.bounds);
     return field.maximum > 0 ? list_schema(number, 1, field.maximum) : any_of({number, list_schema(number, 1, 0)});
-}
-
-Json pair_schema(L field) {
-    return list_schema(within(field.bounds), 2, 2);
 }
 
 Json whole_pair_schema(L field) {
     auto whole = within(field.bounds);
     whole["multipleOf"] = 1;
     return list_schema(whole, 2, 2);
-}
-
-template <int minimum>
-Json texts_schema(L field) {
-    return list_schema(text_schema(field), minimum, field.is_drawn ? max_texts : 0);
-}
-
-Json color_schema(L) {
-    return {{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
-}
-
-Json truth_schema(L) {
-    return {{"type", "boolean"}};
 }
 
 Json speed_schema(L field) {

@@ -148,22 +148,22 @@ struct Speed {
     }
 };
 
+struct SideSpec;
+
 /// A member of an ensemble. Numbers that it does not give go from side a to side b in equal steps.
 struct Release {
     std::vector<Quad> angle_deg, mass_kg, length_m;  // one per link; empty if not given
     std::optional<Color> color;
 
-    /// Its lists with their keys, those of SideSpec, and their symbols in pictures.
+    /// Its lists with their keys, those of a side, and their symbols in pictures.
     struct List {
         std::string_view key;
         std::vector<Quad> Release::*member;
+        std::vector<Quad> SideSpec::*of_side;
         std::string_view symbol, unit;
     };
     static const std::array<List, 3> lists;
 };
-inline constexpr std::array<Release::List, 3> Release::lists{{{"angle_deg", &Release::angle_deg, "θ", "°"},
-                                                              {"mass_kg", &Release::mass_kg, "m", " kg"},
-                                                              {"length_m", &Release::length_m, "l", " m"}}};
 
 /// The members of an ensemble: a number of them from side a to side b, or a list.
 struct Members {
