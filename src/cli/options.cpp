@@ -19,7 +19,7 @@ CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string
 
 CLI::Option* add_set_option(CLI::App& command, PresetOptions& options) {
     return add_value(command, "--set", options.sets, "KEY=VALUE",
-                     "Another value for a key, in TOML; text needs no quotes:\n"
+                     "Another value for a key, in TOML; a word needs no quotes:\n"
                      "--set video.theme=light --set 'system.mass_kg[1]=2'\n"
                      "--set system.force.NAME.length_m=1.2")
         ->expected(1)

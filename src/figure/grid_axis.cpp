@@ -102,6 +102,10 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
     if (!exists()) return;
     if (!labels.empty() && labels.size() != values->texts.size())
         throw table.error("labels", "must name the {} values; there are {}", values->texts.size(), labels.size());
+    if (values)
+        for (auto text = values->texts.begin(); text != values->texts.end(); ++text)
+            if (std::find(values->texts.begin(), text, *text) != text)
+                throw table.error("values", "must differ; {} is there twice", *text);
     if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
     if (is_setting()) return find_settings(table, pair);
     find_number(reader, table, pair);

@@ -236,11 +236,12 @@ Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
     const auto& chart = figure.chart;
     const auto page = page_of(figure, trials);
     constexpr double most_growth = 3;
+    constexpr float readable = 90;  // of a panel, px: as wide as some ten digits at its ticks
     for (double growth = 1;; growth += 0.1) {
         const auto layout = layout_of(chart, growth);
         auto made = compose(page, layout.picture, theme_named(chart.theme), layout.scale, layout.unit);
         const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
-        if (made.notes.empty() || !may_grow) return made;
+        if (!may_grow || (made.notes.empty() && smallest_side(made.panels) >= readable)) return made;
     }
 }
 

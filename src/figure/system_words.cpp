@@ -144,8 +144,9 @@ std::string released_words(const SideSpec& side) {
 }
 
 std::string links_words(const SideSpec& side) {
-    return fmt::format("links of {} m and {} kg, g = {} m/s²", numbers_words(side.length_m),
-                       numbers_words(side.mass_kg), static_cast<double>(side.gravity_m_per_s2));
+    return fmt::format("{} of {} m and {} kg, g = {} m/s²", side.links() == 1 ? "a link" : "links",
+                       numbers_words(side.length_m), numbers_words(side.mass_kg),
+                       static_cast<double>(side.gravity_m_per_s2));
 }
 
 std::string pair_subtitle(const Scene& scene, const SweptKeys& swept, const std::string& difference) {

@@ -85,14 +85,14 @@ void StripLayer::draw_text(const TimeMark& mark, float& foot, DisplayList& list)
     const float width = text_width(text, size), right = area.right - x - 2 * gap, left = x - area.left - 2 * gap;
     const bool is_right = right >= std::min(width, left);
     const auto rows = wrapped(text, size, Weight::regular, std::clamp(is_right ? right : left, 5 * size, area.width()));
-    const float widest_line = widest(rows, size);
-    const float from = std::clamp(is_right ? x + gap : x - gap - widest_line, area.left + 2 * t,
-                                  std::max(area.left + 2 * t, area.right - widest_line - 2 * t));
     for (auto words = rows.rbegin(); words != rows.rend(); ++words, foot -= 1.2f * size) {
+        const float row = text_width(*words, size), first = area.left + 2 * t;
+        const float from =
+            std::clamp(is_right ? x + gap : x - gap - row, first, std::max(first, area.right - row - 2 * t));
         // no grid line crosses the text
         if (!state_.scene.preset.video.transparent)
-            list.push_back(Box{from - 4 * t, foot - 0.9f * size, from + text_width(*words, size) + 4 * t,
-                               foot + 0.28f * size, 0, theme_.background.with_alpha(0.85f)});
+            list.push_back(Box{from - 4 * t, foot - 0.9f * size, from + row + 4 * t, foot + 0.28f * size, 0,
+                               theme_.background.with_alpha(0.85f)});
         list.push_back(label(*words, {from, foot}, size, theme_.text));
     }
 }

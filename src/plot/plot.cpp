@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace doppel {
 namespace {
@@ -81,6 +82,12 @@ Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& s
 
 }  // namespace
 
+float smallest_side(const std::vector<PlotRanges>& panels) {
+    float smallest = std::numeric_limits<float>::infinity();
+    for (const auto& [x, y, right] : panels) smallest = std::min({smallest, x.to - x.from, y.from - y.to});
+    return smallest;
+}
+
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale, std::optional<float> unit) {
     Page made{.size = size, .scale = scale, .items = {}};
     for (;; made.scale *= 0.8f) {
@@ -103,6 +110,7 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         page.title.draw({sheet.left, sheet.top}, made.items);
         page.subtitle.draw({sheet.left, sheet.top + page.title.height()}, made.items);
         if (!figure.panels.empty()) made.panels = draw_panels(figure, page.body, style, made.items);
+        if (smallest_side(made.panels) < drawn_side && made.scale > min_scale) continue;
         float top = page.captions_top;
         for (const TextBlock& caption : page.captions) {
             caption.draw({sheet.left, top}, made.items);

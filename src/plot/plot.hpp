@@ -99,4 +99,9 @@ Picture cell_picture(const HeatMap& map, const Theme& theme);
 /// legend, which covers no data, or left out (tick labels).
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale = 1, std::optional<float> unit = {});
 
+/// Smaller panels are not drawn, px.
+inline constexpr float drawn_side = 8;
+/// The smallest width or height of these panels, px.
+float smallest_side(const std::vector<PlotRanges>& panels);
+
 }  // namespace doppel

@@ -120,6 +120,46 @@ TEST(Chart, ResolvedReadsBackToTheSame) {
     EXPECT_EQ(read_figure(source).resolved(), figure.resolved());
 }
 
+std::vector<Label> texts_of(const Page& page) {
+    std::vector<Label> texts;
+    for (const auto& item : page.items)
+        if (const auto* text = std::get_if<Label>(&item)) texts.push_back(*text);
+    return texts;
+}
+
+/// A journal's column.
+TEST(Chart, OnPaperAllFormatsHaveTheSameTextsAndNoneIsLeftOut) {
+    for (const auto& [name, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+             {"fig6", {"scene.duration_s=2"}},
+             {"fig2-right", {"grid.x.step=20", "scene.duration_s=0.1"}},
+             {"drift", {"series.duration_s=10", "series.points_per_decade=2"}}}) {
+        auto with = arguments;
+        with.emplace_back("chart.width_cm=8.6");
+        const auto trials = computed(figure_of(name, with));
+        const auto drawn = [&](const std::string& format) {
+            auto all = with;
+            all.push_back("chart.format=" + format);
+            return compose_figure(figure_of(name, all), trials);
+        };
+        const auto png = drawn("png"), pdf = drawn("pdf");
+        EXPECT_TRUE(png.notes.empty()) << name;
+        EXPECT_GE(smallest_side(png.panels), 90) << name;
+        const auto texts = texts_of(png), of_pdf = texts_of(pdf);
+        ASSERT_EQ(texts.size(), of_pdf.size()) << name;
+        for (std::size_t i = 0; i < texts.size(); ++i) {
+            EXPECT_EQ(texts[i].text, of_pdf[i].text) << name;
+            EXPECT_NEAR(texts[i].size, of_pdf[i].size, 1e-3) << texts[i].text;
+            EXPECT_NEAR(texts[i].anchor.x, of_pdf[i].anchor.x, 1e-2) << texts[i].text;
+            EXPECT_NEAR(texts[i].anchor.y, of_pdf[i].anchor.y, 1e-2) << texts[i].text;
+            // 20 px are the 8 pt of font_pt; grey curves, rules, captions have 0.9 of it, numbers 18.5 px
+            EXPECT_GE(texts[i].size, 0.9f * 20 - 0.01f) << texts[i].text;
+        }
+    }
+    // with a height of its own, it keeps that
+    const auto low = figure_of("fig6", {"scene.duration_s=2", "chart.width_cm=8.6", "chart.height_cm=4"});
+    EXPECT_EQ(compose_figure(low, computed(low)).size, layout_of(low.chart).picture);
+}
+
 TEST(Chart, WithOnlyChaoticOrbitsSaysThatNoneIsRegular) {
     std::string words;
     for (const auto& label : labels_of(figure_of("links", {"grid.x.to=3", "grid.exponent_duration_s=100"})))

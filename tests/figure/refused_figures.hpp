@@ -196,6 +196,10 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{
         "grid", "[grid.x]\nkey = \"setting\"\nfrom = 1", ": [grid.x] points", {"must be the number of settings"}},
     RefusedFigure{"grid",
+                  "[grid.x]\nkey = \"angle_deg[0]\"\nvalues = [30, 60, 30]",
+                  ":5:1: [grid.x] values",
+                  {"must differ; 30 is there twice"}},
+    RefusedFigure{"grid",
                   "[grid.x]\nkey = \"setting\"\nfrom = 1\nto = 31\npoints = 2",
                   ":5:1: [grid.x] from",
                   {"leave 1 to 1", "30 s"}},
