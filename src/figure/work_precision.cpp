@@ -123,12 +123,12 @@ public:
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         const auto problems = merged_studies(numbers);
         for (std::size_t p = 0; p < problems.size(); ++p)
-            for (const auto& [solver, outcomes] : problems[p])
-                for (const auto& outcome : outcomes) {
+            for (const auto& study : problems[p])
+                for (const auto& outcome : study.outcomes) {
                     const auto add = [&](const auto& error) {
-                        add_row(table, problems_.all[p].name, name_of(solver.model), solver.name(), outcome.setting,
-                                error, outcome.energy_error, outcome.length_error, outcome.cpu_s, outcome.evaluations,
-                                outcome.steps);
+                        add_row(table, problems_.all[p].name, name_of(study.solver.model), study.solver.name(),
+                                outcome.setting, error, outcome.energy_error, outcome.length_error, outcome.cpu_s,
+                                outcome.evaluations, outcome.steps);
                     };
                     outcome.failed() ? add("failed") : add(outcome.error);
                 }
