@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 namespace doppel {
 namespace {
@@ -63,8 +62,12 @@ Moment FrameTimes::at(long frame) const {
 }
 
 long FrameTimes::first_from(const Moment& moment) const {
-    const auto frames = std::views::iota(0L, count);
-    return *std::ranges::lower_bound(frames, moment, {}, [&](long frame) { return at(frame); });
+    long low = 0, high = count;
+    while (low < high) {
+        const long middle = low + (high - low) / 2;
+        at(middle) < moment ? low = middle + 1 : high = middle;
+    }
+    return low;
 }
 
 double film_time(const VideoSpec& video, double time) {
