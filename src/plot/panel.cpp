@@ -110,9 +110,9 @@ LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, co
         held = held.grown(-right, -down);
         area = {area.left + right, area.top + down, area.left + right + side, area.top + down + side};
     }
-    if (area.width() < drawn_side || area.height() < drawn_side) return given;
     ranges.x = placed(ranges.x, area.left, area.right);
     ranges.y = placed(ranges.y, area.bottom, area.top);
+    if (area.width() < drawn_side || area.height() < drawn_side) return given;
     if (ranges.right) ranges.right = placed(*ranges.right, area.bottom, area.top);
     const Panel panel{plot, ranges, area};
     if (plot.map) {
