@@ -28,7 +28,8 @@ struct ChartLayout {
 };
 
 /// With a size on paper, labels are `font_pt` high and a PNG has `dpi` pixels per inch. Otherwise a layout pixel is 3/4
-/// pt. Output made of paths is laid out on a grid too fine to see.
+/// pt. Output made of paths is laid out on a grid too fine to see. A height that is not given is `growth` times that in
+/// proportion.
 ChartLayout layout_of(const ChartSpec& chart, double growth = 1);
 
 /// The keys of [chart] common to all figures.
