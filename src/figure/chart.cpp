@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 namespace doppel {
 namespace {
@@ -104,6 +106,25 @@ ChartLayout layout_of(const ChartSpec& chart, double growth) {
                        .width_pt = width * pt};
     if (chart.width_cm) layout.unit = 1;
     return layout;
+}
+
+Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& theme) {
+    constexpr double most_growth = 3;
+    constexpr float readable_panel = 90, readable_text = 16;  // px, where labels have 20
+    const auto is_small = [](const PageItem& item) {
+        const auto* text = std::get_if<Label>(&item);
+        return text && text->size < readable_text;
+    };
+    std::optional<Page> with_small_text;
+    for (double growth = 1;; growth += 0.1) {
+        const auto layout = layout_of(chart, growth);
+        auto made = compose(figure, layout.picture, theme, layout.scale, layout.unit);
+        const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
+        const bool has_all = made.notes.empty() && smallest_side(made.panels) >= readable_panel;
+        if (has_all && std::ranges::none_of(made.items, is_small)) return made;
+        if (!may_grow) return std::move(with_small_text).value_or(std::move(made));
+        if (has_all && !with_small_text) with_small_text = std::move(made);
+    }
 }
 
 void read_chart(TomlReader& table, ChartSpec& chart) {

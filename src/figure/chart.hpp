@@ -1,5 +1,6 @@
 #pragma once
 
+#include "plot/plot.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <optional>
@@ -31,6 +32,9 @@ struct ChartLayout {
 /// pt. Output made of paths is laid out on a grid too fine to see. A height that is not given is `growth` times that in
 /// proportion.
 ChartLayout layout_of(const ChartSpec& chart, double growth = 1);
+/// The figure in this layout. Without a height of its own, it is as high on paper as all its texts need, and panels that
+/// can be read.
+Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& theme);
 
 /// The keys of [chart] common to all figures.
 void chart_fields(KeyVisitor& visit, ChartSpec& chart);

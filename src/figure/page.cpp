@@ -56,8 +56,7 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
     for (const auto& caption : drawn.captions) captions += fmt::format("<p dir=\"auto\">{}</p>\n", markup(caption));
     drawn.title = drawn.subtitle = "";  // they are text of the page
     drawn.captions.clear();
-    const auto layout = layout_of(figure.chart);
-    const auto page = compose(drawn, layout.picture, theme, layout.scale, layout.unit);
+    const auto page = compose_chart(figure.chart, drawn, theme);
     const auto [width, height] =
         std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
     auto whole = HtmlPage{.is_packed = true};

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <optional>
 #include <thread>
-#include <variant>
 
 namespace doppel {
 namespace {
@@ -233,26 +232,8 @@ private:
 
 }  // namespace
 
-/// Without a height of its own, a figure on paper is as high as all its texts need, and panels that can be read.
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
-    const auto& chart = figure.chart;
-    const auto page = page_of(figure, trials);
-    constexpr double most_growth = 3;
-    constexpr float readable_panel = 90, readable_text = 16;  // px, where labels have 20
-    const auto is_small = [](const PageItem& item) {
-        const auto* text = std::get_if<Label>(&item);
-        return text && text->size < readable_text;
-    };
-    std::optional<Page> with_small_text;
-    for (double growth = 1;; growth += 0.1) {
-        const auto layout = layout_of(chart, growth);
-        auto made = compose(page, layout.picture, theme_named(chart.theme), layout.scale, layout.unit);
-        const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
-        const bool has_all = made.notes.empty() && smallest_side(made.panels) >= readable_panel;
-        if (has_all && std::ranges::none_of(made.items, is_small)) return made;
-        if (!may_grow) return std::move(with_small_text).value_or(std::move(made));
-        if (has_all && !with_small_text) with_small_text = std::move(made);
-    }
+    return compose_chart(figure.chart, page_of(figure, trials), theme_named(figure.chart.theme));
 }
 
 std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options) {
