@@ -27,10 +27,6 @@ namespace {
 
 constexpr const char* unsettled_words = "parts of the run differ by more than chance: this ± may be too small";
 
-long frames_of(const Scene& scene) {
-    return schedule_of(scene).frames();
-}
-
 /// "H.264 veryfast, crf 18, yuv420p", "PNG sequence", "GIF".
 std::string format_words(const Scene& scene) {
     const auto& video = scene.preset.video;
@@ -102,15 +98,15 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
 }
 
 /// The work for half or ten times the accuracy, compared with the required one.
-std::vector<std::string> alternatives_of(const Scene& scene, Side Scene::*which, const std::atomic<bool>& stop) {
+std::vector<std::string> alternatives_of(const Scene& scene, char letter, const std::atomic<bool>& stop) {
     std::vector<std::string> all;
-    const auto& choice = *(scene.*which).choice;
+    const auto& choice = *scene.side(letter).choice;
     for (const auto& [factor, title] : {std::pair(2.0, "half"), {0.1, "ten times"}}) {
         if (factor * choice.accuracy > 1) continue;
         std::string words = "is out of reach";
         try {
             const auto alternatives = scene.chooser->choose(factor, stop);
-            const auto& alternative = *alternatives[which == &Scene::a ? 0 : 1];
+            const auto& alternative = *alternatives[letter == 'a' ? 0 : 1];
             // if round-off limits how long it is accurate, it determines the work, too
             words = alternative.choice->horizon < scene.samples
                         ? fmt::format("is kept up to {:.3g} s", scene.time(alternative.choice->horizon))
@@ -181,6 +177,9 @@ struct SceneCheck {
     std::optional<Needs> render;
     std::string why_not;  // if `render` is unknown
     std::array<OfSide, 2> sides;
+
+    OfSide& of(char letter) { return sides[letter == 'a' ? 0 : 1]; }
+    const OfSide& of(char letter) const { return sides[letter == 'a' ? 0 : 1]; }
 };
 
 SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
@@ -196,11 +195,11 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
     constexpr double patience = 2;  // limit for runs that only give information, s
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
-        auto& [forecast, alternatives] = check.sides[letter == 'a' ? 0 : 1];
+        auto& [forecast, alternatives] = check.of(letter);
         if (side.replay) continue;
         if (!check.simulation.at_least && check.simulation.seconds < patience)
             forecast = forecast_of(scene, side, stop);
-        if (side.choice) alternatives = alternatives_of(scene, letter == 'a' ? &Scene::a : &Scene::b, stop);
+        if (side.choice) alternatives = alternatives_of(scene, letter, stop);
     }
     return check;
 }
@@ -212,7 +211,7 @@ void print(const SceneCheck& check) {
     print_line("{}: {}", scene.preset.name, scene.preset.title);
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
-        const auto& [forecast, alternatives] = check.sides[letter == 'a' ? 0 : 1];
+        const auto& [forecast, alternatives] = check.of(letter);
         print_side(letter, side);
         if (forecast) print_forecast(scene, side, *forecast);
         for (const auto& alternative : alternatives) print_line("         {}", alternative);
@@ -229,8 +228,9 @@ void print(const SceneCheck& check) {
     const auto& every = scene.frames.stride;  // samples per frame
     const bool is_of_samples = every.is_whole() && every.numerator > 1;
     const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
-    print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(frames_of(scene)), video.size.width,
-               video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride, format_words(scene));
+    print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(schedule_of(scene).frames()),
+               video.size.width, video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride,
+               format_words(scene));
     print_line("  takes  {} {} to simulate, {}", estimate.at_least ? "more than" : "about",
                duration_text(estimate.seconds),
                check.render ? duration_text(check.render->seconds) + " to render"
@@ -253,17 +253,15 @@ Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
 }
 
 /// The JSON of one side; adds its warnings to `warnings`.
-Json side_json(const SceneCheck& check, std::size_t which, Json& warnings) {
+Json side_json(const SceneCheck& check, char letter, Json& warnings) {
     const auto& scene = check.scene;
-    const auto& side = which == 0 ? scene.a : scene.b;
-    const auto& track = which == 0 ? scene.preset.a.track : scene.preset.b.track;
+    const auto& side = scene.side(letter);
+    const auto& track = letter == 'a' ? scene.preset.a.track : scene.preset.b.track;
     if (side.replay) return {{"model", "track"}, {"why", side.why}, {"file", track.file}};
     auto json = method_json(scene, side);
     json["precision"] = side.motion.precision == Precision::in_quad ? "quad" : "double";
-    const auto& [forecast, alternatives] = check.sides[which];
-    const auto warn = [&](const std::string& words) {
-        warnings.push_back(fmt::format("side {}: {}", which == 0 ? 'a' : 'b', words));
-    };
+    const auto& [forecast, alternatives] = check.of(letter);
+    const auto warn = [&](const std::string& words) { warnings.push_back(fmt::format("side {}: {}", letter, words)); };
     json["forecast"] = forecast ? forecast_json(scene, side, *forecast) : Json(nullptr);
     if (forecast && !side.choice && forecast->error_s < scene.time(scene.samples))
         warn(error_words(side, forecast->error_s));
@@ -288,14 +286,13 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     const auto& video = scene.preset.video;
     const bool is_exact = !scene.a.method.adaptive && !scene.b.method.adaptive;
     auto json = heading_json(preset, scene.preset.title);
-    for (const char letter : scene.letters())
-        json[std::string(1, letter)] = side_json(check, letter == 'a' ? 0 : 1, warnings);
+    for (const char letter : scene.letters()) json[std::string(1, letter)] = side_json(check, letter, warnings);
     json["duration_s"] = scene.preset.duration_s.value();
     json["sample_hz"] = scene.preset.sample_hz.value();
     json["samples"] = scene.samples + 1;
     json["steps"] = check.simulation.steps;
     json["steps_are_exact"] = is_exact;
-    json["frames"] = frames_of(scene);
+    json["frames"] = schedule_of(scene).frames();
     json["fps"] = scene.fps.value();
     json["size"] = {video.size.width, video.size.height};
     json["format"] = name_of(video.format);
@@ -331,8 +328,9 @@ void print(const FigureCheck& check) {
     const auto layout = layout_of(figure.chart);
     constexpr double cm_per_pt = 2.54 / 72;
     print_line("{}: {}", figure.name, figure.title);
-    print_line("  kind   {}: {} {} in {} trials", figure.kind, grouped(std::lround(units)), figure.experiment->unit(),
-               grouped(static_cast<long>(figure.experiment->trials())));
+    const auto trials = static_cast<long>(figure.experiment->trials());
+    print_line("  kind   {}: {} {} in {} trial{}", figure.kind, grouped(std::lround(units)), figure.experiment->unit(),
+               grouped(trials), trials == 1 ? "" : "s");
     const auto format = name_of(figure.chart.format);
     if (figure.chart.width_cm || figure.chart.format != PictureFormat::png)
         print_line("  chart  {:.3g}×{:.3g} cm, {}, {}", cm_per_pt * layout.width_pt,

@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -225,21 +224,20 @@ ComparedPicture single_picture(const CompareOptions& options, const std::string&
     return picture;
 }
 
-/// The numbers of the frames to draw: those of the goldens, and those of --frames.
-std::set<long> frame_numbers(const Scene& scene, const CompareOptions& options) {
+/// The frames to draw: those whose numbers goldens have, and those of --frames.
+std::vector<long> frame_numbers(const Scene& scene, const CompareOptions& options) {
+    std::set<std::string> goldens;
+    for (const auto& name : png_names(options.expected)) goldens.insert(base_of(name));
     const auto schedule = schedule_of(scene);
-    std::set<long> numbers;
-    for (const auto& name : png_names(options.expected)) {
-        const auto base = base_of(name);
-        long number = 0;
-        std::from_chars(base.data(), base.data() + base.size(), number);
-        if (base == fmt::format("{:06}", number) && number < schedule.frames()) numbers.insert(number);
+    FrameRange wanted{0, 0};
+    if (!options.frames.empty()) {
+        const auto [first, last] = frames_of_option(options.frames);
+        check_run(scene, {.first = first, .last = last});
+        wanted = schedule.range(first, last);
     }
-    if (options.frames.empty()) return numbers;
-    const auto [first, last] = frames_of_option(options.frames);
-    check_run(scene, {.first = first, .last = last});
-    const auto wanted = schedule.range(first, last);
-    for (long number = wanted.first; number < wanted.last; ++number) numbers.insert(number);
+    std::vector<long> numbers;
+    for (long number = 0; number < schedule.frames(); ++number)
+        if (wanted.contains(number) || goldens.contains(fmt::format("{:06}", number))) numbers.push_back(number);
     return numbers;
 }
 
@@ -248,11 +246,10 @@ fs::path draw_frames(const Scene& scene, const CompareOptions& options, RunOptio
                      const Report& report) {
     if (std::error_code ignored; fs::is_regular_file(options.expected, ignored))
         throw bad_input("{} is a picture; give its time with --at, or a folder of frames", options.expected);
-    const auto numbers = frame_numbers(scene, options);
-    if (numbers.empty())
+    run_options.only = frame_numbers(scene, options);
+    if (run_options.only.empty())
         throw bad_input("{}: there is no golden frame such as 000000.png; --frames 0:1 --update makes one",
                         options.expected);
-    run_options.only = {numbers.begin(), numbers.end()};
     return run(scene, run_options, task.stop, report).files.front();
 }
 
