@@ -76,7 +76,7 @@ class Result:
 
     @functools.cached_property
     def manifest(self):
-        """The manifest (JSON): the preset as it was understood, versions, times, errors, warnings."""
+        """The manifest (JSON): the preset as it was understood (resolved_preset), versions, times, errors, warnings."""
         return json.loads(self.path(".json").read_text(encoding="utf-8"))
 
     @property
@@ -125,6 +125,8 @@ def film(preset, *options, format="html", out=None, **keys):
 
 
 def _call(command, preset, options, out, keys):
+    if out == "-" or {"--help", "--list-outputs"} & set(options):
+        raise ValueError("a Result has files: out must be a folder, and --help and --list-outputs are for the command line")
     folder = None if out is not None else tempfile.TemporaryDirectory(prefix="doppel-")
     result = Result(folder)
     words = [_program(), command, *options, "--progress", "json", "--out", out if folder is None else folder.name]

@@ -147,7 +147,8 @@ void print_needs(const Needs& needs) {
                duration_text(shard_s), shards,
                repeated_share < worth_a_word
                    ? ""
-                   : fmt::format("; each simulates the motion again, {:.0f} % of its time", 100 * repeated_share));
+                   : fmt::format("; each simulates the motion again, {:.0f} % of its time; a recording saves it",
+                                 100 * repeated_share));
 }
 
 /// Adds `needs` to the JSON of a preset; null for what is unknown.
@@ -364,6 +365,7 @@ Json json_of(const PresetText& preset, const FigureCheck& check, Json warnings) 
 }
 
 struct CheckOptions : PresetOptions {
+    std::string size, format;
     bool as_json = false;
 };
 
@@ -382,10 +384,13 @@ void check_presets(const CheckOptions& options) {
             else
                 print(check);
         };
-        if (is_figure(preset))
-            report(checked(read_figure(preset, overrides_of(options), {}, stop), stop));
+        const bool is_chart = is_figure(preset);
+        const auto overrides =
+            overrides_of(options, picture_overrides(is_chart ? "chart" : "video", options.size, options.format));
+        if (is_chart)
+            report(checked(read_figure(preset, overrides, {}, stop), stop));
         else
-            report(checked(make_scene(read_preset(preset, overrides_of(options)), stop), stop));
+            report(checked(make_scene(read_preset(preset, overrides), stop), stop));
     }
     if (options.as_json) print_json(all);
 }
@@ -402,6 +407,8 @@ void add_check(CLI::App& app) {
         "  doppel check flip-map                                cost of a figure\n"
         "  doppel check butterfly --json | jq '.[0].warnings'");
     add_preset_options(command, *options);
+    add_value(command, "--size", options->size, "WxH", "Size of the picture, px");
+    add_value(command, "--format", options->format, "FORMAT", "Format, as render or figure takes it");
     command.add_flag("--json", options->as_json,
                      "The same as JSON, an array with an object a preset: see docs/files.md");
     command.callback([options] { check_presets(*options); });

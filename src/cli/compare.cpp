@@ -209,19 +209,14 @@ std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& 
     return pairs;
 }
 
-/// A picture NAME to draw, and its goldens: EXPECTED, or in the folder EXPECTED. Throws Error (exit 2) if there are
-/// none.
+/// A picture NAME to draw, and its goldens: EXPECTED, or in the folder EXPECTED.
 ComparedPicture single_picture(const CompareOptions& options, const std::string& name) {
     std::error_code ignored;
     const fs::path expected = options.expected;
     const bool is_folder = fs::is_directory(expected, ignored) || expected.extension() != ".png";
     const auto golden = is_folder ? expected / name : expected;
     const std::string file = golden.filename();
-    ComparedPicture picture{
-        .name = file, .expected = golden, .actual = {}, .goldens = goldens_in(golden.parent_path(), {file})[file]};
-    if (!options.update && picture.goldens.empty())
-        throw bad_input("{}: there is no such golden picture; --update makes it", golden.string());
-    return picture;
+    return {.name = file, .expected = golden, .actual = {}, .goldens = goldens_in(golden.parent_path(), {file})[file]};
 }
 
 /// The frames to draw: those whose numbers goldens have, and those of --frames.
@@ -257,9 +252,9 @@ fs::path draw_frames(const Scene& scene, const CompareOptions& options, RunOptio
 std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetText& text, const fs::path& folder,
                                   const Task& task) {
     const bool is_chart = is_figure(text);
-    auto overrides = overrides_of(options);
-    overrides.push_back({is_chart ? "chart.format" : "video.format", "\"png\"", "compare, which draws PNG"});
-    if (!options.size.empty()) overrides.push_back(size_override(is_chart ? "chart.size" : "video.size", options.size));
+    const std::string table = is_chart ? "chart" : "video";
+    auto overrides = overrides_of(options, picture_overrides(table, options.size));
+    overrides.push_back({table + ".format", "\"png\"", "compare, which draws PNG"});
     if (is_chart && !(options.at + options.frames).empty())
         throw bad_input("--at and --frames are for films; {} is a figure", text.name);
     ProgressReport progress(progress_style("auto"), text.name, is_chart ? "trials" : "frames");
@@ -390,7 +385,9 @@ void add_compare(CLI::App& app, int& exit_code) {
     auto* const render = add_value(command, "--render", options->render, "PRESET",
                                    "Draw it: the frames whose numbers are in EXPECTED, or a figure");
     add_value(command, "--at", options->at, "SECONDS", "Draw the picture at this time, as still does")->needs(render);
-    add_value(command, "--frames", options->frames, "A:B", "Draw the frames A to B-1, too")->needs(render);
+    add_value(command, "--frames", options->frames, "A:B", "Draw the frames A to B-1, too")
+        ->needs(render)
+        ->excludes("--at");
     add_set_option(command, *options)->needs(render);
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px")->needs(render);
     add_gl_option(command, options->gl)->needs(render);

@@ -22,10 +22,7 @@ struct FigureCommandOptions : RunCommandOptions {
 };
 
 std::vector<Override> overrides(const FigureCommandOptions& options) {
-    auto all = overrides_of(options);
-    if (!options.size.empty()) all.push_back(size_override("chart.size", options.size));
-    if (!options.format.empty())
-        all.push_back({"chart.format", toml_text(options.format), "--format " + options.format});
+    auto all = overrides_of(options, picture_overrides("chart", options.size, options.format));
     if (options.scale != 0)
         all.push_back({"chart.scale", fmt::format("{}", options.scale), fmt::format("--scale {}", options.scale)});
     return all;

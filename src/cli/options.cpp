@@ -128,10 +128,13 @@ Rational seconds_of_option(const std::string& option, const std::string& text) {
     return *seconds;
 }
 
-Override size_override(const std::string& key, const std::string& size) {
+std::vector<Override> picture_overrides(const std::string& table, const std::string& size, const std::string& format) {
+    std::vector<Override> all;
     const auto sides = two_numbers(size, 'x');
-    if (!sides) throw bad_input("--size must be WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);
-    return {key, fmt::format("[{}, {}]", sides->first, sides->second), "--size " + size};
+    if (sides) all.push_back({table + ".size", fmt::format("[{}, {}]", sides->first, sides->second), "--size " + size});
+    if (!sides && !size.empty()) throw bad_input("--size must be WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);
+    if (!format.empty()) all.push_back({table + ".format", toml_text(format), "--format " + format});
+    return all;
 }
 
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths) {
@@ -141,9 +144,10 @@ void check_names(const std::vector<std::string>& names, const std::vector<std::s
                 throw bad_input("{} and {} would both be written to {}/", paths[j], paths[i], names[i]);
 }
 
-std::vector<Override> overrides_of(const PresetOptions& options) {
+std::vector<Override> overrides_of(const PresetOptions& options, const std::vector<Override>& more) {
     std::vector<Override> overrides;
     for (const auto& set : options.sets) overrides.push_back(parse_set(set));
+    overrides.insert(overrides.end(), more.begin(), more.end());
     return overrides;
 }
 

@@ -75,8 +75,10 @@ std::pair<long, long> frames_of_option(const std::string& text);
 /// The value of --at, --from or --to, "6.8" or "1/3". Throws Error (exit 2).
 Rational seconds_of_option(const std::string& option, const std::string& text);
 
-/// --size WIDTHxHEIGHT as an override of a preset's key. Throws Error (exit 2).
-Override size_override(const std::string& key, const std::string& size);
+/// --size WIDTHxHEIGHT and --format, where they are given, as overrides in the table "video" or "chart". Throws Error
+/// (exit 2).
+std::vector<Override> picture_overrides(const std::string& table, const std::string& size,
+                                        const std::string& format = {});
 
 /// Throws Error (exit 2) if the results of two presets, `paths`, would have the same names.
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths);
@@ -90,8 +92,8 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
 void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
                  const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work);
 
-/// The values of --set.
-std::vector<Override> overrides_of(const PresetOptions& options);
+/// The values of --set, and `more` after them.
+std::vector<Override> overrides_of(const PresetOptions& options, const std::vector<Override>& more = {});
 
 /// The output folder: that of --out; or for "-" a temporary folder, from which one file goes to standard output.
 class Destination {

@@ -49,16 +49,17 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     run_options.replacing = {inputs_of(options.presets, scenes), options.force};
     const auto& stop = watch_interrupts();
     for (const auto& scene : scenes) check_run(scene, run_options);
+    if (scenes.size() > 1 && !options.recording.empty())
+        throw bad_input("--recording: a file contains one motion; give one preset, not {}", scenes.size());
     const auto& video = scenes.front().preset.video;
     const bool is_sequence = run_options.pictures && video.format == FilmFormat::png;
     if (options.out == "-" && is_sequence)
         throw bad_input("-o -: a PNG sequence is many files; give --format apng, or use still for one picture");
     if (options.list_outputs) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, run_files(scene, run_options));
+        if (!run_options.pictures && !options.recording.empty()) print_line("{}", options.recording);
         return;
     }
-    if (scenes.size() > 1 && !(run_options.recording.empty() && run_options.record_to.empty()))
-        throw bad_input("--recording: a file contains one motion; give one preset, not {}", scenes.size());
     const Destination to(options.out, scenes.size(),
                          run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
     run_options.out = to.folder();
@@ -81,10 +82,7 @@ void set_range(const RenderOptions& options, RunOptions& run) {
 }
 
 std::vector<Override> overrides(const RenderOptions& options) {
-    std::vector<Override> all;
-    if (!options.size.empty()) all.push_back(size_override("video.size", options.size));
-    if (!options.format.empty())
-        all.push_back({"video.format", fmt::format("\"{}\"", options.format), "--format " + options.format});
+    auto all = picture_overrides("video", options.size, options.format);
     if (!options.quality.empty() && options.quality != "standard") {
         const auto origin = "--quality " + options.quality;
         if (options.quality == "draft") return all.push_back({"video.preview", "true", origin}), all;
@@ -97,8 +95,7 @@ std::vector<Override> overrides(const RenderOptions& options) {
 }  // namespace
 
 std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
-    auto overrides = overrides_of(options);
-    overrides.insert(overrides.end(), more.begin(), more.end());
+    const auto overrides = overrides_of(options, more);
     const auto& stop = watch_interrupts();
     std::vector<Scene> scenes;
     std::vector<std::string> names;
@@ -199,8 +196,8 @@ void add_still(CLI::App& app) {
     add_gl_option(command, options->gl);
     command.callback([options] {
         const auto at = seconds_of_option("--at", options->at);
-        std::vector<Override> more{{"video.format", "\"png\"", "still, which draws PNG"}};
-        if (!options->size.empty()) more.push_back(size_override("video.size", options->size));
+        auto more = picture_overrides("video", options->size);
+        more.push_back({"video.format", "\"png\"", "still, which draws PNG"});
         const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
         for (const auto& scene : scenes)
@@ -237,7 +234,9 @@ void add_simulate(CLI::App& app) {
         if (!options->recording.empty() && !options->list_outputs)
             run.record_to = file.emplace(options->recording, recording_file.start).place();
         run_all(scenes, *options, run);
-        if (file) file->publish();
+        if (!file) return;
+        file->publish();
+        if (options->progress != "json" && options->out != "-") report_files(options->recording + "\n");
     });
 }
 

@@ -130,7 +130,7 @@ void PartWriter::add(std::size_t trial, TrialNumbers numbers) {
 KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, const std::atomic<bool>& stop) {
     const auto wanted = header_of(figure);
     KnownTrials all(wanted.trials);
-    all_parts(folder, figure.name, ExitCode::bad_input, [&](const fs::path& path) {
+    all_parts(folder, figure.name, [&](const fs::path& path) {
         throw_if_set(stop);
         auto part = read_part_file(path);
         const auto& header = part.header;

@@ -47,9 +47,8 @@ const Theme& theme_named(const std::string& name) {
     return *std::find_if(themes.begin(), themes.end(), [&](const auto& theme) { return theme.name == name; });
 }
 
-/// Throws Error (exit 2) if the map cells of the trials in `header` exceed the memory, or the disk space of `folder`,
-/// or what a page holds.
-/// Other figures need no check.
+/// Throws Error if the map cells of the trials in `header` exceed the memory or what a page holds (exit 2), or the disk
+/// space of `folder` (exit 75). Other figures need no check.
 void require_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
     const auto map = figure.experiment->map();
     if (!map) return;
@@ -61,18 +60,19 @@ void require_room(const FigurePreset& figure, const PartHeader& header, bool til
         throw bad_input("{}: a page shows maps of at most {} cells; this one has {}; take fewer, or --tiles",
                         figure.name, grouped(std::lround(most_on_page)), grouped(std::lround(all)));
     const double cells = share * all;
-    const auto refuse = [&](const char* what, double needed, double there) {
-        return bad_input("{}: {} × {} cells take {} of {}, and there are {}; take fewer", figure.name,
-                         grouped(map->columns), grouped(map->rows), bytes_text(needed), what, bytes_text(there));
+    const auto refuse = [&](ExitCode code, const char* what, double needed, double there) {
+        return Error(
+            code, fmt::format("{}: {} × {} cells take {} of {}, and there are {}; take fewer", figure.name,
+                              grouped(map->columns), grouped(map->rows), bytes_text(needed), what, bytes_text(there)));
     };
     // the numbers of all trials, and two floats for each drawn cell; for tiles also their pixels
     const double memory = cells * (8 * numbers + 8 + (tiles ? 6 : 0)),
                  owned = static_cast<double>(this_machine().memory);
-    if (memory > 0.8 * owned) throw refuse("memory", memory, owned);
+    if (memory > 0.8 * owned) throw refuse(ExitCode::bad_input, "memory", memory, owned);
     std::error_code unknown;
     const auto space = fs::space(folder, unknown);
     const double table = cells * (30 + 18 * numbers), free = static_cast<double>(space.available);
-    if (!unknown && table > free) throw refuse("disk", table, free);
+    if (!unknown && table > free) throw refuse(ExitCode::try_again, "disk", table, free);
 }
 
 /// Times of the run for the manifest.

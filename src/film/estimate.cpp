@@ -154,8 +154,8 @@ SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bo
 }
 
 Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
-    // long enough for trails to form, and short
-    constexpr double motion_s = 4, begin_s = 0.15, patience_s = 1;
+    // up to the middle of the film, where trails are long and members of an ensemble are apart, if that is soon there
+    constexpr double begin_s = 0.6, patience_s = 1;
     const auto samples = static_cast<double>(scene.samples);
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
@@ -172,9 +172,9 @@ Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation,
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
     if (!is_page && !simulation.at_least && sample_s * static_cast<double>(one_frame) <= patience_s) {
-        const double wanted = std::min(motion_s * scene.preset.sample_hz.value(), begin_s / std::max(sample_s, 1e-12));
-        const auto begun = beginning_of(scene, std::clamp(static_cast<long>(std::min(wanted, 1e9)),
-                                                          std::min(one_frame, scene.samples), scene.samples));
+        const double wanted = std::min(samples / 2, begin_s / std::max(sample_s, 1e-12));
+        const auto begun = beginning_of(
+            scene, std::clamp(static_cast<long>(wanted), std::min(one_frame, scene.samples), scene.samples));
         const auto cost = cost_of_frame(begun, stop);
         const auto frames = static_cast<double>(schedule_of(scene).frames());
         const auto segments = static_cast<double>(max_shards(scene));

@@ -46,29 +46,33 @@ std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> fl
     return events;
 }
 
-Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, bool in_film) {
+Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown) {
     const auto schedule = schedule_of(scene);
     Json list = Json::array();
     for (const auto& event : events) {
         Json json{{"event", event.event}, {"time_s", event.time_s}};
-        if (in_film)
-            json["film_s"] = static_cast<double>(film_frame(scene, schedule, event.time_s)) / scene.fps.value();
+        const long frame = film_frame(scene, schedule, event.time_s);
+        if (shown && !shown->contains(frame)) continue;
+        if (shown) json["film_s"] = static_cast<double>(frame - shown->first) / scene.fps.value();
         json.update(event.details);
         list.push_back(std::move(json));
     }
     return list;
 }
 
-std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events) {
+std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events,
+                                        const FrameRange& shown) {
     const auto schedule = schedule_of(scene);
     std::map<long, std::string> chapters;
-    if (schedule.title > 0) chapters[0] = scene.preset.title;
+    if (schedule.title > 0 && shown.contains(0)) chapters[0] = scene.preset.title;
     for (const auto& event : events) {
-        const long frame = film_frame(scene, schedule, event.time_s);
+        const long frame = film_frame(scene, schedule, event.time_s) - shown.first;
+        if (!shown.contains(shown.first + frame)) continue;
         const bool is_near =
             !chapters.empty() && static_cast<double>(frame - chapters.rbegin()->first) < scene.fps.value();
         if (event.event != "flip" || !is_near) chapters[frame] = event.chapter;
     }
+    if (!chapters.empty()) chapters.emplace(0, scene.preset.title);
     return chapters;
 }
 

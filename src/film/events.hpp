@@ -1,10 +1,12 @@
 #pragma once
 
+#include "film/parts.hpp"
 #include "film/recording.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,11 +38,14 @@ private:
 /// Release, flips, divergence and changes of speed, in order of time.
 std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome);
 
-/// For the manifest. With `in_film`, also the time in the film, s.
-Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, bool in_film);
+/// For the manifest. Of a film only those that its frames `shown`, counted in the whole film, show, with their times in
+/// it, s.
+Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown);
 
-/// The titles of a film's chapters, by their first frames: its events, but flips only if they are a second from the
-/// chapter before. Of events in one frame, the last one.
-std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events);
+/// The titles of a film's chapters, by their first frames, counted from the first one shown: its events, but flips only
+/// if they are a second from the chapter before. Of events in one frame, the last one. The first chapter begins with
+/// the film, because an MP4 would move its start there.
+std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events,
+                                        const FrameRange& shown);
 
 }  // namespace doppel

@@ -92,12 +92,12 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       stop_(stop),
       schedule_(schedule_of(scene)),
       drawn_(drawn_frames(scene, options, first)),
-      begin_(schedule_.range(first, schedule_.motion).first),
-      next_(begin_),
+      next_(schedule_.range(first, last).first),
       frame_(first),
       last_(last),
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
+    record.shown = schedule_.range(first, last);
     if (options.merge) joined_ = parts_in(scene, parts.folder());
     if (video.poster_s && !options.is_part()) poster_at_ = schedule_.at(*poster_frame(scene));
     if (!options.merge || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
@@ -126,6 +126,7 @@ void Film::begin_video() {
         video.first_frame = drawn_.first;
     }
     video.is_stream = options_.to_stream;
+    if (video.is_stream) video.metadata = metadata_of(scene_.preset.title, scene_.preset.name, "a stream");
     if (options_.is_partial()) video.frames = 0;
     sink_ = make_video_sink(video.is_stream ? "-" : parts_.file(film_name_), video, stop_);
     record_.libav = libav_description();
@@ -169,8 +170,7 @@ bool Film::add(const Snapshot& snapshot) {
 }
 
 void Film::finish(const std::vector<FilmEvent>& events) {
-    for (const auto& [frame, title] : chapters_of(scene_, events))
-        if (frame >= begin_ && frame < next_) sink_->add_chapter(frame - begin_, title);
+    for (const auto& [frame, title] : chapters_of(scene_, events, *record_.shown)) sink_->add_chapter(frame, title);
     if (options_.merge) join_parts();
     sink_->finish();
     if (options_.shard && !folder_.empty()) pack_pictures();

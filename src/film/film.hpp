@@ -29,7 +29,8 @@ struct RunRecord : RunResult {
     double cpu_s = 0;
     MotionRecord motion;
     std::vector<FilmEvent> events;
-    std::string failure;  // the error that ended the run, if any
+    std::optional<FrameRange> shown = {};  // of a film: its frames, counted in the whole film
+    std::string failure;                   // the error that ended the run, if any
 };
 
 /// Adds warnings about sides whose energy changed by more than 1 % of the potential range although it is conserved.
@@ -125,7 +126,6 @@ private:
     const std::atomic<bool>& stop_;
     const Schedule schedule_;
     const FrameRange drawn_;  // frames are counted in the whole film
-    const long begin_;        // the first frame of the file
     long next_;
     long frame_, last_;  // of the motion
     long poster_at_ = -1;

@@ -119,7 +119,7 @@ void write_manifest(Transaction& parts, const std::string& name, const Scene& sc
         {"largest_distance", scene.is_single() ? Json(nullptr) : Json(outcome.largest_distance)},
         {"parted_s", outcome.divergence.since() ? Json(*outcome.divergence.since()) : Json(nullptr)},
         {"horizon_s", scene.horizon() ? Json(*scene.horizon()) : Json(nullptr)},
-        {"events", json_of(scene, record.events, record.frames > 0)},
+        {"events", json_of(scene, record.events, record.shown)},
         {"warnings", record.warnings},
         {"libraries", {{"gl", record.gl}, {"libav", record.libav}, {"compiler", __VERSION__}}},
         {"time",

@@ -44,8 +44,8 @@ FrameRange frames_of(const Scene& scene, const Shard& shard) {
     const auto video = video_options(scene);
     const long segments = video.segments();
     if (shard.of > segments)
-        throw bad_input("--shard {}/{}: {} has {} segments; give at most {} parts", shard.number, shard.of,
-                        scene.preset.name, segments, segments);
+        throw bad_input("--shard {}/{}: {} can have {} part{} at most", shard.number, shard.of, scene.preset.name,
+                        segments, segments == 1 ? "" : "s");
     const auto start = [&](long number) {
         return number == shard.of ? video.frames : segments * number / shard.of * video.segment();
     };
@@ -76,7 +76,7 @@ bool is_part_complete(const Scene& scene, const Shard& shard, const fs::path& fo
 }
 
 std::vector<fs::path> parts_in(const Scene& scene, const fs::path& folder) {
-    return all_parts(folder, scene.preset.name, ExitCode::try_again, [&](const fs::path& path) {
+    return all_parts(folder, scene.preset.name, [&](const fs::path& path) {
         const auto shard = shard_in(BlockFile(path, film_part), path, scene);
         frames_of(scene, shard);
         return shard;

@@ -44,12 +44,12 @@ void check_identity(const fs::path& path, const Json& header, const Json& wanted
             return words.substr(0, is_hash ? hash_digits : words.size());
         };
         throw bad_input("{} was made with another {}: {}, not {}; {} it again with --shard {}/{}", path.string(),
-                        is_hash ? "preset, or other --set" : key, text(theirs), text(ours), verb, shard.number,
-                        shard.of);
+                        is_hash ? "preset, --set, --size or --format" : key, text(theirs), text(ours), verb,
+                        shard.number, shard.of);
     }
 }
 
-std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name, ExitCode none,
+std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
                                 const std::function<Shard(const fs::path&)>& take) {
     std::vector<fs::path> parts;  // by number; empty if not seen yet
     fs::path first;
@@ -70,10 +70,8 @@ std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
             seen = path;
         }
     if (parts.empty())
-        throw Error(none,
-                    fmt::format("{} contains no part of {}; make them with the same command, --shard I/N in place "
-                                "of --merge",
-                                folder.string(), name));
+        throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
+                        folder.string(), name);
     if (const auto missing = missing_parts(parts); !missing.empty())
         throw try_again("{}: missing parts: {}", folder.string(), missing);
     return parts;

@@ -29,10 +29,9 @@ void check_identity(const std::filesystem::path& path, const Json& header, const
                     std::string_view verb);
 
 /// The files NAME.*.shard in a folder, one of each part, in order. take(path) reads one, throws if it does not belong,
-/// and returns which part it is. Throws Error: exit 75 if parts are missing, `none` if all are, exit 2 if some are of
-/// another number of parts, or two are the same part.
+/// and returns which part it is. Throws Error: exit 75 if parts are missing, exit 2 if some are of another number of
+/// parts, or two are the same part.
 std::vector<std::filesystem::path> all_parts(const std::filesystem::path& folder, const std::string& name,
-                                             ExitCode none,
                                              const std::function<Shard(const std::filesystem::path&)>& take);
 
 }  // namespace doppel

@@ -154,17 +154,21 @@ TEST_F(CompareRender, PassesIfAnyVariantMatches) {
 
 TEST_F(CompareRender, ComparesStillsAndFigures) {
     const Words brief{"--set", "scene.duration_s=0.5"};
+    fs::create_directory(folder_ / "kept");
     for (const auto& [command, name] :
          {std::pair(with({"compare", "--render", "calm", "--at", "0.25", "--size", "160x90"}, brief), "calm.0.25s.png"),
           {with({"compare", "--render", "fig6", "--size", "320x180"}, brief), "fig6.png"}}) {
         const auto file = fmt::format("kept/{}", name);
         const auto none = run(with(command, {"kept"}));
-        EXPECT_EQ(none.code, 2) << none.err;
+        EXPECT_EQ(none.code, 1) << none.err;
         EXPECT_EQ(run(with(command, {"kept", "--update"})).out, file + ": new\n");
         EXPECT_EQ(run(with(command, {"kept"})).code, 0);
         fs::rename(folder_ / file, folder_ / "kept/other.png");
-        const auto missing = run(with(command, {"kept"}));
-        EXPECT_EQ(missing.err, fmt::format("doppel: {}: there is no such golden picture; --update makes it\n", file));
+        const auto missing = run(with(command, {"kept", "--junit", "missing.xml"}));
+        EXPECT_EQ(missing.code, 1) << missing.err;
+        const auto drawn = fmt::format("out/{}/compare/{}.actual.png", command[2], fs::path(name).stem().string());
+        EXPECT_EQ(missing.out, fmt::format("{}: missing; drawn now: {}\n", file, drawn));
+        EXPECT_TRUE(fs::exists(folder_ / drawn) && fs::exists(folder_ / "missing.xml"));
         EXPECT_EQ(run(with(command, {"kept/other.png"})).code, 0);
         fs::rename(folder_ / "kept/other.png", folder_ / "kept/other.egl.png");
         EXPECT_EQ(run(with(command, {"kept/other.png"})).code, 0);  // a variant alone
@@ -182,6 +186,7 @@ TEST_F(CompareRender, RefusesWhatMakesNoSense) {
              {{"compare", "golden"}, "compare needs EXPECTED and ACTUAL, or --render PRESET and EXPECTED"},
              {{"compare", "golden", "golden", "--render", "calm"}, "compare needs EXPECTED and ACTUAL, or --render"},
              {{"compare", "golden", "golden", "--update"}, "--update requires --render"},
+             {{"compare", "--render", "calm", "golden", "--at", "1", "--frames", "0:1"}, "--at excludes --frames"},
              {{"compare", "--render", "fig6", "golden", "--at", "1"}, "--at and --frames are for films; fig6 is a"},
              {{"compare", "--render", "calm", "golden", "--at", "1000"}, "--at 1000: calm ends at"},
              {{"compare", "--render", "calm", "golden", "--frames", "0:99999"}, "--frames 0:99999: calm has the"},

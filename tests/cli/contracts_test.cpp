@@ -164,6 +164,7 @@ TEST(Contracts, ListedOutputsAreTheWrittenOnes) {
     doppel(folder, {"--version"});           // creates the files of its output
     const std::vector<Words> commands{with({"simulate", "calm", "triple"}, brief),
                                       with(with({"render", "calm"}, brief), small),
+                                      with({"simulate", "calm", "--recording", "calm.motion"}, brief),
                                       with({"render", "sheet.toml", "-o", "films/of mine"}, small),
                                       with({"render", "sheet.toml", "--format", "png"}, small),
                                       with({"still", "calm", "--at", "0.5", "--format", "svg"}, {}),

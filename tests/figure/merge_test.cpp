@@ -75,7 +75,7 @@ TEST_F(Merge, NamesThePartsThatAreMissing) {
     fs::remove(part(3));
     expect_refused(ExitCode::try_again, {"missing", "2/3, 3/3"}, small_sweep());
     fs::remove(part(1));
-    expect_refused(ExitCode::bad_input, {"contains no part of fig2-right", "--shard"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"contains no part of fig2-right", "--shard"}, small_sweep());
 }
 
 TEST_F(Merge, NamesTheFirstOfManyMissing) {
@@ -156,7 +156,7 @@ TEST_F(Merge, IgnoresPartsOfOtherNames) {
 
 TEST(MergeOfNothing, SaysHowToMakeParts) {
     const auto out = fresh_folder() / "out";
-    expect_error(ExitCode::bad_input, {"fig2-right", "--shard I/N"},
+    expect_error(ExitCode::try_again, {"fig2-right", "--shard I/N"},
                  [&] { run_figure(small_sweep(), {.out = out, .merge = true}); });
     EXPECT_TRUE(!fs::exists(out) || names_in(out).empty());
 }

@@ -106,8 +106,8 @@ TEST(FilmParts, AreRefusedIfTheyDoNotFit) {
     EXPECT_EQ(merge(scene), (Thrown{ExitCode::try_again, place + ": missing parts: 1/2"}));
     const auto other = merge(film({"video.theme=light"}));
     EXPECT_EQ(other.first, ExitCode::bad_input);
-    EXPECT_TRUE(
-        other.second.starts_with(place + "/butterfly.2-of-2.shard was made with another preset, or other --set"))
+    EXPECT_TRUE(other.second.starts_with(
+        place + "/butterfly.2-of-2.shard was made with another preset, --set, --size or --format"))
         << other.second;
     render(scene, {.out = folder, .shard = Shard{1, 2}});
     render(scene, {.out = folder, .shard = Shard{1, 1}});
@@ -146,7 +146,7 @@ TEST(FilmParts, NeedAFormatThatCanBeJoined) {
               (Thrown{ExitCode::bad_input,
                       "--shard: a film in the format GIF cannot be joined from parts; use mp4, webm or png"}));
     EXPECT_EQ(refused(film(), {.shard = Shard{1, 9}}),
-              (Thrown{ExitCode::bad_input, "--shard 1/9: butterfly has 8 segments; give at most 8 parts"}));
+              (Thrown{ExitCode::bad_input, "--shard 1/9: butterfly can have 8 parts at most"}));
     EXPECT_EQ(refused(film(), {.first = 5, .shard = Shard{1, 2}}).first, ExitCode::bad_input);
 }
 
@@ -215,13 +215,32 @@ TEST(Events, AreInTheManifestAndChaptersOfTheFilm) {
     EXPECT_NEAR(events[2]["time_s"], 10.73, 0.01);
     std::vector<std::string> titles;
     for (const auto& [frame, title] :
-         chapters_of(scene, film_events(scene, {{10.73, "flip", "A: link 2 flips"}, {11, "flip", "near"}}, {})))
+         chapters_of(scene, film_events(scene, {{10.73, "flip", "A: link 2 flips"}, {11, "flip", "near"}}, {}),
+                     {0, schedule_of(scene).frames()}))
         titles.push_back(title);
     EXPECT_EQ(titles, (std::vector<std::string>{scene.preset.title, "Release", "Speed 2", "A: link 2 flips"}));
     const auto video = read_video(folder / "butterfly/butterfly.mp4");
     ASSERT_EQ(video.chapters.size(), 4U);
     EXPECT_EQ(video.chapters[3].second, "A: link 2 flips");
     EXPECT_NEAR(video.chapters[3].first, events[2]["film_s"].get<double>(), 1e-3);
+}
+
+TEST(Events, OfAPartOfAFilmAreThoseThatItShows) {
+    // of 9 to 12 s: the first flip, at 10.73 s, is 1.73 s after the part's start; frames are 1/12 s apart
+    for (const char* format : {"mp4", "webm"}) {
+        const auto scene = film({std::string("video.format=") + format});
+        const auto folder = fresh_folder();
+        render(scene, {.out = folder, .from_s = Rational{9, 1}, .to_s = Rational{12, 1}});
+        const auto events = manifest_in(folder)["events"];
+        ASSERT_FALSE(events.empty());
+        EXPECT_EQ(events[0]["event"], "flip");
+        for (const auto& event : events)
+            EXPECT_NEAR(event["film_s"].get<double>(), event["time_s"].get<double>() - 9, 1.0 / 12) << event;
+        const auto video = read_video(folder / fmt::format("butterfly/butterfly.{}", format));
+        ASSERT_GE(video.chapters.size(), 2U);
+        EXPECT_EQ(video.chapters[0], std::pair(0.0, scene.preset.title));
+        EXPECT_NEAR(video.chapters[1].first, 1.73, 1.0 / 12);
+    }
 }
 
 }  // namespace parts_test

@@ -73,6 +73,8 @@ class Keys(unittest.TestCase):
 
     def test_of_another_type_are_errors(self):
         self.assertRaises(TypeError, doppel.run, "butterfly", scene={"duration_s": None})
+        self.assertRaises(ValueError, doppel.run, "butterfly", out="-")  # a result has files
+        self.assertRaises(ValueError, doppel.run, "butterfly", "--list-outputs")
 
 
 class Pictures(unittest.TestCase):
