@@ -11,7 +11,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <memory>
 
 namespace doppel {
@@ -46,8 +45,8 @@ void write_rows(const Scene& scene, const Certificate& proved, const std::filesy
     for (std::size_t n = 0; n < proved.rows.size(); ++n) {
         table.add(static_cast<long>(n));
         table.add(scene.time(static_cast<long>(n)));
-        for (const auto& side : proved.rows[n].sides) std::for_each(side.begin(), side.end(), add);
-        if (proved.has_distance()) add(proved.rows[n].distance);
+        for (const auto& bounds : proved.rows[n].states) add(bounds);
+        if (!scene.is_single()) add(proved.rows[n].distance);
         table.end_row();
     }
     table.finish();

@@ -212,7 +212,7 @@ private:
         const auto scene = make_scene(pair_of(trial));
         const auto& shown = *curves_[trial % curves_.size()].film_column;
         if (const auto* of = std::ranges::find(certified_columns, shown); of != certified_columns.end())
-            return certified_radii(scene, certified_bits[of - certified_columns.begin()], stop);
+            return certified_radii(scene, static_cast<std::size_t>(of - certified_columns.begin()), stop);
         PairRun run(scene);
         TrialNumbers values;
         double start = 0;

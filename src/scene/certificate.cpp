@@ -3,12 +3,15 @@
 #include "analysis/difference.hpp"
 #include "analysis/enclosure.hpp"
 #include "base/error.hpp"
+#include "base/threads.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <numeric>
 
 namespace doppel {
 namespace {
@@ -40,8 +43,55 @@ std::vector<EnclosedSystem> systems_of(const Scene& scene) {
     return all;
 }
 
-/// Bounds of the error of a run, of the angle with the largest one.
-Interval error_of(const Observation& seen, const std::array<Interval, 4>& proved) {
+constexpr double sufficient_radius = 1e-6, lost_radius = 0.5;  // of angles and rates: rad, rad/s
+
+using Rows = std::vector<Certificate::Row>;
+using Report = std::function<void(long done, long total)>;  // of samples; may throw
+
+template <class Scalar>
+Rows rows_of(const std::vector<EnclosedSystem>& sides, const Scene& scene, double largest_radius, int jobs,
+             const Report& report) {
+    const EnclosureSpec spec{
+        .interval = scene.a.motion.sample_interval, .samples = scene.samples, .largest_radius = largest_radius};
+    const bool are_same = sides.front() == sides.back();
+    std::vector<std::vector<EnclosedState<Scalar>>> motions(are_same ? 1 : sides.size());
+    std::vector<long> done(motions.size());
+    std::mutex reporting;
+    parallel_for(motions.size(), jobs, [&](std::size_t i) {
+        motions[i] = enclosures<Scalar>(sides[i], spec, [&](long samples) {
+            const std::lock_guard lock(reporting);
+            done[i] = samples;
+            report(std::accumulate(done.begin(), done.end(), 0L), static_cast<long>(done.size()) * (scene.samples + 1));
+        });
+    });
+    std::vector<Pendulum<Ball<Scalar>>> chains;
+    for (const auto& side : sides) chains.push_back(side.chain.cast<Ball<Scalar>>());
+    Rows rows(std::min(motions.front().size(), motions.back().size()));
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+        auto& row = rows[n];
+        for (std::size_t i = 0; i < sides.size(); ++i) {
+            const auto& state = motions[are_same ? 0 : i][n];
+            for (const auto& number : state) row.states.push_back({number.low(), number.high()});
+            row.radius = std::max({row.radius, state[0].radius, state[1].radius});
+        }
+        if (are_same) continue;
+        const auto distance =
+            state_space_distance(bobs_of_angles(chains[0], motions[0][n]), bobs_of_angles(chains[1], motions[1][n]));
+        row.distance = {std::max(0.0, distance.low()), distance.high()};
+    }
+    return rows;
+}
+constexpr std::array rows_with{rows_of<double>, rows_of<Quad>, rows_of<Wide>};  // certified_bits
+
+/// Whether the distance is known to 1 % at all samples but the first, where it may be 0.
+bool is_sharp(const Rows& rows) {
+    return std::all_of(rows.begin() + 1, rows.end(), [](const Certificate::Row& row) {
+        return row.distance.high - row.distance.low <= 0.01 * row.distance.high;
+    });
+}
+
+/// Bounds of the error of a run, of the angle with the largest one. `proved`: θ1, θ2
+Interval error_of(const Observation& seen, const Interval* proved) {
     Interval error;
     for (std::size_t i = 0; i < 2; ++i) {
         const double angle = seen.bobs[i].theta, rounding = 0x1p-52 * std::abs(angle);
@@ -60,7 +110,7 @@ void follow_runs(const Scene& scene, Certificate& proved, const std::atomic<bool
         for (const auto& row : proved.rows) {
             const auto state = run.next(stop);
             for (std::size_t i = 0; i < proved.runs.size(); ++i) {
-                const auto error = error_of(i == 0 ? state.a : state.b, row.sides[i]);
+                const auto error = error_of(i == 0 ? state.a : state.b, &row.states[4 * i]);
                 auto& [until, beyond] = proved.runs[i];
                 has_left[i] = has_left[i] || !(error.high <= proved.run_radius);
                 if (!has_left[i]) until = scene.time(state.sample);
@@ -104,21 +154,36 @@ void check_provable(const Scene& scene) {
 
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
                            const std::function<void(long, long)>& report) {
-    const CertifiedPairSpec spec{
-        .interval = scene.a.motion.sample_interval, .samples = scene.samples, .jobs = jobs, .report = report};
-    auto all = certified_pair(systems_of(scene), spec, stop);
-    all.run_radius = radius;
+    const auto sides = systems_of(scene);
+    const auto watch = [&](long done, long total) {
+        throw_if_set(stop);
+        if (report) report(done, total);
+    };
+    Certificate all{.run_radius = radius};
+    for (std::size_t i = 0; i < certified_bits.size(); ++i) {
+        const bool is_last = i + 1 == certified_bits.size();
+        all.bits = certified_bits[i];
+        all.rows = rows_with[i](sides, scene, is_last ? lost_radius : sufficient_radius, jobs, watch);
+        if (all.last() == scene.samples && is_sharp(all.rows)) break;
+    }
     follow_runs(scene, all, stop);
     all.diverged_s = divergence_of(scene, all);
     return all;
 }
 
-std::vector<double> certified_radii(const Scene& scene, int bits, const std::atomic<bool>& stop) {
-    const CertifiedPairSpec spec{.interval = scene.a.motion.sample_interval, .samples = scene.samples, .bits = bits};
+std::vector<double> certified_radii(const Scene& scene, std::size_t precision, const std::atomic<bool>& stop) {
+    const auto watch = [&](long, long) { throw_if_set(stop); };
     std::vector<double> radii;
-    for (const auto& row : certified_pair({systems_of(scene).front()}, spec, stop).rows) radii.push_back(row.radius);
+    for (const auto& row : rows_with[precision]({systems_of(scene).front()}, scene, lost_radius, 1, watch))
+        radii.push_back(row.radius);
     radii.resize(static_cast<std::size_t>(scene.samples) + 1, NAN);
     return radii;
+}
+
+double Certificate::run_until_s() const {
+    double least = INFINITY;
+    for (const auto& run : runs) least = std::min(least, run.until_s.value_or(0));
+    return least;
 }
 
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved) {
@@ -133,7 +198,7 @@ std::vector<std::string> certificate_words(const Scene& scene, const Certificate
         if (run.beyond_s) words += fmt::format(", and farther from it at {:.6g} s", *run.beyond_s);
         all.push_back(fmt::format("side {}: its run is {}", scene.letters()[i], words));
     }
-    if (proved.has_distance())
+    if (!scene.is_single())
         all.push_back(fmt::format("the true distance at {:.6g} s is between {:.10g} and {:.10g}",
                                   scene.time(proved.last()), proved.rows.back().distance.low,
                                   proved.rows.back().distance.high));
@@ -154,7 +219,7 @@ Json certificate_json(const Scene& scene, const Certificate& proved) {
     for (std::size_t i = 0; i < proved.runs.size(); ++i)
         json[std::string(1, scene.letters()[i])] = {{"run_proved_until_s", number(proved.runs[i].until_s)},
                                                     {"run_proved_beyond_s", number(proved.runs[i].beyond_s)}};
-    json["distance"] = proved.has_distance() ? interval(proved.rows.back().distance) : Json(nullptr);
+    json["distance"] = !scene.is_single() ? interval(proved.rows.back().distance) : Json(nullptr);
     json["diverged_s"] = proved.diverged_s ? interval(*proved.diverged_s) : Json(nullptr);
     return json;
 }

@@ -1,11 +1,12 @@
 #pragma once
 
-#include "analysis/certified_pair.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
+#include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,50 @@ namespace doppel {
 /// By which a run has left the true motion, rad.
 inline constexpr double usual_run_radius = 0.5;
 
+/// The precisions of enclosures, in bits: double, quad, and more.
+inline constexpr std::array certified_bits{53, 113, 256};
+
+/// Proved bounds of a number, inclusive.
+struct Interval {
+    double low = 0, high = 0;
+};
+
+/// Enclosures of the true motion at samples 0, 1 … as far as all sides are proved, and what follows for their runs.
+struct Certificate {
+    struct Row {
+        std::vector<Interval> states{};  // of each side θ1, θ2 (rad), ω1, ω2 (rad/s)
+        Interval distance{};             // of two sides, analysis/difference.hpp
+        double radius = 0;               // the largest of all angles, rad
+    };
+    /// For the run of a side, by its method: the time until which each angle is proved to be within the radius of the
+    /// true one, at every sample; and the first at which one is proved to be farther from it, s.
+    struct OfRun {
+        std::optional<double> until_s{}, beyond_s{};
+    };
+
+    int bits = 0;
+    std::vector<Row> rows{};
+    double run_radius = 0;  // rad
+    std::vector<OfRun> runs{};
+    std::optional<Interval> diverged_s{};  // bounds of the true time of divergence (analysis/difference.hpp), s
+
+    /// The last sample that is proved.
+    long last() const { return static_cast<long>(rows.size()) - 1; }
+    /// The time until which the runs of all sides are, s.
+    double run_until_s() const;
+};
+
 /// Throws Error (exit 2) unless the sides are two ideal links, with or without droplets.
 void check_provable(const Scene& scene);
 
-/// What is proved about a scene. `report`: samples done and to do. Throws Error: as check_provable(); exit 130 soon
-/// after `stop` is set.
+/// What is proved about a scene, with the fewest bits for which all angles (rad) and rates (rad/s) are known to 1e-6
+/// and the distance to 1 %, otherwise with the most. `report`: samples done and to do. Throws Error: as
+/// check_provable(); exit 130 soon after `stop` is set.
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
                            const std::function<void(long, long)>& report = {});
 
-/// The radii of side a at all samples with so many bits, rad; NaN where nothing is proved.
-std::vector<double> certified_radii(const Scene& scene, int bits, const std::atomic<bool>& stop);
+/// The radii of side a at all samples with certified_bits[precision], rad; NaN where nothing is proved.
+std::vector<double> certified_radii(const Scene& scene, std::size_t precision, const std::atomic<bool>& stop);
 
 /// The results in sentences.
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved);
