@@ -27,7 +27,7 @@ public:
     }
     Ball<Scalar> value() const {
         // each of the products and of the partial sums is rounded once; so are those of the sizes
-        const double rounding = (count_ + 1) * 2 * unit_roundoff<Scalar> * sizes_;
+        const double rounding = (count_ + 1) * 2 * Ball<Scalar>::roundoff * sizes_;
         return {sum_, widened(widened(spread_ + rounding) * (1 + count_ * 0x1p-50))};
     }
 
@@ -68,9 +68,8 @@ inline bool contains(const DoubleBall& bound, const DoubleBall& other) {
     return other.radius <= bound.radius && std::isfinite(bound.radius);
 }
 inline bool contains(const TangentBall& bound, const TangentBall& other) {
-    bool all = contains(bound.value, other.value);
-    for (Eigen::Index i = 0; i < 4; ++i) all = all && contains(bound.tangent[i], other.tangent[i]);
-    return all;
+    const auto each = [](const DoubleBall& one, const DoubleBall& two) { return contains(one, two); };
+    return each(bound.value, other.value) && bound.tangent.binaryExpr(other.tangent, each).all();
 }
 
 /// A differential equation of sums and products, and the Taylor series of its solution in τ = t/h with a remainder,
@@ -89,12 +88,9 @@ public:
         tape_.clear();
         states_.clear();
     }
-    Quantity state(const Number& start) {
-        const auto made = Quantity::argument(start, tape_);
-        states_[made.node()].start = start;
-        return made;
-    }
-    void set_rate(const Quantity& state, const Quantity& rate) { states_.at(state.node()).rate = rate.node(); }
+    /// Each state needs a rate.
+    Quantity state(const Number& start) { return Quantity::argument(start, tape_); }
+    void set_rate(const Quantity& state, const Quantity& rate) { states_[state.node()] = {state.value, rate.node()}; }
 
     /// Computes the series for a step h, s.
     void expand(const Number& h) {

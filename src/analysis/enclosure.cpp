@@ -10,81 +10,58 @@
 namespace doppel {
 namespace {
 
-/// The series of two links. Sines, cosines and inverses are states, too, so that all right-hand sides are polynomials.
+/// Begins the series of two links; θ1, θ2, ω1, ω2 are its nodes 0 … 3. Sines, cosines and inverses are states, too, so
+/// that all right-hand sides are polynomials.
 ///     (m1 + m2 sin²D) l1 θ1″ = P1 − m2 cosD P2 ,   l2 θ2″ = P2 − cosD l1 θ1″ ,   D = θ1 − θ2
 ///     P1 = −m2 l2 sinD ω2² − (m1 + m2) g sinθ1 + F·t1 ,   P2 = l1 sinD ω1² − g sinθ2 + F2·t2 / m2
-/// with the droplets' forces F = F1 + F2 and the directions t = (cosθ, sinθ).
+/// with the droplets' forces F = F1 + F2 and the directions t = (cosθ, sinθ). The links are l (sinθ, −cosθ).
 template <class Number>
-class PendulumSeries : public BallSeries<Number> {
-public:
-    using Quantity = typename BallSeries<Number>::Quantity;
+void begin(BallSeries<Number>& series, const LinksAndDroplets<Number>& system, const State<Number, 4>& start) {
+    using Quantity = Taped<Number>;
     using Vector = Place<Quantity>;
-
-    /// In balls B. `coefficient`: 1
-    template <class B>
-    PendulumSeries(const EnclosedSystem& system, const B& coefficient, int order)
-        : BallSeries<Number>(order),
-          chain_(system.chain.template cast<B>().template cast<Number>()),
-          droplets_(Cast<Number>()(Cast<B>()(system.droplets))),
-          coefficient_(coefficient) {}
-
-    /// The equation from θ1, θ2, ω1, ω2, which are its nodes 0 … 3.
-    void start(const State<Number, 4>& y) {
-        const Quantity m1 = chain_.mass[0], m2 = chain_.mass[1], l1 = chain_.length[0], l2 = chain_.length[1];
-        const Quantity g = chain_.gravity;
-        this->clear();
-        const Quantity angle1 = this->state(y[0]), angle2 = this->state(y[1]);
-        const Quantity w1 = this->state(y[2]), w2 = this->state(y[3]);
-        this->set_rate(angle1, w1);
-        this->set_rate(angle2, w2);
-        const Turn one(*this, angle1, w1), two(*this, angle2, w2), between(*this, angle1 - angle2, w1 - w2);
-
-        // 1/a, where (1/a)′ = −a′/a²
-        const Quantity inverse = this->state(Number(1) / (m1 + m2 * (between.sin * between.sin)).value);
-        this->set_rate(inverse, Quantity(-2) * m2 * (inverse * inverse * (between.sin * between.sin_rate)));
-
-        Quantity p1 = -(m2 * l2) * (between.sin * (w2 * w2)) - (m1 + m2) * g * one.sin;
-        Quantity p2 = l1 * (between.sin * (w1 * w1)) - g * two.sin;
-        for (const auto& droplet : droplets_) {
-            const Vector place = l1 * one.rod(), velocity = l1 * one.rod_rate();
-            const Vector first = attraction(droplet, place, velocity);
-            const Vector second = attraction(droplet, place + l2 * two.rod(), velocity + l2 * two.rod_rate());
-            p1 += (m1 * first + m2 * second).dot(one.across());
-            p2 += second.dot(two.across());
-        }
-        const Quantity b1 = inverse * (p1 - m2 * (between.cos * p2));
-        this->set_rate(w1, Quantity(coefficient_) / l1 * b1);
-        this->set_rate(w2, Quantity(1) / l2 * (p2 - between.cos * b1));
-    }
-
-private:
-    /// Sine and cosine of an angle as states.
-    struct Turn {
-        Quantity sin, cos, sin_rate, cos_rate;
-
-        Turn(PendulumSeries& series, const Quantity& angle, const Quantity& rate) {
-            const SinCos<Number> at(angle.value);
-            sin = series.state(at.sin);
-            cos = series.state(at.cos);
-            series.set_rate(sin, sin_rate = cos * rate);
-            series.set_rate(cos, cos_rate = -(sin * rate));
-        }
-        Vector rod() const { return {sin, -cos}; }
-        Vector rod_rate() const { return {sin_rate, -cos_rate}; }
-        Vector across() const { return {cos, sin}; }
+    const auto turning = [&](const Quantity& angle, const Quantity& rate) -> Vector {
+        const SinCos<Number> at(angle.value);
+        const Quantity cos = series.state(at.cos), sin = series.state(at.sin);
+        series.set_rate(cos, -(sin * rate));
+        series.set_rate(sin, cos * rate);
+        return {cos, sin};
     };
-    /// −G M r/|r|³, where (1/|r|)′ = −(r·r′)/|r|³
-    Vector attraction(const Droplet<Number>& droplet, const Vector& place, const Vector& velocity) {
+    const auto link = [](const Quantity& length, const Vector& t) -> Vector { return {length * t[1], -length * t[0]}; };
+    // −G M r/|r|³, where (1/|r|)′ = −(r·r′)/|r|³
+    const auto attraction = [&](const Droplet<Number>& droplet, const Vector& place, const Vector& velocity) -> Vector {
         const Vector r = place - droplet.place.template cast<Quantity>();
-        const Quantity inverse = this->state(Number(1) / sqrt(r.dot(r).value));
-        this->set_rate(inverse, -(inverse * inverse * inverse * r.dot(velocity)));
-        return Quantity(-(droplet.constant * droplet.mass)) * (inverse * inverse * inverse) * r;
-    }
+        const Quantity inverse = series.state(Number(1) / sqrt(r.dot(r).value)), cube = inverse * inverse * inverse;
+        series.set_rate(inverse, -(cube * r.dot(velocity)));
+        return Quantity(-(droplet.constant * droplet.mass)) * cube * r;
+    };
+    const auto& chain = system.chain;
+    const Quantity m1 = chain.mass[0], m2 = chain.mass[1], l1 = chain.length[0], l2 = chain.length[1];
+    const Quantity g = chain.gravity;
+    series.clear();
+    const Quantity angle1 = series.state(start[0]), angle2 = series.state(start[1]);
+    const Quantity w1 = series.state(start[2]), w2 = series.state(start[3]);
+    series.set_rate(angle1, w1);
+    series.set_rate(angle2, w2);
+    const Vector t1 = turning(angle1, w1), t2 = turning(angle2, w2), between = turning(angle1 - angle2, w1 - w2);
+    const Quantity &cos_d = between[0], &sin_d = between[1];
 
-    Pendulum<Number> chain_;
-    std::vector<Droplet<Number>> droplets_;
-    Number coefficient_;
-};
+    // 1/a, where (1/a)′ = −a′/a²
+    const Quantity inverse = series.state(Number(1) / (m1 + m2 * (sin_d * sin_d)).value);
+    series.set_rate(inverse, Quantity(-2) * m2 * (inverse * inverse * (sin_d * (cos_d * (w1 - w2)))));
+
+    Quantity p1 = -(m2 * l2) * (sin_d * (w2 * w2)) - (m1 + m2) * g * t1[1];
+    Quantity p2 = l1 * (sin_d * (w1 * w1)) - g * t2[1];
+    for (const auto& droplet : system.droplets) {
+        const Vector place = link(l1, t1), velocity = l1 * (w1 * t1);
+        const Vector first = attraction(droplet, place, velocity);
+        const Vector second = attraction(droplet, place + link(l2, t2), velocity + l2 * (w2 * t2));
+        p1 += (m1 * first + m2 * second).dot(t1);
+        p2 += second.dot(t2);
+    }
+    const Quantity b1 = inverse * (p1 - m2 * (cos_d * p2));
+    series.set_rate(w1, Quantity(1) / l1 * b1);
+    series.set_rate(w2, Quantity(1) / l2 * (p2 - cos_d * b1));
+}
 
 /// The order of the series: 24, 38 or 70.
 template <class Scalar>
@@ -106,8 +83,8 @@ struct Zonotope {
     }
     EnclosedState<Scalar> state() const {
         const Box box = hull();
-        EnclosedState<Scalar> all;
-        for (int i = 0; i < 4; ++i) all[i] = {center[i].center, box[i]};
+        auto all = center;
+        for (int i = 0; i < 4; ++i) all[i].radius = box[i];
         return all;
     }
 };
@@ -119,14 +96,11 @@ public:
     using B = Ball<Scalar>;
 
     Enclosure(const EnclosedSystem& system, const EnclosureSpec& spec)
-        : spec_(spec),
-          middle_(system, B(Scalar(spec.counted.coefficient)), order_of<Scalar>),
-          tangent_(system, DoubleBall(spec.counted.coefficient), tangent_order) {
-        const auto chain = system.chain.template cast<B>();
-        set_.center << chain.angle[0], chain.angle[1], chain.rate[0], chain.rate[1];
+        : spec_(spec), system_(Cast<B>()(system)), in_double_(Cast<TangentBall>()(Cast<DoubleBall>()(system))) {
+        set_.center = released_in_angles<B, 2>(system_.chain);
         set_.edges.setZero(4, 4);
         for (int i = 0; i < 4; ++i) std::swap(set_.edges(i, i), set_.center[i].radius);
-        set_.edges *= spec.counted.start;
+        const auto& chain = system_.chain;
         const double shortest = std::min(chain.length[0].high(), chain.length[1].high());
         constexpr double of_period = 16384;
         const double part = std::sqrt(shortest / (std::abs(chain.gravity.high()) + shortest)) / of_period;
@@ -138,38 +112,32 @@ public:
         std::vector<EnclosedState<Scalar>> all{set_.state()};
         while (static_cast<long>(all.size()) <= spec_.samples) {
             watch(static_cast<long>(all.size()));
-            const Box hull = set_.hull();
-            start(hull);
             if (!find_step()) break;
             for (long n = parts_ - done_ % parts_; n <= length_; n += parts_) {
-                const auto sample = image(hull, n);
+                const auto sample = image(n);
                 if (!(sample.hull() <= spec_.largest_radius).all()) return all;
                 all.push_back(sample.state());
             }
-            set_ = image(hull, length_);
+            set_ = image(length_);
             done_ += length_;
         }
         return all;
     }
 
 private:
-    static constexpr int tangent_order = 12;
-
     static Ball<Wide> number(std::int64_t n) { return Wide(n); }
     /// The length of so many parts, s.
     Ball<Wide> seconds(long parts) const {
         return number(parts) * number(spec_.interval.numerator) / (number(spec_.interval.denominator) * number(parts_));
     }
 
-    void start(const Box& hull) {
-        State<TangentBall, 4> around;
-        for (int i = 0; i < 4; ++i)
-            around[i] = TangentBall::variable(DoubleBall(set_.center[i]).widened_by(hull[i]), i);
-        middle_.start(set_.center);
-        tangent_.start(around);
-    }
     /// Finds the length of the step, and proves that the motion exists that long.
     bool find_step() {
+        const auto now = set_.state();
+        State<TangentBall, 4> around;
+        for (int i = 0; i < 4; ++i) around[i] = TangentBall::variable(DoubleBall(now[i]), i);
+        begin(middle_, system_, set_.center);
+        begin(tangent_, in_double_, around);
         length_ = std::min(next_length_, spec_.samples * parts_ - done_);
         while (length_ > 0) {
             const auto h = seconds(length_);
@@ -199,8 +167,8 @@ private:
         return factor;
     }
 
-    /// The set so many parts after the start of the step, where its hull is `hull`.
-    Zonotope<Scalar> image(const Box& hull, long parts) const {
+    /// The set so many parts after the start of the step.
+    Zonotope<Scalar> image(long parts) const {
         const auto tau = number(parts) / number(length_);
         Zonotope<Scalar> all;
         Eigen::Matrix4d middle, spread;  // J = middle ± spread
@@ -216,7 +184,7 @@ private:
             rounding[i] = spec_.counted.rounding * end.radius;
         }
         // what mapping by the middle of the Jacobian leaves out, with its rounding
-        const Box missing = ((spread + 0x1p-49 * middle.cwiseAbs()) * hull.matrix()).array();
+        const Box missing = ((spread + 0x1p-49 * middle.cwiseAbs()) * set_.hull().matrix()).array();
         const Box box = (missing.unaryExpr(&widened) + rounding).unaryExpr(&widened);
         const Eigen::Index edges = spec_.counted.earlier_boxes == 0 ? 0 : set_.edges.cols();
         all.edges.resize(4, edges + 4);
@@ -225,8 +193,10 @@ private:
     }
 
     EnclosureSpec spec_;
-    PendulumSeries<B> middle_;
-    PendulumSeries<TangentBall> tangent_;
+    LinksAndDroplets<B> system_;
+    LinksAndDroplets<TangentBall> in_double_;
+    BallSeries<B> middle_{order_of<Scalar>};
+    BallSeries<TangentBall> tangent_{12};
     Zonotope<Scalar> set_;
     long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // of a sample; of the step; since the start
 };

@@ -6,21 +6,25 @@
 #include "physics/pendulum.hpp"
 
 #include <functional>
+#include <tuple>
 #include <vector>
 
 namespace doppel {
 
-/// Two ideal links and attracting bodies, by balls that contain their numbers.
-struct EnclosedSystem {
-    Pendulum<Ball<Wide>> chain;
-    std::vector<Droplet<Ball<Wide>>> droplets = {};
+/// Two ideal links and attracting bodies.
+template <class Scalar>
+struct LinksAndDroplets {
+    Pendulum<Scalar> chain;
+    std::vector<Droplet<Scalar>> droplets = {};
 
-    friend bool operator==(const EnclosedSystem&, const EnclosedSystem&) = default;
+    auto members() const { return std::tie(chain, droplets); }
 };
+/// By balls that contain its numbers.
+using EnclosedSystem = LinksAndDroplets<Ball<Wide>>;
 
 /// Scales of what an enclosure counts; all 1 for a proof. Tests leave parts out to see that they are needed.
 struct EnclosureCount {
-    double start = 1, truncation = 1, rounding = 1, nonlinearity = 1, earlier_boxes = 1, coefficient = 1;
+    double truncation = 1, rounding = 1, nonlinearity = 1, earlier_boxes = 1;
 };
 
 struct EnclosureSpec {

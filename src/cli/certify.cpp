@@ -24,29 +24,23 @@ std::vector<std::string> certified_files(const std::string& name) {
     return {name + ".certified.csv", name + ".certified.json"};
 }
 
-std::vector<std::string> certified_columns(const Scene& scene) {
+void write_rows(const Scene& scene, const Certificate& proved, const std::filesystem::path& place) {
     std::vector<std::string> columns{"sample", "time_s"};
     const auto add = [&](const std::string& number) {
-        for (const char* bound : {"_low", "_high"}) columns.push_back(number + bound);
+        columns.insert(columns.end(), {number + "_low", number + "_high"});
     };
     for (const char letter : scene.letters())
         for (const char* number : {"theta1_rad", "theta2_rad", "omega1_rad_per_s", "omega2_rad_per_s"})
             add(fmt::format("{}_{}", letter, number));
     if (!scene.is_single()) add("distance");
-    return columns;
-}
-
-void write_rows(const Scene& scene, const Certificate& proved, const std::filesystem::path& place) {
-    Csv table(place, certified_columns(scene));
-    const auto add = [&](const Interval& bounds) {
-        table.add(bounds.low);
-        table.add(bounds.high);
-    };
-    for (std::size_t n = 0; n < proved.rows.size(); ++n) {
-        table.add(static_cast<long>(n));
-        table.add(scene.time(static_cast<long>(n)));
-        for (const auto& bounds : proved.rows[n].states) add(bounds);
-        if (!scene.is_single()) add(proved.rows[n].distance);
+    Csv table(place, columns);
+    for (long n = 0; n <= proved.last(); ++n) {
+        table.add(n);
+        table.add(scene.time(n));
+        for (const auto& [low, high] : proved.rows[static_cast<std::size_t>(n)].bounds) {
+            table.add(low);
+            table.add(high);
+        }
         table.end_row();
     }
     table.finish();

@@ -5,12 +5,11 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstddef>
 #include <limits>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -22,13 +21,9 @@ using Wide = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<256, boost::multiprecision::digit_base_2, void, int>,
     boost::multiprecision::et_off>;
 
-/// The largest relative error of + − × / and √, rounded to nearest: 2⁻⁵³ for double.
-template <class Scalar>
-inline constexpr double unit_roundoff = [] {
-    double unit = 1;
-    for (int i = 0; i < std::numeric_limits<Scalar>::digits; ++i) unit /= 2;
-    return unit;
-}();
+constexpr double half_to_the(int power) {
+    return power == 0 ? 1 : half_to_the(power - 1) / 2;
+}
 
 /// At least x ≥ 0 after up to six operations of doubles ≥ 0, whatever the rounding mode; also if some were lost to
 /// underflow.
@@ -47,22 +42,22 @@ struct Counted {
 /// Source  Moore, Interval Analysis, 1966; van der Hoeven, Ball arithmetic, 2009.
 template <class Scalar, class Count = Counted>
 struct Ball {
-    static constexpr double roundoff = unit_roundoff<Scalar>;
-    using InWide = Ball<Wide, Count>;
+    /// The largest relative error of + − × / and √, rounded to nearest: 2⁻⁵³ for double.
+    static constexpr double roundoff = half_to_the(std::numeric_limits<Scalar>::digits);
 
     Scalar center = Scalar(0);
     double radius = 0;
 
     Ball() = default;
     Ball(int exact) : Ball(Scalar(exact), 0) {}
-    Ball(const Scalar& exact) requires(!std::is_same_v<Scalar, int>) : Ball(exact, 0) {}
+    Ball(const Scalar& exact) : Ball(exact, 0) {}
     Ball(Scalar middle, double spread) : center(std::move(middle)), radius(spread), center_size_(size_of(center)) {}
     /// In another precision.
-    template <class Other>
-    explicit Ball(const Ball<Other, Count>& other) requires(!std::is_same_v<Other, Scalar>)
+    template <class Other, class OtherCount>
+    explicit Ball(const Ball<Other, OtherCount>& other) requires(!std::is_same_v<Other, Scalar>)
         : Ball(Scalar(other.center), other.radius) {
         const Other rest = other.center - Other(center);  // exact
-        if (rest != Other(0)) radius = widened(radius + Ball<Other, Count>(rest).center_size());
+        if (rest != Other(0)) radius = widened(radius + Ball<Other>(rest).center_size());
     }
 
     /// At least |x| for every x in the ball.
@@ -70,10 +65,7 @@ struct Ball {
     /// At least the centre's size.
     double center_size() const { return center_size_; }
     /// At most |x| for every x in the ball; ≤ 0 if it contains 0.
-    double least() const {
-        const double least = std::abs(static_cast<double>(center)) * (1 - 0x1p-50) - radius;
-        return least > 0 ? least * (1 - 0x1p-50) : least;
-    }
+    double least() const { return std::max(low(), -high()); }
     /// Doubles below and above all of the ball.
     double low() const { return bound(-1); }
     double high() const { return bound(1); }
@@ -109,11 +101,7 @@ struct Ball {
         return {root.center, ((a - root * root) / (root + least)).size()};
     }
     /// With whatever is missing from a sum, at most `more` in size.
-    Ball widened_by(double more) const {
-        Ball wider = *this;
-        wider.radius = widened(radius + more);
-        return wider;
-    }
+    Ball widened_by(double more) const { return {center, widened(radius + more)}; }
 
 private:
     static double size_of(const Scalar& x) {
@@ -122,7 +110,7 @@ private:
     }
     static Ball rounded(Scalar center, double spread) {
         Ball ball(std::move(center), 0);
-        const double rounding = Count::rounding * 2 * unit_roundoff<Scalar> * ball.center_size_;
+        const double rounding = Count::rounding * 2 * roundoff * ball.center_size_;
         ball.radius = widened(spread + rounding);
         return ball;
     }
@@ -135,36 +123,22 @@ private:
     double center_size_ = 0;
 };
 
-/// The ball of a decimal literal, "-90.003" or "6.674e-11". Beyond 33 digits it stands for all numbers that have the
-/// same quad.
-inline Ball<Wide> ball_of_decimal(std::string_view text) {
-    using B = Ball<Wide>;
-    const auto mantissa = text.substr(0, text.find_first_of("eE"));
-    int exponent = mantissa == text ? 0 : std::stoi(std::string(text.substr(mantissa.size() + 1))), count = 0;
-    B size(0);
-    bool is_after_point = false;
-    for (const char c : mantissa) {
-        if (c == '.') is_after_point = true;
-        if (c < '0' || c > '9') continue;
-        size = size * B(10) + B(c - '0');
-        exponent -= is_after_point ? 1 : 0;
-        count += count > 0 || c != '0' ? 1 : 0;
-    }
-    if (count == 0) return B(0);
-    B scale(1);
-    for (int i = 0; i < std::abs(exponent); ++i) scale *= B(10);
-    size = exponent < 0 ? size / scale : size * scale;
-    constexpr int exact_digits = 33;
-    if (count > exact_digits) size = size.widened_by(size.size() * 4 * unit_roundoff<Quad>);
-    return text.front() == '-' ? -size : size;
+/// The ball of a decimal literal, "-90.003" or "6.674e-11", read within two units in the last place. With more than 33
+/// characters it stands for all numbers that have the same quad.
+inline Ball<Wide> ball_of_decimal(const std::string& text) {
+    const Ball<Wide> nearest{Wide(text)};
+    if (nearest.center == Wide(0)) return nearest;
+    constexpr std::size_t exact_digits = 33;
+    return nearest.widened_by(4 * nearest.size() *
+                              (text.size() > exact_digits ? Ball<Quad>::roundoff : Ball<Wide>::roundoff));
 }
 
 /// π, from its first 80 digits.
 template <class B>
 B pi_ball() {
-    static const typename B::InWide known(
-        Wide("3.1415926535897932384626433832795028841971693993751058209749445923078164062862089"), 1e-76);
-    return B(known);
+    static const B known(
+        Ball<Wide>(Wide("3.1415926535897932384626433832795028841971693993751058209749445923078164062862089"), 1e-76));
+    return known;
 }
 
 template <class Scalar, class Count>

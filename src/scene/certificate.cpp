@@ -71,22 +71,25 @@ Rows rows_of(const std::vector<EnclosedSystem>& sides, const Scene& scene, doubl
         auto& row = rows[n];
         for (std::size_t i = 0; i < sides.size(); ++i) {
             const auto& state = motions[are_same ? 0 : i][n];
-            for (const auto& number : state) row.states.push_back({number.low(), number.high()});
+            for (const auto& number : state) row.bounds.push_back({number.low(), number.high()});
             row.radius = std::max({row.radius, state[0].radius, state[1].radius});
         }
+        if (sides.size() < 2) continue;
+        auto& distance = row.bounds.emplace_back();
         if (are_same) continue;
-        const auto distance =
+        const auto between =
             state_space_distance(bobs_of_angles(chains[0], motions[0][n]), bobs_of_angles(chains[1], motions[1][n]));
-        row.distance = {std::max(0.0, distance.low()), distance.high()};
+        distance = {std::max(0.0, between.low()), between.high()};
     }
     return rows;
 }
 constexpr std::array rows_with{rows_of<double>, rows_of<Quad>, rows_of<Wide>};  // certified_bits
 
-/// Whether the distance is known to 1 % at all samples but the first, where it may be 0.
+/// Whether the distance of a pair is known to 1 % at all samples but the first, where it may be 0.
 bool is_sharp(const Rows& rows) {
     return std::all_of(rows.begin() + 1, rows.end(), [](const Certificate::Row& row) {
-        return row.distance.high - row.distance.low <= 0.01 * row.distance.high;
+        const auto [low, high] = row.bounds.back();
+        return high - low <= 0.01 * high;
     });
 }
 
@@ -110,7 +113,7 @@ void follow_runs(const Scene& scene, Certificate& proved, const std::atomic<bool
         for (const auto& row : proved.rows) {
             const auto state = run.next(stop);
             for (std::size_t i = 0; i < proved.runs.size(); ++i) {
-                const auto error = error_of(i == 0 ? state.a : state.b, &row.states[4 * i]);
+                const auto error = error_of(i == 0 ? state.a : state.b, &row.bounds[4 * i]);
                 auto& [until, beyond] = proved.runs[i];
                 has_left[i] = has_left[i] || !(error.high <= proved.run_radius);
                 if (!has_left[i]) until = scene.time(state.sample);
@@ -124,10 +127,11 @@ void follow_runs(const Scene& scene, Certificate& proved, const std::atomic<bool
 /// A pair of larger distances diverges no later.
 std::optional<Interval> divergence_of(const Scene& scene, const Certificate& proved) {
     Divergence earliest, latest;
-    for (std::size_t n = 0; n < proved.rows.size(); ++n) {
+    for (std::size_t n = 0; !scene.is_single() && n < proved.rows.size(); ++n) {
         const double time = scene.time(static_cast<long>(n));
-        earliest.add(time, proved.rows[n].distance.high);
-        latest.add(time, proved.rows[n].distance.low);
+        const auto [low, high] = proved.rows[n].bounds.back();
+        earliest.add(time, high);
+        latest.add(time, low);
     }
     if (!earliest.since() || !latest.since()) return std::nullopt;
     return Interval{*earliest.since(), *latest.since()};
@@ -164,7 +168,7 @@ Certificate certificate_of(const Scene& scene, double radius, int jobs, const st
         const bool is_last = i + 1 == certified_bits.size();
         all.bits = certified_bits[i];
         all.rows = rows_with[i](sides, scene, is_last ? lost_radius : sufficient_radius, jobs, watch);
-        if (all.last() == scene.samples && is_sharp(all.rows)) break;
+        if (all.last() == scene.samples && (scene.is_single() || is_sharp(all.rows))) break;
     }
     follow_runs(scene, all, stop);
     all.diverged_s = divergence_of(scene, all);
@@ -198,10 +202,10 @@ std::vector<std::string> certificate_words(const Scene& scene, const Certificate
         if (run.beyond_s) words += fmt::format(", and farther from it at {:.6g} s", *run.beyond_s);
         all.push_back(fmt::format("side {}: its run is {}", scene.letters()[i], words));
     }
+    const auto& distance = proved.rows.back().bounds.back();
     if (!scene.is_single())
         all.push_back(fmt::format("the true distance at {:.6g} s is between {:.10g} and {:.10g}",
-                                  scene.time(proved.last()), proved.rows.back().distance.low,
-                                  proved.rows.back().distance.high));
+                                  scene.time(proved.last()), distance.low, distance.high));
     if (const auto& time = proved.diverged_s)
         all.push_back(fmt::format("the true motions diverge at {:.6g} s{}", time->low,
                                   time->low == time->high ? "" : fmt::format(" to {:.6g} s", time->high)));
@@ -219,7 +223,7 @@ Json certificate_json(const Scene& scene, const Certificate& proved) {
     for (std::size_t i = 0; i < proved.runs.size(); ++i)
         json[std::string(1, scene.letters()[i])] = {{"run_proved_until_s", number(proved.runs[i].until_s)},
                                                     {"run_proved_beyond_s", number(proved.runs[i].beyond_s)}};
-    json["distance"] = !scene.is_single() ? interval(proved.rows.back().distance) : Json(nullptr);
+    json["distance"] = scene.is_single() ? Json(nullptr) : interval(proved.rows.back().bounds.back());
     json["diverged_s"] = proved.diverged_s ? interval(*proved.diverged_s) : Json(nullptr);
     return json;
 }

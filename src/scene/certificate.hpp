@@ -26,9 +26,9 @@ struct Interval {
 /// Enclosures of the true motion at samples 0, 1 … as far as all sides are proved, and what follows for their runs.
 struct Certificate {
     struct Row {
-        std::vector<Interval> states{};  // of each side θ1, θ2 (rad), ω1, ω2 (rad/s)
-        Interval distance{};             // of two sides, analysis/difference.hpp
-        double radius = 0;               // the largest of all angles, rad
+        // of each side θ1, θ2 (rad), ω1, ω2 (rad/s); of two sides also their distance (analysis/difference.hpp), the last
+        std::vector<Interval> bounds{};
+        double radius = 0;  // the largest of all angles, rad
     };
     /// For the run of a side, by its method: the time until which each angle is proved to be within the radius of the
     /// true one, at every sample; and the first at which one is proved to be farther from it, s.

@@ -97,7 +97,22 @@ TEST(Ball, ADecimalIsItsFractionNotTheNearestDouble) {
 }
 
 namespace mp = boost::multiprecision;
-using Wider = Ball<mp::number<mp::cpp_bin_float<320, mp::digit_base_2, void, int>, mp::et_off>>;
+using Number320 = mp::number<mp::cpp_bin_float<320, mp::digit_base_2, void, int>, mp::et_off>;
+using Wider = Ball<Number320>;
+
+TEST(Ball, ADecimalContainsItsFractionInMoreBits) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 1000; ++i) {
+        const auto digits = random() >> i % 64 | 1;
+        const int exponent = i % 81 - 40;
+        const auto ball = ball_of_decimal(std::to_string(digits) + "e" + std::to_string(exponent));
+        Wider scale(1), exact{Number320(digits)};
+        for (int k = 0; k < std::abs(exponent); ++k) scale *= Wider(10);
+        exact = exponent < 0 ? exact / scale : exact * scale;
+        EXPECT_LE((exact - Wider(Number320(ball.center))).size(), ball.radius) << digits << 'e' << exponent;
+        EXPECT_LE(ball.radius, 1e-76 * ball.size() + 1e-280);
+    }
+}
 
 /// Σ ±1 / ((2k + 1) n^(2k + 1)); alternating, so the rest is below its first term.
 Wider atan_of_inverse(int n) {
@@ -114,7 +129,7 @@ TEST(Ball, PiIsThatOfMachin) {
     // π = 16 atan(1/5) − 4 atan(1/239), Machin 1706
     const auto pi = Wider(16) * atan_of_inverse(5) - Wider(4) * atan_of_inverse(239);
     const auto is_inside = [&](const auto& ball) {
-        const Wider center(decltype(Wider::center)(ball.center));
+        const Wider center(Number320(ball.center));
         return (pi - center).size() <= ball.radius;
     };
     EXPECT_TRUE(is_inside(pi_ball<Ball<double>>()));
@@ -136,7 +151,7 @@ int wrong_sines() {
             all += contains(turn.sin, Wide(sin(Wide(at)))) ? 0 : 1;
             all += contains(turn.cos, Wide(cos(Wide(at)))) ? 0 : 1;
         }
-        if (turn.sin.radius > 1.01 * spread + 16 * (4 + std::abs(angle)) * unit_roundoff<Scalar>) ++all;
+        if (turn.sin.radius > 1.01 * spread + 16 * (4 + std::abs(angle)) * Ball<Scalar>::roundoff) ++all;
     }
     return all;
 }
