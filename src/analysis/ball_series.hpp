@@ -169,10 +169,7 @@ private:
         const auto &a = node.a < 0 ? constant : bounds(node.a), &b = node.b < 0 ? constant : bounds(node.b);
         if (node.operation == Operation::sum || node.operation == Operation::difference) return a.rest + b.rest;
         if (node.operation != Operation::product) throw std::logic_error("no remainder of this operation is known");
-        SumOfProducts<Bound> sum;
-        sum.add(a.size, b.rest);
-        sum.add(a.rest, b.size + b.rest);
-        return sum.value() + tail;
+        return a.size * b.rest + a.rest * (b.size + b.rest) + tail;
     }
 
     int order_;

@@ -103,8 +103,9 @@ public:
         const auto& chain = system_.chain;
         const double shortest = std::min(chain.length[0].high(), chain.length[1].high());
         constexpr double of_period = 16384;
-        const double part = std::sqrt(shortest / (std::abs(chain.gravity.high()) + shortest)) / of_period;
-        parts_ = static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / part)));
+        const double longest = std::sqrt(shortest / (std::abs(chain.gravity.high()) + shortest)) / of_period;
+        parts_ = static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / longest)));
+        part_ = number(spec.interval.numerator) / (number(spec.interval.denominator) * number(parts_));
     }
 
     /// As enclosures().
@@ -126,11 +127,6 @@ public:
 
 private:
     static Ball<Wide> number(std::int64_t n) { return Wide(n); }
-    /// The length of so many parts, s.
-    Ball<Wide> seconds(long parts) const {
-        return number(parts) * number(spec_.interval.numerator) / (number(spec_.interval.denominator) * number(parts_));
-    }
-
     /// Finds the length of the step, and proves that the motion exists that long.
     bool find_step() {
         const auto now = set_.state();
@@ -140,7 +136,7 @@ private:
         begin(tangent_, in_double_, around);
         length_ = std::min(next_length_, spec_.samples * parts_ - done_);
         while (length_ > 0) {
-            const auto h = seconds(length_);
+            const auto h = number(length_) * part_;
             middle_.expand(B(h));
             const double longest = static_cast<double>(length_) * longer();
             next_length_ = static_cast<long>(std::clamp(longest, 1.0, 4.0 * static_cast<double>(length_)));
@@ -198,6 +194,7 @@ private:
     BallSeries<B> middle_{order_of<Scalar>};
     BallSeries<TangentBall> tangent_{12};
     Zonotope<Scalar> set_;
+    Ball<Wide> part_;                                             // s
     long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // of a sample; of the step; since the start
 };
 

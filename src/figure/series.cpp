@@ -55,7 +55,7 @@ double film_value(const PairState& state, double start_distance, const std::stri
     return seen.bobs[std::stoul(std::string(name.substr(digits))) - 1].*member->second;
 }
 
-/// Columns in place of a film's: the radius of the certified enclosure of side a, with each of certified_bits.
+/// Columns in place of a film's: the radius of the certified enclosure of side a, with each precision.
 constexpr std::array<std::string_view, 3> certified_columns{"radius_double_rad", "radius_quad_rad",
                                                             "radius_256_bits_rad"};
 

@@ -50,8 +50,7 @@ struct Ball {
 
     Ball() = default;
     Ball(int exact) : Ball(Scalar(exact), 0) {}
-    Ball(const Scalar& exact) : Ball(exact, 0) {}
-    Ball(Scalar middle, double spread) : center(std::move(middle)), radius(spread), center_size_(size_of(center)) {}
+    Ball(Scalar middle, double spread = 0) : center(std::move(middle)), radius(spread), center_size_(size_of(center)) {}
     /// In another precision.
     template <class Other, class OtherCount>
     explicit Ball(const Ball<Other, OtherCount>& other) requires(!std::is_same_v<Other, Scalar>)
@@ -159,10 +158,9 @@ struct SinCos<Ball<Scalar, Count>> {
         int n = 0;
         for (; term.size() > 1e-3 * B::roundoff; ++n, term = term * y / B(n)) sums[n % 2] += n % 4 < 2 ? term : -term;
         const double rest = Count::series_remainder * widened(2 * term.size() + reduced.radius);
-        const B c = sums[0].widened_by(rest), s = sums[1].widened_by(rest);
-        const int turns = quarter & 3;
-        sin = turns == 0 ? s : turns == 1 ? c : turns == 2 ? -s : -c;
-        cos = turns == 0 ? c : turns == 1 ? -s : turns == 2 ? -c : s;
+        cos = sums[0].widened_by(rest);
+        sin = sums[1].widened_by(rest);
+        for (int turns = quarter & 3; turns > 0; --turns) sin = std::exchange(cos, -sin);
     }
 };
 

@@ -26,6 +26,12 @@ std::vector<Ball<Wide>> decimals(const std::vector<Quad>& numbers, const Ball<Wi
 }
 
 EnclosedSystem system_of(const SideSpec& spec) {
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
+    if (!spec.particles.empty() || spec.links() != 2 || !spec.physical.is_none() || !spec.track.is_none() ||
+        !spec.constraints.empty() || !std::all_of(spec.forces.begin(), spec.forces.end(), is_droplet))
+        throw bad_input(
+            "a proof needs two ideal links: no friction, drive, track or further constraint, and no force but gravity "
+            "and droplets");
     const auto degree = pi_ball<Ball<Wide>>() / Ball<Wide>(180);
     EnclosedSystem all{{decimals(spec.mass_kg), decimals(spec.length_m), decimals(spec.angle_deg, degree),
                         decimals(spec.omega_deg_per_s, degree), decimal(spec.gravity_m_per_s2)}};
@@ -37,9 +43,10 @@ EnclosedSystem system_of(const SideSpec& spec) {
 }
 
 std::vector<EnclosedSystem> systems_of(const Scene& scene) {
-    check_provable(scene);
-    std::vector<EnclosedSystem> all{system_of(scene.preset.a)};
-    if (!scene.is_single()) all.push_back(system_of(scene.preset.b));
+    std::vector<EnclosedSystem> all;
+    for (const char letter : scene.letters())
+        all.push_back(
+            for_side(scene.preset, letter, [&] { return system_of(letter == 'a' ? scene.preset.a : scene.preset.b); }));
     return all;
 }
 
@@ -83,7 +90,14 @@ Rows rows_of(const std::vector<EnclosedSystem>& sides, const Scene& scene, doubl
     }
     return rows;
 }
-constexpr std::array rows_with{rows_of<double>, rows_of<Quad>, rows_of<Wide>};  // certified_bits
+
+struct Arithmetic {
+    int bits;
+    const char* words;
+    Rows (*rows)(const std::vector<EnclosedSystem>&, const Scene&, double, int, const Report&);
+};
+constexpr std::array arithmetics{Arithmetic{53, "double", rows_of<double>}, Arithmetic{113, "quad", rows_of<Quad>},
+                                 Arithmetic{256, "256 bits", rows_of<Wide>}};
 
 /// Whether the distance of a pair is known to 1 % at all samples but the first, where it may be 0.
 bool is_sharp(const Rows& rows) {
@@ -137,23 +151,10 @@ std::optional<Interval> divergence_of(const Scene& scene, const Certificate& pro
     return Interval{*earliest.since(), *latest.since()};
 }
 
-std::string bits_words(int bits) {
-    return bits == certified_bits[0] ? "double" : bits == certified_bits[1] ? "quad" : fmt::format("{} bits", bits);
-}
-
 }  // namespace
 
 void check_provable(const Scene& scene) {
-    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
-    for (const char letter : scene.letters())
-        for_side(scene.preset, letter, [&] {
-            const auto& side = letter == 'a' ? scene.preset.a : scene.preset.b;
-            if (!side.particles.empty() || side.links() != 2 || !side.physical.is_none() || !side.track.is_none() ||
-                !side.constraints.empty() || !std::all_of(side.forces.begin(), side.forces.end(), is_droplet))
-                throw bad_input(
-                    "a proof needs two ideal links: no friction, drive, track or further constraint, and no force "
-                    "but gravity and droplets");
-        });
+    systems_of(scene);
 }
 
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
@@ -164,11 +165,11 @@ Certificate certificate_of(const Scene& scene, double radius, int jobs, const st
         if (report) report(done, total);
     };
     Certificate all{.run_radius = radius};
-    for (std::size_t i = 0; i < certified_bits.size(); ++i) {
-        const bool is_last = i + 1 == certified_bits.size();
-        all.bits = certified_bits[i];
-        all.rows = rows_with[i](sides, scene, is_last ? lost_radius : sufficient_radius, jobs, watch);
-        if (all.last() == scene.samples && (scene.is_single() || is_sharp(all.rows))) break;
+    for (;; ++all.precision) {
+        const bool is_last = all.precision + 1 == arithmetics.size();
+        all.rows =
+            arithmetics[all.precision].rows(sides, scene, is_last ? lost_radius : sufficient_radius, jobs, watch);
+        if (is_last || (all.last() == scene.samples && (scene.is_single() || is_sharp(all.rows)))) break;
     }
     follow_runs(scene, all, stop);
     all.diverged_s = divergence_of(scene, all);
@@ -178,7 +179,7 @@ Certificate certificate_of(const Scene& scene, double radius, int jobs, const st
 std::vector<double> certified_radii(const Scene& scene, std::size_t precision, const std::atomic<bool>& stop) {
     const auto watch = [&](long, long) { throw_if_set(stop); };
     std::vector<double> radii;
-    for (const auto& row : rows_with[precision]({systems_of(scene).front()}, scene, lost_radius, 1, watch))
+    for (const auto& row : arithmetics[precision].rows({systems_of(scene).front()}, scene, lost_radius, 1, watch))
         radii.push_back(row.radius);
     radii.resize(static_cast<std::size_t>(scene.samples) + 1, NAN);
     return radii;
@@ -192,7 +193,7 @@ double Certificate::run_until_s() const {
 
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved) {
     std::vector<std::string> all{fmt::format("the true motion is proved until {:.6g} s in {}: angles within {:.1e} rad",
-                                             scene.time(proved.last()), bits_words(proved.bits),
+                                             scene.time(proved.last()), arithmetics[proved.precision].words,
                                              proved.rows.back().radius)};
     for (std::size_t i = 0; i < proved.runs.size(); ++i) {
         const auto& run = proved.runs[i];
@@ -215,7 +216,7 @@ std::vector<std::string> certificate_words(const Scene& scene, const Certificate
 Json certificate_json(const Scene& scene, const Certificate& proved) {
     const auto number = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
     const auto interval = [](const Interval& x) { return Json{x.low, x.high}; };
-    Json json{{"bits", proved.bits},
+    Json json{{"bits", arithmetics[proved.precision].bits},
               {"until_s", scene.time(proved.last())},
               {"to_the_end", proved.last() == scene.samples},
               {"largest_radius_rad", proved.rows.back().radius},

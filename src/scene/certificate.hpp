@@ -3,8 +3,8 @@
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
-#include <array>
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -14,9 +14,6 @@ namespace doppel {
 
 /// By which a run has left the true motion, rad.
 inline constexpr double usual_run_radius = 0.5;
-
-/// The precisions of enclosures, in bits: double, quad, and more.
-inline constexpr std::array certified_bits{53, 113, 256};
 
 /// Proved bounds of a number, inclusive.
 struct Interval {
@@ -36,7 +33,7 @@ struct Certificate {
         std::optional<double> until_s{}, beyond_s{};
     };
 
-    int bits = 0;
+    std::size_t precision = 0;  // 0 for double, 1 for quad, 2 for 256 bits
     std::vector<Row> rows{};
     double run_radius = 0;  // rad
     std::vector<OfRun> runs{};
@@ -57,7 +54,7 @@ void check_provable(const Scene& scene);
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
                            const std::function<void(long, long)>& report = {});
 
-/// The radii of side a at all samples with certified_bits[precision], rad; NaN where nothing is proved.
+/// The radii of side a at all samples with a precision as Certificate::precision, rad; NaN where nothing is proved.
 std::vector<double> certified_radii(const Scene& scene, std::size_t precision, const std::atomic<bool>& stop);
 
 /// The results in sentences.
