@@ -93,12 +93,12 @@ void add_keys(const FieldTable& table, const std::string& above, const std::stri
                 {key, field.unit.empty() ? std::string(field.help) : fmt::format("{}, {}", field.help, field.unit)});
             continue;
         }
-        for (const auto& choice : field.choices)
-            all.push_back({key + choice});  // texts and lists of one text need no quotes
+        for (const auto name : field.names)
+            all.push_back({fmt::format("{}{}", key, name)});  // texts and lists of one text need no quotes
         const auto example = field.example();
         if (example == "true" || example == "false")
             all.insert(all.end(), {{key + "true"}, {key + "false"}});
-        else if (field.choices.empty())
+        else if (field.names.empty())
             all.push_back({key + example});
     }
 }

@@ -52,10 +52,12 @@ std::string starting_value(const ListedField& field) {
 
 /// "# help (number, > 0; unit s; default: none)", then the key, commented out if it is rarely used.
 std::string key_lines(const ListedField& field, const std::string& prefix, bool is_live) {
-    auto text = fmt::format("# {} ({}", field.help, plain_words(field.takes()));
-    if (!field.unit.empty()) text += fmt::format("; unit {}", field.unit);
-    if (field.default_value().empty()) text += fmt::format("; default: {}", plain_words(field.by_default));
-    return fmt::format("{})\n{}{}{} = {}\n", text, is_live ? "" : "#", prefix, field.key, starting_value(field));
+    auto takes = field.takes();
+    if (!field.unit.empty()) takes += fmt::format("; unit {}", field.unit);
+    if (field.default_value.empty()) takes += fmt::format("; default: {}", field.described_default);
+    std::erase(takes, '`');
+    return fmt::format("# {} ({})\n{}{}{} = {}\n", field.help, takes, is_live ? "" : "#", prefix, field.key,
+                       starting_value(field));
 }
 
 std::string table_lines(const FieldTable& table, std::string_view kind, const std::string& prefix = "") {
@@ -81,7 +83,11 @@ std::string side_lines(std::string_view side, std::string_view kind) {
     auto text = fmt::format("\n[{0}]  # what side {0} has otherwise: any keys of [system]\n", side);
     // the pairs of a grid differ in the key of its x axis
     if (side == "b" && kind != "grid") text += "angle_deg = [90.003, 90]\n";
-    return kind == pair_kind ? text + table_lines(side_text_table(), kind) : text;
+    if (kind != pair_kind) return text;
+    FieldTable texts("[a]");
+    SideSpec none;
+    side_text_fields(texts, none);
+    return text + table_lines(texts, kind);
 }
 
 /// A preset of that kind with all keys; rarely used ones are comments.

@@ -2,6 +2,7 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
+#include "embedded/cli.hpp"
 #include "figure/preset.hpp"
 #include "scene/preset_fields.hpp"
 #include "scene/resolved.hpp"
@@ -100,6 +101,10 @@ void show(const std::string& text) {
     if (!isatty(STDOUT_FILENO)) return write_out(text);
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) print_line("{}", line);
+}
+
+std::string_view preset_schema() {
+    return embedded_file(cli_files(), "preset.schema.json");
 }
 
 constexpr std::string_view directive = "#:schema ", address_of_file = "file://";

@@ -80,32 +80,43 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
 
 std::vector<FieldTable> tables_of(std::string_view kind) {
     using System = FigureKind::System;
-    const auto film = film_tables();
     const auto figure = std::ranges::find(figure_kinds(), kind, &FigureKind::name);
     const bool is_film = kind == pair_kind, has_pair = is_film || figure->system == System::pair;
-    std::vector<FieldTable> all{is_film ? film[0] : FieldTable(), film[1]};
-    all[0].name = "[]";
+    std::vector<FieldTable> all;
+    Preset preset;
     FigurePreset none;
-    if (!is_film) {
-        top_fields(all[0], none);
-        std::erase_if(all[1].fields, [&](const ListedField& field) {  // only for films, or for pairs
-            return field.key.ends_with("_columns") || field.key == "certify" ||
-                   (!has_pair && field.key != kind_field.key);
-        });
+    auto& top = all.emplace_back("[]");
+    if (is_film) {
+        top(title_field, preset.title);
+        top(subtitle_field, preset.subtitle);
+    } else {
+        top_fields(top, none);
     }
-    for (const std::string_view key : {"system", "a", "b"}) {
+    auto& scene = all.emplace_back("[scene]");
+    scene(kind_field, std::string(pair_kind));
+    if (is_film)
+        film_fields(scene, preset);
+    else if (has_pair)
+        clock_fields(scene, preset);
+    for (const auto* name : {"[system]", "[a]", "[b]"}) {
         if (!has_pair) break;
-        all.emplace_back(film[2]).name = fmt::format("[{}]", key);
-        if (is_film && key != "system") all.back().append(side_text_table());
+        auto& side = all.emplace_back(name);
+        side.is_widest = true;
+        side_fields(side, preset.a);
+        if (is_film && side.key() != "system") side_text_fields(side, preset.a);
     }
     if (is_film) {
-        all.push_back(film.back());
+        auto& video = all.emplace_back("[video]");
+        video.is_widest = true;
+        video(size_field, preset.video.size);
+        video(preview_field, false);
+        video_fields(video, preset.video);
         return all;
     }
-    if (SideSpec side; figure->system == System::release) {
+    if (figure->system == System::release) {
         auto& chain = all.emplace_back("[system]");
-        chain_fields(chain, side);
-        gravity_field(chain, side);
+        chain_fields(chain, preset.a);
+        gravity_field(chain, preset.a);
     }
     chart_fields(all.emplace_back("[chart]"), none.chart);
     for (auto& table : figure->tables())

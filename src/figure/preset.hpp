@@ -36,7 +36,4 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
 /// keys outside of tables; others are "[scene]", "[system]", "[a]" … and "[[curve]]".
 std::vector<FieldTable> tables_of(std::string_view kind);
 
-/// The JSON schema (Draft 4) of presets.
-std::string preset_schema();
-
 }  // namespace doppel

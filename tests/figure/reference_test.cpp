@@ -1,4 +1,5 @@
 // docs/presets*.md list the same keys as the program.
+#include "figure/film_tables.hpp"
 #include "figure/kinds.hpp"
 #include "figure/support.hpp"
 
@@ -40,21 +41,32 @@ std::vector<FieldTable> figure_tables() {
     return all;
 }
 
+/// A section of docs/presets.md, including the inner tables.
+std::string markdown(const FieldTable& table) {
+    auto page = fmt::format("\n## `{}`\n\n{}{}| key | takes | unit | default | |\n|---|---|---|---|---|\n", table.name,
+                            table.text, table.text.empty() ? "" : "\n");
+    for (const auto& field : table.fields)
+        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, field.takes(), field.unit,
+                            test::default_of(field), field.help);
+    for (const auto& inner : table.tables) page += markdown(inner);
+    return page;
+}
+
 /// Pages of docs/ with the lists of keys that follow their introductions.
 std::map<std::string, std::string> lists_of_pages() {
-    const auto markdown = [](std::span<const FieldTable> tables) {
+    const auto list = [](std::span<const FieldTable> tables) {
         std::string text;
-        for (const auto& table : tables) text += table.markdown();
+        for (const auto& table : tables) text += markdown(table);
         return text;
     };
-    const auto film = film_tables(), figures = figure_tables();
+    const auto film = test::film_tables(), figures = figure_tables();
     const auto series =
         std::find_if(figures.begin(), figures.end(), [](const auto& table) { return table.name == "[series]"; });
     const auto all = std::span(film);
-    return {{"presets.md", markdown(all.first(all.size() - 1))},
-            {"presets-video.md", markdown(all.last(1))},
-            {"presets-figures.md", markdown({figures.begin(), series})},
-            {"presets-series.md", markdown({series, figures.end()})}};
+    return {{"presets.md", list(all.first(all.size() - 1))},
+            {"presets-video.md", list(all.last(1))},
+            {"presets-figures.md", list({figures.begin(), series})},
+            {"presets-series.md", list({series, figures.end()})}};
 }
 
 TEST(Reference, OfPresetsIsThatOfTheLists) {
@@ -78,7 +90,7 @@ std::set<std::string> listed_keys(const std::vector<FieldTable>& tables, const s
 }
 
 TEST(Reference, ListsEveryKeyOfThePresets) {
-    auto tables = film_tables();
+    auto tables = test::film_tables();
     for (auto& table : figure_tables()) tables.push_back(table);
     std::size_t seen = 0;
     for (const auto& preset : builtin_presets()) {

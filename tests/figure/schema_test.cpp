@@ -1,6 +1,7 @@
 // The schema of presets accepts what the reader accepts, and rejects what a schema can reject.
 #include "figure/json_schema.hpp"
 #include "figure/kinds.hpp"
+#include "figure/preset_schema.hpp"
 #include "figure/refused_figures.hpp"
 #include "figure/support.hpp"
 #include "fuzz/mutation.hpp"
@@ -17,7 +18,7 @@ namespace schema_test {
 namespace fs = std::filesystem;
 
 const test::JsonSchema& schema() {
-    static const test::JsonSchema known(Json::parse(preset_schema()));
+    static const test::JsonSchema known(Json::parse(test::preset_schema()));
     return known;
 }
 
@@ -59,8 +60,8 @@ bool is_of_motion(const std::string& text, const std::string& message) {
 
 TEST(Schema, IsThatOfTheLists) {
     const fs::path path = DOPPEL_SOURCE_DIR "/presets/preset.schema.json";
-    if (std::getenv("DOPPEL_UPDATE_REFERENCE")) test::write_bytes(path, preset_schema());
-    EXPECT_EQ(test::bytes_of(path), preset_schema()) << "tests/update-reference makes it anew";
+    if (std::getenv("DOPPEL_UPDATE_REFERENCE")) test::write_bytes(path, test::preset_schema());
+    EXPECT_EQ(test::bytes_of(path), test::preset_schema()) << "tests/update-reference makes it anew";
 }
 
 TEST(Schema, AcceptsEveryPresetAsItIsAndResolved) {

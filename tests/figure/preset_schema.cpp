@@ -1,24 +1,153 @@
+#include "figure/preset_schema.hpp"
+
+#include "figure/film_tables.hpp"
 #include "figure/kinds.hpp"
 #include "figure/preset.hpp"
 #include "scene/resolved.hpp"
 
-namespace doppel {
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace doppel::test {
 namespace {
+
+/// A list of `minimum` to `maximum` items; 0 = any number.
+Json list_schema(Json items, std::size_t minimum, std::size_t maximum) {
+    Json schema{{"type", "array"}, {"items", std::move(items)}};
+    if (minimum > 0) schema["minItems"] = minimum;
+    if (maximum > 0) schema["maxItems"] = maximum;
+    return schema;
+}
+
+/// A JSON number, as an integer if it is whole.
+Json json_number(double number) {
+    constexpr double maximum = 1e15;
+    if (number == std::floor(number) && std::abs(number) < maximum) return std::llround(number);
+    return number;
+}
+
+Json within(const Bounds& bounds) {
+    Json schema{{"type", "number"}};
+    if (bounds.has_low() || bounds.is_positive) {
+        schema["minimum"] = json_number(std::max(bounds.low, bounds.is_positive ? 0.0 : -Bounds::infinity));
+        if (bounds.is_open) schema["exclusiveMinimum"] = true;
+    }
+    if (bounds.has_high()) schema["maximum"] = json_number(bounds.high);
+    return schema;
+}
+
+/// A ratio is not negative, and its denominator is not 0.
+Json ratio_within(Bounds bounds) {
+    constexpr std::string_view exponent = R"(([eE]\+?-?[0-9]+)?)", any = R"(([0-9]+\.?[0-9]*|\.[0-9]+))",
+                               not_0 = R"(([0-9]*[1-9][0-9]*\.?[0-9]*|[0-9]*\.[0-9]*[1-9][0-9]*))";
+    const auto above = fmt::format("{}{}", bounds.is_open ? not_0 : any, exponent);
+    const auto below = fmt::format("{}{}", not_0, exponent);
+    if (!bounds.has_low()) bounds.low = 0;
+    const auto pattern = fmt::format(R"(^(\+?{0}(/\+?{1})?|-{0}/-{1})$)", above, below);
+    return {{"anyOf", {within(bounds), {{"type", "string"}, {"pattern", pattern}}}}};
+}
+
+Json text_schema(const ListedField& field) {
+    Json schema{{"type", "string"}};
+    if (!field.names.empty()) schema["enum"] = field.names;
+    if (field.is_needed()) schema["minLength"] = 1;
+    if (field.is_drawn) schema["maxLength"] = max_letters;
+    if (!field.pattern.empty()) schema["pattern"] = field.pattern;
+    return schema;
+}
+
+Json any_of(std::initializer_list<Json> schemas) {
+    return {{"anyOf", Json(schemas)}};
+}
+
+using L = const ListedField&;
+
+Json pair_schema(L field) {
+    return list_schema(within(field.bounds), 2, 2);
+}
+Json truth_schema() {
+    return {{"type", "boolean"}};
+}
+Json color_schema() {
+    return {{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
+}
+Json texts_schema(L field, std::size_t minimum) {
+    return list_schema(text_schema(field), minimum, field.is_drawn ? max_texts : 0);
+}
+
+Json whole_schema(L field) {
+    auto schema = within(field.bounds);
+    schema["type"] = "integer";
+    return schema;
+}
+
+Json numbers_schema(L field) {
+    const auto number = within(field.bounds);
+    return field.maximum > 0 ? list_schema(number, 1, field.maximum) : any_of({number, list_schema(number, 1, 0)});
+}
+
+Json whole_pair_schema(L field) {
+    auto whole = within(field.bounds);
+    whole["multipleOf"] = 1;
+    return list_schema(whole, 2, 2);
+}
+
+Json speed_schema(L field) {
+    const Json places{ratio_within(not_negative), ratio_within(changing_speeds)};
+    const Json change{{"type", "array"}, {"items", places}, {"minItems", 2}, {"additionalItems", false}};
+    return any_of({ratio_within(field.bounds), list_schema(change, 1, 0)});
+}
+
+Json members_schema(L field) {
+    return any_of({whole_schema(field), list_schema(any_of({list_schema(within({}), 1, 0), Json{{"type", "object"}}}),
+                                                    2, Members::max_releases)});
+}
+
+/// The schema of a key whose member has this type.
+template <class T>
+Json type_schema(L field) {
+    using std::is_same_v;
+    if constexpr (is_optional<T>) return type_schema<typename T::value_type>(field);
+    if constexpr (is_same_v<T, bool>) return truth_schema();
+    if constexpr (is_same_v<T, int>) return whole_schema(field);
+    if constexpr (is_same_v<T, double> || is_same_v<T, Quad>) return within(field.bounds);
+    if constexpr (is_same_v<T, Rational>) return ratio_within(field.bounds);
+    if constexpr (is_same_v<T, std::vector<double>> || is_same_v<T, std::vector<Quad>>) return numbers_schema(field);
+    if constexpr (is_same_v<T, std::vector<std::string>>) return texts_schema(field, 0);
+    if constexpr (is_same_v<T, Panels>) return texts_schema(field, 1);
+    if constexpr (is_same_v<T, Speed>) return speed_schema(field);
+    if constexpr (is_same_v<T, QuadPair> || is_same_v<T, Range>) return pair_schema(field);
+    if constexpr (is_same_v<T, Members>) return members_schema(field);
+    if constexpr (is_same_v<T, ChosenText>) return any_of({truth_schema(), text_schema(field), texts_schema(field, 0)});
+    if constexpr (is_same_v<T, EndSpec>) return any_of({text_schema(field), pair_schema(field)});
+    if constexpr (is_same_v<T, TomlValues>) return list_schema(Json::object(), 1, field.maximum);
+    if constexpr (is_same_v<T, Size> || is_same_v<T, std::array<int, 2>>) return whole_pair_schema(field);
+    if constexpr (is_same_v<T, Color>) return color_schema();
+    if constexpr (is_same_v<T, std::array<Color, 2>>) return list_schema(color_schema(), 2, 2);
+    return text_schema(field);
+}
+
+/// type_schema() of the type with this index.
+template <class... Member>
+Json type_schema(L field, const std::variant<Member...>*) {
+    constexpr std::array<Json (*)(L), sizeof...(Member)> of_types{type_schema<std::remove_pointer_t<Member>>...};
+    return of_types[field.member_type](field);
+}
 
 /// For example "a whole number of samples. Unit: s. Range: > 0. Default: 30."
 std::string description_of(const ListedField& field) {
     auto text = fmt::format("{}.", field.help);
     if (!field.unit.empty()) text += fmt::format(" Unit: {}.", field.unit);
     if (const auto range = field.range_text(); !range.empty()) text += fmt::format(" Range: {}.", range);
-    return text + (field.is_needed() ? " Must be given." : fmt::format(" Default: {}.", field.by_default));
+    return text + (field.is_needed() ? " Must be given." : fmt::format(" Default: {}.", default_of(field)));
 }
 
 Json key_schema(const ListedField& field) {
-    auto schema = field.type.schema(field);
+    auto schema = type_schema(field, static_cast<const KeyMember*>(nullptr));
     schema["title"] = field.unit.empty() ? std::string(field.key) : fmt::format("{}, {}", field.key, field.unit);
     schema["description"] = description_of(field);
-    if (const auto value = field.default_value(); !value.empty())
-        schema["default"] = json_of_toml("value = " + value)["value"];
+    if (!field.default_value.empty()) schema["default"] = json_of_toml("value = " + field.default_value)["value"];
     return schema;
 }
 
@@ -85,7 +214,8 @@ Json entry_schema(const std::vector<FieldTable>& film, std::string_view key, boo
 /// [system], or [a] and [b], which change [system].
 Json side_schema(const std::vector<FieldTable>& film, bool may_change) {
     auto table = film[2];
-    if (may_change) table.append(side_text_table());
+    SideSpec side;
+    if (may_change) side_text_fields(table, side);
     auto schema = table_schema(table);
     auto particle = table_schema(film[3]);
     particle["required"] = needed_keys(film[3]);
@@ -164,4 +294,4 @@ std::string preset_schema() {
     return schema.dump(2) + "\n";
 }
 
-}  // namespace doppel
+}  // namespace doppel::test
