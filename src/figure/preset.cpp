@@ -42,9 +42,10 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, K
     const auto& kind = *std::ranges::find(figure_kinds(), figure.kind, &FigureKind::name);
     try {
         figure.experiment = kind.read(reader);
-    } catch (const KeyError& error) {
+    } catch (KeyError& error) {
         if (!errors) throw;
-        top.refuse(error.with({}), "");
+        error.group.clear();
+        top.refuse(error.with({}));
         errors->throw_if_any();
     }
     if (!errors && !top.has("subtitle")) figure.subtitle = figure.experiment->subtitle();

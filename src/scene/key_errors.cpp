@@ -15,8 +15,8 @@ bool meet(std::string_view group, std::string_view other) {
 }
 
 /// Whether one wrong key may cause both: the same message, or two keys that conflict with the same third key.
-bool may_have_one_cause(const KeyErrors::Entry& error, const KeyErrors::Entry& other) {
-    if (error.message == other.message) return true;
+bool may_have_one_cause(const KeyError& error, const KeyError& other) {
+    if (error.what() == std::string_view(other.what())) return true;
     if (!error.beside || !other.beside || !meet(error.group, other.group)) return false;
     const auto &key = *error.beside, &third = *other.beside;
     return key == third || key.empty() || third.empty();
@@ -30,27 +30,25 @@ ErrorPlace KeyErrors::of_option(const std::string& origin) const {
 }
 
 bool KeyErrors::concern(std::string_view group) const {
-    return std::any_of(errors_.begin(), errors_.end(), [&](const Entry& error) { return meet(error.group, group); });
+    return std::ranges::any_of(errors_, [&](const KeyError& error) { return meet(error.group, group); });
 }
 
 void KeyErrors::throw_if_any() const {
-    const auto may_be_caused = [&](const Entry& error) {
-        return error.beside && std::any_of(errors_.begin(), errors_.end(), [&](const Entry& other) {
+    const auto may_be_caused = [&](const KeyError& error) {
+        return error.beside && std::ranges::any_of(errors_, [&](const KeyError& other) {
                    return !other.beside && meet(other.group, error.group) &&
                           (error.beside->empty() || other.key == *error.beside);
                });
     };
-    std::vector<Entry> counting;
+    std::vector<KeyError> counting;
     for (const auto& error : errors_) {
-        const bool exists = std::any_of(counting.begin(), counting.end(),
-                                        [&](const Entry& other) { return may_have_one_cause(error, other); });
-        if (!exists && !may_be_caused(error)) counting.push_back(error);
+        const auto has_its_cause = [&](const KeyError& other) { return may_have_one_cause(error, other); };
+        if (std::ranges::none_of(counting, has_its_cause) && !may_be_caused(error)) counting.push_back(error);
     }
     if (counting.empty()) return;
-    std::stable_sort(counting.begin(), counting.end(),
-                     [](const Entry& one, const Entry& other) { return one.place < other.place; });
+    std::ranges::stable_sort(counting, {}, &KeyError::place);
     std::vector<std::string> lines;
-    for (const auto& error : counting) lines.push_back(error.message);
+    for (const auto& error : counting) lines.emplace_back(error.what());
     if (lines.size() > max_reported) {
         const auto left = lines.size() - max_reported;
         lines.resize(max_reported);

@@ -7,8 +7,7 @@ namespace doppel {
 
 Pendulum<Quad> chain_of(const SideSpec& spec) {
     Pendulum<Quad> chain{spec.mass_kg, spec.length_m, {}, {}, spec.gravity_m_per_s2};
-    if (!spec.physical.is_none())
-        for (std::size_t i = 0; i < chain.links(); ++i) chain.mass[i] += spec.physical.rod_mass_kg[i];
+    for (std::size_t i = 0; i < chain.links(); ++i) chain.mass[i] += spec.physical.rod_mass_kg[i];
     const Quad degree = pi_of<Quad>() / 180;
     for (const auto& angle : spec.angle_deg) chain.angle.push_back(angle * degree);
     for (const auto& rate : spec.omega_deg_per_s) chain.rate.push_back(rate * degree);

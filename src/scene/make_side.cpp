@@ -33,11 +33,9 @@ std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEnt
 
 /// The mass at the end of each link for drawing, kg; a rigid body has less than its whole mass there.
 std::vector<double> end_masses(const SideSpec& spec) {
-    const auto& physical = spec.physical;
-    const bool is_physical = !physical.is_none(), has_centers = !physical.center_m.empty();
     std::vector<double> masses;
     for (std::size_t i = 0; i < spec.links(); ++i) {
-        const bool is_body = is_physical && (has_centers || physical.inertia_kg_m2[i] != 0);
+        const bool is_body = !spec.physical.center_m.empty() || spec.physical.inertia_kg_m2[i] != 0;
         masses.push_back(is_body ? 0 : static_cast<double>(spec.mass_kg[i]));
     }
     return masses;
@@ -88,19 +86,6 @@ void measure(const SideSpec& spec, Side& side) {
     side.energy_unit =
         std::max({2 * mass * side.gravity * side.reach, std::abs(mechanism.energy(start)), kinetic_energy(bobs)});
     if (!(side.energy_unit > 0)) side.energy_unit = 1;
-}
-
-/// A measured track, and the pendulum that it is assumed to show.
-Side make_measured_side(const SideSpec& spec, const Rational& sample_hz) {
-    Side side;
-    side.why = "a measured track; no method integrates it";
-    side.motion.sample_interval = *quotient({1, 1}, sample_hz);
-    side.motion.chain = chain_of(spec);
-    if (!spec.physical.is_none()) side.motion.physical = physical_of(spec);
-    measure(spec, side);
-    side.replay = replay_of(spec.track);
-    side.has_energy_error = side.has_work = false;
-    return side;
 }
 
 Place<Quad> place(const QuadPair& xy) {
@@ -178,14 +163,22 @@ private:
 }  // namespace
 
 Side make_side(const SideSpec& spec, const Rational& sample_hz) {
-    if (!spec.track.is_none()) return make_measured_side(spec, sample_hz);
     Side side;
-    side.method = *find_method(spec.integrator);
     auto& motion = side.motion;
+    motion.sample_interval = *quotient({1, 1}, sample_hz);
+    if (spec.particles.empty()) motion.chain = chain_of(spec);
+    if (!spec.physical.is_none()) motion.physical = physical_of(spec);
+    if (!spec.track.is_none()) {  // the chain is the pendulum that the track is assumed to show
+        side.why = "a measured track; no method integrates it";
+        measure(spec, side);
+        side.replay = replay_of(spec.track);
+        side.has_energy_error = side.has_work = false;
+        return side;
+    }
+    side.method = *find_method(spec.integrator);
     std::tie(motion.model, side.why) = chosen_model(spec, side.method);
     motion.method = spec.integrator;
     motion.precision = spec.precision;
-    motion.sample_interval = *quotient({1, 1}, sample_hz);
     if (side.method.adaptive) {
         motion.tolerance = spec.allowed_error();
     } else {
@@ -194,9 +187,6 @@ Side make_side(const SideSpec& spec, const Rational& sample_hz) {
     }
     motion.stabilise = spec.stabilise;
     motion.stabilise_rate = spec.stabilise_rate_per_s;
-
-    if (spec.particles.empty()) motion.chain = chain_of(spec);
-    if (!spec.physical.is_none()) motion.physical = physical_of(spec);
     if (motion.model == Model::mechanism) motion.parts = assembly_of(spec);
     measure(spec, side);
     return side;

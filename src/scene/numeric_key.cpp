@@ -122,11 +122,9 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     const auto& values = found.values;
     number.is_whole = found.is_whole;
     number.is_step = found.step != nullptr;
-    const bool is_real = !found.is_whole && !found.step, applies = field.only.applies || field.only.error.empty();
-    const bool is_array = is_real && (!field.each.empty() || values.size() > 1);
-    if (is_real && !applies) refuse(field.only.error);
+    const bool is_array = !found.is_whole && !found.step && (!field.each.empty() || values.size() > 1);
+    if (!field.only.applies && !field.only.error.empty()) refuse(field.only.error);
     if (!is_array && number.element) refuse("is a number, not an array");
-    if (!applies) refuse(field.only.error);
     number.bounds = field.bounds;
     number.label = label_of(number, field);
     if (number.element && *number.element >= values.size())

@@ -75,16 +75,12 @@ std::optional<std::span<Quad>> numbers_of(const KeyMember& member, bool is_put) 
 
 std::string caption_of(const Field& field) {
     if (!field.caption.empty()) return std::string(field.caption);
-    constexpr std::array<std::string_view, 16> units{
-        "_m3_per_kg_s2", "_N_s2_per_m2", "_N_s_per_m", "_deg_per_s", "_m_per_s2", "_N_per_m", "_m_per_s", "_per_s",
-        "_N_m_s2",       "_N_m_s",       "_N_m",       "_kg_m2",     "_deg",      "_kg",      "_hz",      "_m"};
-    auto key = field.key;
-    for (const auto unit : units)
-        if (key.ends_with(unit)) {
-            key.remove_suffix(unit.size());
-            break;
-        }
-    std::string words(key.ends_with("_s") ? key.substr(0, key.size() - 2) : key);
+    constexpr auto units = std::to_array<std::string_view>({"N", "deg", "hz", "kg", "m", "m2", "m3", "per", "s", "s2"});
+    std::string words(field.key);
+    for (auto last = words.rfind('_'); last != std::string::npos; last = words.rfind('_')) {
+        if (std::ranges::find(units, std::string_view(words).substr(last + 1)) == units.end()) break;
+        words.resize(last);
+    }
     std::replace(words.begin(), words.end(), '_', ' ');
     return words;
 }

@@ -23,8 +23,7 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
         const bool ours = table.from_command_line("accuracy"), theirs = conflict && table.from_command_line(*conflict);
         if (conflict && ours == theirs)
             table.refuse(table.error("accuracy", "chooses integrator, step and tolerance; remove it, or {}", *conflict)
-                             .with(table.beside(*conflict)),
-                         "accuracy");
+                             .with(table.beside(*conflict)));
         if (theirs) {
             side.accuracy.reset();
             return false;
@@ -58,7 +57,7 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
         std::string name;
         entry({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
-            entry.refuse(entry.error("name", "must be unique; \"{}\" is used already", name), "name");
+            entry.refuse(entry.error("name", "must be unique; \"{}\" is used already", name));
         const auto same = indices.find(name);
         const bool is_new = same == indices.end();
         if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new))
@@ -80,7 +79,7 @@ bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
 bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const std::string_view> kinds) {
     const bool has_kind = entry.has("kind");
     if (is_new && !has_kind) {
-        entry.refuse(entry.error("kind", "is missing; there is \"{}\"", fmt::join(kinds, "\", \"")).with({}), "kind");
+        entry.refuse(entry.error("kind", "is missing; there is \"{}\"", fmt::join(kinds, "\", \"")).with({}));
         return false;
     }
     std::string name(has_kind ? "" : name_of(part.kind));
@@ -126,8 +125,7 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
                 table
                     .error(key,
                            "describes a chain, but [[system.particle]] describes another system; remove one of them")
-                    .with(table.beside("particle")),
-                key);
+                    .with(table.beside("particle")));
 }
 
 void check_masses(TomlReader& table, const SideSpec& side) {

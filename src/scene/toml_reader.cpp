@@ -83,9 +83,9 @@ ErrorPlace TomlReader::error_place(std::string_view key) const {
     return at.line > 0 ? ErrorPlace{at.line, at.column} : ErrorPlace{};
 }
 
-void TomlReader::refuse(const KeyError& error, std::string_view key) const {
+void TomlReader::refuse(const KeyError& error) const {
     if (!errors_) throw KeyError(error);
-    errors_->add({error.what(), error.place, group_, std::string(key), error.beside});
+    errors_->add(error);
 }
 
 const toml::node* TomlReader::find(std::string_view key) {
@@ -121,12 +121,12 @@ void TomlReader::require_drawable(std::string_view key, std::string_view text) c
 void TomlReader::require_title(const std::string& name) {
     if (has("title") || !typeface_) return;
     if (const auto error = not_drawable(name, *typeface_))
-        refuse({fmt::format("{}: title is missing, and the preset's name {}", path_, *error), {}, ""}, "title");
+        refuse(error_at("title", fmt::format("title is missing, and the preset's name {}", *error)).with(""));
 }
 
 const toml::table* TomlReader::read_table(std::string_view key) {
     const auto* node = find(key);
-    if (node && !node->is_table()) refuse(error(key, "must be a table; {}", found(*node)), key);
+    if (node && !node->is_table()) refuse(error(key, "must be a table; {}", found(*node)));
     return node ? node->as_table() : nullptr;
 }
 
@@ -137,8 +137,7 @@ std::vector<const toml::table*> TomlReader::read_tables(std::string_view key) {
     const auto* array = node->as_array();
     if (!array || !array->is_array_of_tables()) {
         refuse(error(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
-                     found(*node)),
-               key);
+                     found(*node)));
         return tables;
     }
     for (const auto& element : *array) tables.push_back(element.as_table());
@@ -150,13 +149,12 @@ void TomlReader::finish() const {
     for (auto&& [name, node] : *table_) {
         if (known_.contains(name.str())) continue;
         const std::vector<std::string_view> keys(known_.begin(), known_.end());
-        const auto message = fmt::format(
-            "{}: {} no \"{}\"; {}", place(name.str()), name_.empty() ? "a preset has" : name_ + " has", name.str(),
-            did_you_mean("", name.str(), keys, fmt::format("it has {}", fmt::join(keys, ", "))));
+        const auto error =
+            error_at(name.str(),
+                     fmt::format("{} no \"{}\"; {}", name_.empty() ? "a preset has" : name_ + " has", name.str(),
+                                 did_you_mean("", name.str(), keys, fmt::format("it has {}", fmt::join(keys, ", ")))));
         const auto hidden = hidden_.find(name.str());
-        refuse({message, error_place(name.str()),
-                hidden == hidden_.end() ? std::nullopt : std::optional(beside(hidden->second))},
-               name.str());
+        refuse(hidden == hidden_.end() ? error : error.with(beside(hidden->second)));
     }
 }
 
@@ -172,7 +170,7 @@ void TomlReader::check_together(const std::function<void()>& check) const {
     try {
         check();
     } catch (const KeyError& error) {
-        refuse(error.with(""), "");
+        refuse(error.with(""));
     }
 }
 
@@ -186,11 +184,13 @@ bool TomlReader::is_ruled_out(const Field& field) const {
 
 bool TomlReader::counts(const Field& field) {
     const auto& only = field.only;
-    if (only.hides && !only.applies) {
+    if (only.applies) return true;
+    if (only.hides) {
         hidden_.emplace(field.key, only.beside);
         if (is_ruled_out(field)) known_.emplace(field.key);
+        return false;
     }
-    if (only.hides || only.applies || only.error.empty()) return !only.hides || only.applies;
+    if (only.error.empty()) return true;
     if (has(field.key) && (!only.drops || from_command_line(field.key)))
         throw error(field.key, "{}", only.error).with(beside(only.beside));
     return false;

@@ -82,7 +82,7 @@ public:
     /// Runs a check of several keys, which throws KeyError. Skipped if these tables already have errors.
     void check_together(const std::function<void()>& check) const;
     /// Records the error, or throws it.
-    void refuse(const KeyError& error, std::string_view key) const;
+    void refuse(const KeyError& error) const;
     /// Calls read(), whose errors in the input are errors of the key. Returns whether there was none.
     template <class Read>
     bool guarded(std::string_view key, const Read& read) const {
@@ -91,7 +91,7 @@ public:
             return true;
         } catch (const Error& thrown) {
             if (thrown.code() != ExitCode::bad_input) throw;
-            refuse(error(key, "{}", thrown.what()), key);
+            refuse(error(key, "{}", thrown.what()));
             return false;
         }
     }
@@ -126,12 +126,14 @@ public:
     /// The error "PATH:LINE:COLUMN: [table] KEY MESSAGE".
     template <class... Args>
     [[nodiscard]] KeyError error(std::string_view key, fmt::format_string<Args...> format, Args&&... args) const {
-        return {fmt::format("{}: {} {}", place(key), subject(key), fmt::format(format, std::forward<Args>(args)...)),
-                error_place(key)};
+        return error_at(key, fmt::format("{} {}", subject(key), fmt::format(format, std::forward<Args>(args)...)));
+    }
+    /// The error "PATH:LINE:COLUMN: MESSAGE" of a key.
+    [[nodiscard]] KeyError error_at(std::string_view key, const std::string& message) const {
+        return {fmt::format("{}: {}", place(key), message), error_place(key), group_, key};
     }
     /// "path:line:column" of a key, the command line option that gave it, or the path if it is absent.
     [[nodiscard]] std::string place(std::string_view key) const;
-    ErrorPlace error_place(std::string_view key) const;
     std::string subject(std::string_view key) const {
         return name_.empty() ? std::string(key) : fmt::format("{} {}", name_, key);
     }
@@ -140,6 +142,7 @@ public:
 private:
     const toml::node* find(std::string_view key);
     std::optional<toml::source_region> source_of(std::string_view key) const;
+    ErrorPlace error_place(std::string_view key) const;
     bool counts(const Field& field);
     void require(const Field& field, bool given) const;
     bool is_ruled_out(const Field& field) const;

@@ -44,11 +44,8 @@ public:
 
     void read(const toml::node& node, int& into) const {
         if (!node.is_integer()) throw error("must be a whole number; {}", found(node));
-        const auto value = node.as_integer()->get();
-        const auto& [low, high] = std::pair(field_.bounds.low, field_.bounds.high);
-        if (static_cast<double>(value) < low || static_cast<double>(value) > high)
-            throw invalid_number(static_cast<double>(value),
-                                 error("must be from {} to {}; it is {}", low, high, value));
+        const auto value = static_cast<double>(node.as_integer()->get());
+        check(value);
         into = static_cast<int>(value);
     }
 
@@ -173,7 +170,8 @@ public:
             into.texts[element] = text_in(node);
         } else if constexpr (std::is_same_v<T, Size>) {
             check_size(2);
-            read(node, element == 0 ? into.width : into.height);
+            const Field number{.key = field_.key, .bounds = field_.bounds};  // the unit is not shown
+            ValueReader(table_, number).read(node, element == 0 ? into.width : into.height);
         } else if constexpr (is_optional<T>) {
             check_size(into ? element + 1 : 0);
             read_element(node, element, *into);
@@ -291,15 +289,8 @@ private:
     /// An error of an element of the key's array.
     template <class... Args>
     KeyError error_of(Element element, fmt::format_string<Args...> format, Args&&... args) const {
-        return {fmt::format("{}: {}{} {}", table_.place(field_.key), table_.subject(field_.key), index_text(element),
-                            fmt::format(format, std::forward<Args>(args)...)),
-                table_.error_place(field_.key)};
-    }
-    /// The error together with other keys, if the key would accept the number without them.
-    KeyError invalid_number(double value, const KeyError& error) const {
-        const auto& widest = field_.otherwise;
-        const bool is_possible = widest && value >= widest->low && value <= widest->high;
-        return is_possible ? error.with(table_.beside(field_.only.beside)) : error;
+        return table_.error_at(field_.key, fmt::format("{}{} {}", table_.subject(field_.key), index_text(element),
+                                                       fmt::format(format, std::forward<Args>(args)...)));
     }
 
     std::string text_in(const toml::node& value) const {
@@ -321,9 +312,12 @@ private:
                                ? fmt::format("{} {}", is_positive ? "at least" : "≥", low)
                                : fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero),
                                              high, unit, why.empty() ? "" : fmt::format(": {}", why));
-        throw invalid_number(static_cast<double>(value),
-                             error_of(why.empty() ? element : Element{}, "must be {}; {} is {}", right,
-                                      why.empty() ? "it" : "one", toml_value(value)));
+        const auto error = error_of(why.empty() ? element : Element{}, "must be {}; {} is {}", right,
+                                    why.empty() ? "it" : "one", toml_value(value));
+        // together with other keys, if the key would accept the number without them
+        const auto& widest = field_.otherwise;
+        throw widest && value >= widest->low && value <= widest->high ? error.with(table_.beside(field_.only.beside))
+                                                                      : error;
     }
 
     double number(const toml::node& node, Element element, double) const {
@@ -342,8 +336,7 @@ private:
         // the literal must equal the number that was read; otherwise its place is wrong
         constexpr double rounding = 1e-15, minimum = 1e-322;
         if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + minimum))
-            throw bad_input("{}: the digits of {} cannot be found in the text; it is {}", table_.place(field_.key),
-                            table_.subject(field_.key), rounded);
+            throw error_of(element, "has digits that cannot be found in the text; it is {}", rounded);
         constexpr std::size_t always_held = 33;
         if (literal->size() <= always_held) return value;
         const auto digits = significant_digits(*literal);
@@ -424,24 +417,20 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
         constexpr bool is_choice = std::is_same_v<M, ChosenName>;
         const bool does_count = counts(field);
         const auto* node = does_count ? find(field.key) : nullptr;
+        const auto value_of_node = [&](auto value) {
+            ValueReader(*this, field).read(*node, value);
+            return value;
+        };
         if constexpr (is_choice) {
             std::string name(into.name);
             if (node) ValueReader(*this, {.key = field.key, .names = into.names}).read(*node, name);
             into.choose(static_cast<std::size_t>(std::ranges::find(into.names, name) - into.names.begin()));
         } else if constexpr (is_optional<std::remove_pointer_t<M>>) {
             if (!does_count) into->reset();
-            if (node) {
-                typename std::remove_pointer_t<M>::value_type value{};
-                ValueReader(*this, field).read(*node, value);
-                *into = std::move(value);
-            }
+            if (node) *into = value_of_node(typename std::remove_pointer_t<M>::value_type{});
             if (does_count) require(field, into->has_value());
         } else {
-            if (node) {
-                auto value = *into;
-                ValueReader(*this, field).read(*node, value);
-                *into = std::move(value);
-            }
+            if (node) *into = value_of_node(*into);
             if constexpr (requires { into->empty(); })
                 if (does_count) require(field, !into->empty());
         }
@@ -456,13 +445,11 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
     };
     try {
         std::visit(read, member);
-    } catch (const Error& error) {
-        if (!errors_ || error.code() != ExitCode::bad_input) throw;
-        const auto* known = dynamic_cast<const KeyError*>(&error);
-        const std::string key(field.key);
-        // errors in a title are independent of the tables
-        errors_->add(
-            {error.what(), error_place(key), name_.empty() ? key : group_, key, known ? known->beside : std::nullopt});
+    } catch (KeyError& error) {
+        if (!errors_) throw;
+        error.key = field.key;                       // without an element's index
+        if (name_.empty()) error.group = field.key;  // errors in a title are independent of the tables
+        errors_->add(error);
     }
 }
 
