@@ -18,114 +18,62 @@ double cpu_of(Run&& run) {
     return seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
 }
 
-/// A solver with one setting on a problem. The setting is a step (a fraction of the duration) or, if `steps` is 0, a
-/// tolerance.
-class Trial {
-public:
-    Trial(const WorkProblem& problem, const Solver& solver, long steps, const Quad& tolerance)
-        : problem_(problem), external_(solver.external), spec_(problem.motion) {
-        spec_.model = solver.model;
-        spec_.method = solver.method;
-        spec_.steps_per_sample = steps;
-        spec_.tolerance = tolerance;
-    }
+/// CPU time of one run of the motions that `make` returns, s; `first_s` is that of the first run.
+template <class Make>
+double timed(const Make& make, double first_s, const std::atomic<bool>& stop) {
+    constexpr double long_enough_s = 1e-3;  // reduces the clock's error to some tenths of a percent
+    constexpr double warm_enough_s = 3e-3;  // warms the caches
+    constexpr long max_runs = 32;           // at a time: all of them fit into the first-level cache
+    if (first_s > warm_enough_s) return first_s;
+    const auto wanted = static_cast<long>(std::ceil(long_enough_s / std::max(first_s, 1e-9)));
+    std::vector<std::unique_ptr<Motion>> motions(static_cast<std::size_t>(std::clamp(wanted, 1L, max_runs)));
+    for (auto& motion : motions) motion = make();
+    const double all = cpu_of([&] {
+        for (const auto& motion : motions) motion->advance(stop);
+    });
+    return all / static_cast<double>(motions.size());
+}
 
-    double setting() const {
-        if (spec_.steps_per_sample == 0) return static_cast<double>(spec_.tolerance);
-        return problem_.duration() / static_cast<double>(spec_.steps_per_sample);
+/// Finds the largest errors of energy and lengths at some 240 samples. Returns false if the run fails.
+bool is_sound(const WorkProblem& problem, MotionSpec spec, StepResult& outcome, const std::atomic<bool>& stop) {
+    long samples = 240;
+    if (const long steps = spec.steps_per_sample; steps > 0) {
+        // the same steps, except that some are between two samples
+        spec.steps_per_sample = (steps + samples - 1) / samples;
+        spec.sample_interval = *product(spec.sample_interval, *reduced(spec.steps_per_sample, steps));
+        samples = steps / spec.steps_per_sample;
+    } else {
+        spec.sample_interval = *quotient(spec.sample_interval, {samples, 1});
     }
+    WatchedMotion motion(spec, problem.energy_unit, problem.size);
+    double energy = 0, length = 0;
+    for (long i = 0; i < samples; ++i) {
+        if (!motion.advance(stop)) return false;
+        energy = std::max(energy, motion.energy_error);
+        length = std::max(length, motion.length_error);
+    }
+    outcome.energy_error = problem.conserves_energy ? energy : NAN;
+    outcome.length_error = length;
+    return true;
+}
 
-    StepResult outcome(const Reference& reference, const StepStudySpec& spec, const std::atomic<bool>& stop) const {
-        StepResult outcome{.setting = setting()};
-        const auto motion = made();
-        const ErrorScale proportion(motion->observe(), problem_.energy_unit, problem_.size);
-        bool ends = false;
-        const double first_s = cpu_of([&] { ends = advanced(*motion, stop); });
-        outcome.evaluations = static_cast<double>(motion->effort().evaluations);
-        outcome.steps = static_cast<double>(motion->effort().steps);
-        if (!ends) return outcome;
-        const auto end = motion->observe();
-        if (!proportion.is_plausible(end) || (spec.watched && !external_ && !is_sound(outcome, stop))) return outcome;
-        const double error_of_end = ErrorMeasure{problem_.has_angles(), problem_.size}.distance(end, reference.end);
-        if (!std::isfinite(error_of_end)) return outcome;
-        outcome.error = error_of_end;
-        if (spec.timed) outcome.cpu_s = timed(first_s, stop);
-        return outcome;
-    }
-
-private:
-    std::unique_ptr<Motion> made() const {
-        if (!external_) return make_motion(spec_);
-        return external_->make(spec_.chain->cast<double>(), problem_.duration(), setting());
-    }
-
-    /// Finds the largest errors of energy and lengths at some 240 samples. Returns false if the run fails.
-    bool is_sound(StepResult& outcome, const std::atomic<bool>& stop) const {
-        long samples = 240;
-        auto spec = spec_;
-        if (const long steps = spec.steps_per_sample; steps > 0) {
-            // the same steps, except that some are between two samples
-            spec.steps_per_sample = (steps + samples - 1) / samples;
-            spec.sample_interval = *product(spec.sample_interval, *reduced(spec.steps_per_sample, steps));
-            samples = steps / spec.steps_per_sample;
-        } else {
-            spec.sample_interval = *quotient(spec.sample_interval, {samples, 1});
-        }
-        WatchedMotion motion(spec, problem_.energy_unit, problem_.size);
-        double energy = 0, length = 0;
-        for (long i = 0; i < samples; ++i) {
-            if (!motion.advance(stop)) return false;
-            energy = std::max(energy, motion.energy_error);
-            length = std::max(length, motion.length_error);
-        }
-        outcome.energy_error = problem_.conserves_energy ? energy : NAN;
-        outcome.length_error = length;
-        return true;
-    }
-
-    /// CPU time of one run, s; `first_s` is that of the first run.
-    double timed(double first_s, const std::atomic<bool>& stop) const {
-        constexpr double long_enough_s = 1e-3;  // reduces the clock's error to some tenths of a percent
-        constexpr double warm_enough_s = 3e-3;  // warms the caches
-        constexpr long max_runs = 32;           // at a time: all of them fit into the first-level cache
-        if (first_s > warm_enough_s) return first_s;
-        const auto wanted = static_cast<long>(std::ceil(long_enough_s / std::max(first_s, 1e-9)));
-        std::vector<std::unique_ptr<Motion>> motions(static_cast<std::size_t>(std::clamp(wanted, 1L, max_runs)));
-        for (auto& motion : motions) motion = made();
-        const double all = cpu_of([&] {
-            for (const auto& motion : motions) motion->advance(stop);
-        });
-        return all / static_cast<double>(motions.size());
-    }
-
-    const WorkProblem& problem_;
-    const ExternalMethod* external_;
-    MotionSpec spec_;
-};
-
-/// Step sizes of 2^(k/2)/30000 s, from the problem's natural time down, or tolerances of 10^(−k/2) rounded to three
-/// digits, from 0.1 to the limit of double.
-std::vector<Trial> trials_of(const WorkProblem& problem, const Solver& solver, long max_steps) {
-    const auto* external = solver.external;
-    std::vector<Trial> all;
-    const auto add = [&](long steps, const Quad& tolerance) {
-        const Trial trial(problem, solver, steps, tolerance);
-        if (!external || (trial.setting() >= external->minimum && trial.setting() <= external->maximum))
-            all.push_back(trial);
-    };
-    if (external ? external->adaptive : find_method(solver.method)->adaptive) {
-        constexpr int finest = 30;
-        for (int k = 2; k <= finest; ++k) add(0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2)));
-        return all;
-    }
-    const double kao_steps = problem.duration() / kao_step;
-    long last = 0;
-    for (int k = static_cast<int>(2 * std::log2(problem.natural_time / kao_step));; --k) {
-        const double factor = std::ldexp(k % 2 == 0 ? 1 : std::numbers::sqrt2, -((k + (k % 2 != 0)) / 2));
-        const long steps = std::max(1L, std::lround(kao_steps * factor));
-        if (steps > max_steps && last > 0) return all;
-        if (steps > last) add(last = steps, 0);
-    }
+StepResult run_setting(const WorkProblem& problem, const Reference& reference, const SolverRuns& runs,
+                       const Setting& setting, bool is_timed, const std::atomic<bool>& stop) {
+    StepResult outcome{.setting = setting.value(problem)};
+    const auto motion = runs.make(setting);
+    const ErrorScale proportion(motion->observe(), problem.energy_unit, problem.size);
+    bool ends = false;
+    const double first_s = cpu_of([&] { ends = advanced(*motion, stop); });
+    outcome.evaluations = static_cast<double>(motion->effort().evaluations);
+    outcome.steps = static_cast<double>(motion->effort().steps);
+    if (!ends) return outcome;
+    const auto end = motion->observe();
+    if (!proportion.is_plausible(end) || (runs.watch && !runs.watch(setting, outcome))) return outcome;
+    const double error_of_end = ErrorMeasure{problem.has_angles(), problem.size}.distance(end, reference.end);
+    if (!std::isfinite(error_of_end)) return outcome;
+    outcome.error = error_of_end;
+    if (is_timed) outcome.cpu_s = timed([&] { return runs.make(setting); }, first_s, stop);
+    return outcome;
 }
 
 /// A quantile of sorted values, interpolated linearly.
@@ -138,8 +86,23 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
-                                       const StepStudySpec& spec, const std::atomic<bool>& stop) {
+std::vector<Setting> settings_of(const WorkProblem& problem, bool adaptive, long max_steps) {
+    std::vector<Setting> all;
+    constexpr int finest = 30;
+    for (int k = 2; adaptive && k <= finest; ++k)
+        all.push_back({0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2))});
+    if (adaptive) return all;
+    const double kao_steps = problem.duration() / kao_step;
+    for (int k = static_cast<int>(2 * std::log2(problem.natural_time / kao_step));; --k) {
+        const double factor = std::ldexp(k % 2 == 0 ? 1 : std::numbers::sqrt2, -((k + (k % 2 != 0)) / 2));
+        const long steps = std::max(1L, std::lround(kao_steps * factor));
+        if (steps > max_steps && !all.empty()) return all;
+        if (all.empty() || steps > all.back().steps) all.push_back({steps, 0});
+    }
+}
+
+std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference& reference, const SolverRuns& runs,
+                                     const StepStudySpec& spec, const std::atomic<bool>& stop) {
     double best = std::numeric_limits<double>::infinity();
     long since_best = 0;
     // finer settings do not help any more
@@ -151,18 +114,37 @@ std::vector<StepResult> run_step_study(const WorkProblem& problem, const Referen
         return best < near * reference.floor() ? since_best >= patience : best < useful && since_best >= long_patience;
     };
     std::vector<StepResult> outcomes;
-    for (const auto& trial : trials_of(problem, solver, spec.max_evaluations)) {
-        const auto& outcome = outcomes.emplace_back(trial.outcome(reference, spec, stop));
+    for (const auto& setting : runs.settings) {
+        const auto& outcome = outcomes.emplace_back(run_setting(problem, reference, runs, setting, spec.timed, stop));
         const bool next_too_costly =
             std::numbers::sqrt2 * outcome.evaluations > static_cast<double>(spec.max_evaluations);
         if (next_too_costly || outcome.error < spec.min_error || is_at_floor(outcome.error)) break;
     }
+    return outcomes;
+}
+
+std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
+                                       const StepStudySpec& spec, const std::atomic<bool>& stop) {
+    const auto spec_at = [&](const Setting& setting) {
+        auto motion = problem.motion;
+        motion.model = solver.model;
+        motion.method = solver.method;
+        motion.steps_per_sample = setting.steps;
+        motion.tolerance = setting.tolerance;
+        return motion;
+    };
+    SolverRuns runs{settings_of(problem, find_method(solver.method)->adaptive, spec.max_evaluations),
+                    [&](const Setting& setting) { return make_motion(spec_at(setting)); }};
+    if (spec.watched)
+        runs.watch = [&](const Setting& setting, StepResult& outcome) {
+            return is_sound(problem, spec_at(setting), outcome, stop);
+        };
+    auto outcomes = run_settings(problem, reference, runs, spec, stop);
     if (solver.is_kao_study() &&
         std::none_of(outcomes.begin(), outcomes.end(), [](auto& r) { return r.is_kao_study(); })) {
-        const long steps = std::lround(problem.duration() / kao_step);
-        outcomes.push_back(Trial(problem, solver, steps, 0).outcome(reference, spec, stop));
+        runs.settings = {{std::lround(problem.duration() / kao_step), 0}};
+        outcomes.push_back(run_settings(problem, reference, runs, spec, stop).front());
     }
-    if (outcomes.empty()) outcomes.emplace_back();
     return outcomes;
 }
 
@@ -201,12 +183,11 @@ std::vector<StepResult> pareto_front(std::span<const StepStudy> studies, Cost co
     return front;
 }
 
-Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error,
-                  const std::function<bool(const Solver&)>& counts) {
+Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error, std::string_view method) {
     Cheapest best;
     for (const auto& study : studies) {
         const auto& outcomes = study.outcomes;
-        if (!counts(study.solver)) continue;
+        if (!method.empty() && study.solver.method != method) continue;
         for (std::size_t i = 0; i < outcomes.size(); ++i) {
             const bool reaches =
                 outcomes[i].error <= error && (i + 1 == outcomes.size() || outcomes[i + 1].error <= error);
@@ -220,19 +201,18 @@ Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error,
 std::vector<const StepStudy*> best_models(std::span<const StepStudy> studies, Cost cost) {
     const auto wins = [&](const StepStudy& study) {
         constexpr int decades = 13;
-        const auto same_method = [&](const Solver& solver) { return solver.name() == study.solver.name(); };
         int count = 0;
         for (int decade = 1; decade <= decades; ++decade) {
             const double error = std::pow(10.0, -decade);
-            const auto own = cheapest({&study, 1}, cost, error, same_method);
-            count += own.study && own.cost == cheapest(studies, cost, error, same_method).cost;
+            const auto own = cheapest({&study, 1}, cost, error);
+            count += own.study && own.cost == cheapest(studies, cost, error, study.solver.method).cost;
         }
         return count;
     };
     std::vector<const StepStudy*> best;
     for (const auto& study : studies)
         if (std::none_of(studies.begin(), studies.end(), [&](const StepStudy& other) {
-                return other.solver.name() == study.solver.name() &&
+                return other.solver.method == study.solver.method &&
                        std::pair(wins(other), &study) > std::pair(wins(study), &other);
             }))
             best.push_back(&study);
@@ -240,20 +220,16 @@ std::vector<const StepStudy*> best_models(std::span<const StepStudy> studies, Co
 }
 
 std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems, Cost cost,
-                                std::span<const double> errors, bool external) {
+                                std::span<const double> errors) {
     std::vector<std::string> names;
     for (const auto& studies : problems)
         for (const auto& [solver, outcomes] : studies)
-            if ((solver.external != nullptr) == external &&
-                std::find(names.begin(), names.end(), solver.name()) == names.end())
-                names.push_back(solver.name());
+            if (std::find(names.begin(), names.end(), solver.method) == names.end()) names.push_back(solver.method);
     std::map<std::string, long> ranks;
     for (const auto& studies : problems)
         for (const double error : errors) {
             std::vector<double> costs;
-            for (const auto& name : names)
-                costs.push_back(
-                    cheapest(studies, cost, error, [&](const Solver& solver) { return solver.name() == name; }).cost);
+            for (const auto& name : names) costs.push_back(cheapest(studies, cost, error, name).cost);
             for (std::size_t i = 0; i < names.size(); ++i)
                 ranks[names[i]] +=
                     std::count_if(costs.begin(), costs.end(), [&](double other) { return other < costs[i]; });

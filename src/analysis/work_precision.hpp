@@ -7,15 +7,6 @@
 
 namespace doppel {
 
-/// A method of another library, for comparison. Doppel itself links none; a program that does passes them in.
-struct ExternalMethod {
-    std::string name;         // "GSL rk8pd"
-    bool adaptive;            // its setting is a tolerance instead of a step size in s
-    double minimum, maximum;  // of its settings
-    /// A motion from the release. Its first sample is the end after `seconds`.
-    std::function<std::unique_ptr<Motion>(const Pendulum<double>& chain, double seconds, double setting)> make;
-};
-
 /// A motion to compute, and the scales of its errors.
 struct WorkProblem {
     std::string name, title;  // "P1", "P1 · 90°/90°, 10 s"
@@ -33,18 +24,16 @@ struct WorkProblem {
     bool is_plain_chain() const { return motion.model == Model::angles && !motion.physical; }
 };
 
-/// A method with a model, or a method of another library, which must outlive this.
+/// A method with a model.
 struct Solver {
     Model model = Model::angles;
     std::string method;
-    const ExternalMethod* external = nullptr;
 
-    std::string name() const { return external ? "peer:" + external->name : method; }
     /// The method of the published study.
     bool is_kao_study() const { return method == "euler" && model == Model::angles; }
     /// Whether it can compute the problem.
     bool supports(const WorkProblem& problem) const {
-        return problem.is_plain_chain() || (!external && model == problem.motion.model);
+        return problem.is_plain_chain() || model == problem.motion.model;
     }
 };
 
@@ -72,14 +61,38 @@ struct StepStudySpec {
     long max_evaluations;  // for one setting
     double min_error;      // smaller errors end the study
     bool timed = false;
-    bool watched = true;  // errors of energies and lengths are measured in a separate run; not for external methods
+    bool watched = true;  // errors of energies and lengths are measured in a separate run
 };
 
-/// Runs a solver's settings from coarse to fine: step sizes by factors of √2, including 1/30000 s, or tolerances by
-/// half decades. The study ends when the errors reach the floor or fall below `min_error`, or the next setting would
-/// take too many evaluations; never because of time. Kao's step size is always included. A failed setting has no
-/// numbers. CPU times are those of the thread for the whole motion, without set-up, after a run that warms the caches;
-/// short runs are repeated. Throws Error (exit 130) soon after `stop` is set.
+/// A setting of a solver: the number of steps of the whole motion, or a tolerance if `steps` is 0.
+struct Setting {
+    long steps = 0;
+    Quad tolerance = 0;
+
+    /// The step size, s, or the tolerance.
+    double value(const WorkProblem& problem) const {
+        return steps == 0 ? static_cast<double>(tolerance) : problem.duration() / static_cast<double>(steps);
+    }
+};
+/// From coarse to fine: step sizes of 2^(k/2)/30000 s, from the problem's natural time down to `max_steps`, or
+/// tolerances of 10^(−k/2) rounded to three digits, from 0.1 to the limit of double.
+std::vector<Setting> settings_of(const WorkProblem& problem, bool adaptive, long max_steps);
+
+/// How a solver runs a problem.
+struct SolverRuns {
+    std::vector<Setting> settings;                                // from coarse to fine
+    std::function<std::unique_ptr<Motion>(const Setting&)> make;  // the first sample of the motion is its end
+    /// Adds errors during the run to its result; returns false if the run fails. Optional.
+    std::function<bool(const Setting&, StepResult&)> watch = {};
+};
+/// Runs the settings until the errors reach the floor or fall below `min_error`, or the next setting would take too
+/// many evaluations; never until a time. A failed setting has no numbers. CPU times are those of the thread for the
+/// whole motion, without set-up, after a run that warms the caches; short runs are repeated. Throws Error (exit 130)
+/// soon after `stop` is set.
+std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference& reference, const SolverRuns& runs,
+                                     const StepStudySpec& spec, const std::atomic<bool>& stop);
+
+/// The same for a solver of Doppel. Kao's step size is always included.
 std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                                        const StepStudySpec& spec, const std::atomic<bool>& stop);
 
@@ -108,18 +121,17 @@ struct Cheapest {
     const StepStudy* study = nullptr;  // null if none reaches it; among equals the first
     double cost = std::numeric_limits<double>::infinity();
 };
-/// The cheapest of one problem's step-size studies, for accepted solvers.
-Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error,
-                  const std::function<bool(const Solver&)>& counts);
+/// The cheapest of one problem's step-size studies, or of those by `method` if it is given.
+Cheapest cheapest(std::span<const StepStudy> studies, Cost cost, double error, std::string_view method = {});
 
 /// For each method on a problem, the model that is cheapest at most powers of ten of the error; among equals the first.
 std::vector<const StepStudy*> best_models(std::span<const StepStudy> studies, Cost cost);
 
-/// Names of Doppel's methods, or of the external ones, the best first: by the sum of their ranks on all problems, at
-/// all `errors`. `problems` are their step-size studies. A method that does not reach an error ranks last for it; among
-/// equals the first comes first.
+/// Names of the methods, the best first: by the sum of their ranks on all problems, at all `errors`. `problems` are
+/// their step-size studies. A method that does not reach an error ranks last for it; among equals the first comes
+/// first.
 std::vector<std::string> ranked(std::span<const std::vector<StepStudy>> problems, Cost cost,
-                                std::span<const double> errors, bool external);
+                                std::span<const double> errors);
 
 /// Median and largest spread of the CPU times of all useful settings; NaN if there are none.
 std::pair<double, double> time_spread(std::span<const std::vector<StepStudy>> problems);

@@ -388,7 +388,7 @@ void check_presets(const CheckOptions& options) {
         const auto overrides =
             overrides_of(options, picture_overrides(is_chart ? "chart" : "video", options.size, options.format));
         if (is_chart)
-            report(checked(read_figure(preset, overrides, {}, stop), stop));
+            report(checked(read_figure(preset, overrides, stop), stop));
         else
             report(checked(make_scene(read_preset(preset, overrides), stop), stop));
     }

@@ -262,7 +262,7 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
     const RunOptions run_options{.out = folder, .gl = gl_named(options.gl)};
     std::vector<ComparedPicture> pairs;
     if (is_chart) {
-        const auto figure = read_figure(text, overrides, {}, task.stop);
+        const auto figure = read_figure(text, overrides, task.stop);
         const auto file = figure.name + ".png";
         pairs = {single_picture(options, file)};
         const auto tell = [&](std::size_t, const FigureProgress& now) {

@@ -49,7 +49,7 @@ void make_figures(const FigureCommandOptions& options) {
     std::vector<FigurePreset> figures;
     Replacing replacing{.force = options.force};
     for (const auto& preset : chosen_presets(options)) {
-        figures.push_back(read_figure(preset, overrides(options), {}, watch_interrupts()));
+        figures.push_back(read_figure(preset, overrides(options), watch_interrupts()));
         replacing.inputs.emplace_back(preset.path);
     }
     if (options.tiles)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "analysis/work_precision.hpp"
 #include "figure/experiment.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
@@ -27,7 +26,6 @@ struct FigureReader {
     std::string name;  // of the preset
     const TomlDocument& document;
     TomlReader &top, &scene, &chart;  // a kind may read further keys of [chart]
-    std::span<const ExternalMethod> external_methods = {};
     const std::atomic<bool>& stop = never_stopped;
     bool only_keys = false;  // each key is read by itself, so that all errors are found, and nothing is checked further
 

@@ -25,7 +25,7 @@ void top_fields(KeyVisitor& visit, FigurePreset& figure) {
 /// With `errors`, reads each key by itself and throws all errors found. Otherwise reads the figure and checks keys
 /// together.
 FigurePreset read_once(const PresetText& source, const TomlDocument& document, KeyErrors* errors,
-                       std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
+                       const std::atomic<bool>& stop) {
     FigurePreset figure;
     figure.name = figure.title = source.name;
     auto top = document.top(errors);
@@ -38,7 +38,7 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, K
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");
-    FigureReader reader{source.name, document, top, scene, chart, external_methods, stop, errors != nullptr};
+    FigureReader reader{source.name, document, top, scene, chart, stop, errors != nullptr};
     const auto& kind = *std::ranges::find(figure_kinds(), figure.kind, &FigureKind::name);
     try {
         figure.experiment = kind.read(reader);
@@ -72,11 +72,11 @@ std::string FigurePreset::resolved() const {
 }
 
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
-                         std::span<const ExternalMethod> external_methods, const std::atomic<bool>& stop) {
+                         const std::atomic<bool>& stop) {
     const auto document = parse_document(source, overrides);
     KeyErrors errors(overrides);
-    read_once(source, document, &errors, external_methods, stop);
-    return read_once(source, document, nullptr, external_methods, stop);
+    read_once(source, document, &errors, stop);
+    return read_once(source, document, nullptr, stop);
 }
 
 std::vector<FieldTable> tables_of(std::string_view kind) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "analysis/work_precision.hpp"
 #include "figure/chart.hpp"
 #include "figure/experiment.hpp"
 #include "scene/field_table.hpp"
@@ -26,10 +25,8 @@ struct FigurePreset {
     std::string resolved() const;
 };
 
-/// Errors as read_preset(), and exit 130 soon after `stop` is set. Work-precision diagrams also show
-/// `external_methods`, which must outlive the figure.
+/// Errors as read_preset(), and exit 130 soon after `stop` is set.
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
-                         std::span<const ExternalMethod> external_methods = {},
                          const std::atomic<bool>& stop = never_stopped);
 
 /// The tables that a preset of this kind may have, except those of particles, constraints and forces. "[]" contains the

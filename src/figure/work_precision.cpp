@@ -15,9 +15,6 @@
 namespace doppel {
 namespace {
 
-/// Errors, rad, for which the cheapest method is named.
-constexpr std::array accuracies{1e-3, 1e-6, 1e-9, 1e-12};
-
 /// The film preset of that name or path, given by the table's key `scene`. Throws Error (exit 2).
 Preset film_named(const std::string& name, const TomlReader& table) {
     const auto source = [&] {
@@ -39,7 +36,7 @@ struct ProblemRow {
 
 /// Error against cost of every method on a few problems. Trials: the reference solution of each problem, then all
 /// step-size studies, repeated in turn, so that other load on the machine affects all equally.
-class WorkPrecision final : public Experiment {
+class WorkPrecision final : public Experiment, public WorkComparison {
 public:
     static constexpr std::string_view table_key = "work_precision";
     WorkPrecision()
@@ -48,22 +45,21 @@ public:
         for (const auto& method : doppel::methods()) methods_.emplace_back(method.name);
     }
     explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
-        reader.chart(cost_field, cost_);
-        reader.chart(names_field, names_);
+        reader.chart(cost_field, cost);
+        reader.chart(names_field, names);
         auto table = reader.settings(*this);
         if (reader.only_keys) return;
-        problems_ = scene_ ? problem_of(film_) : standard_problems(problem_names_, table);
-        references_ = std::make_unique<SharedReference[]>(problems_.all.size());
-        find_solvers(table);
-        for (const auto& method : reader.external_methods) solvers_.push_back({Model::angles, "", &method});
-        settings_ = settings_text(*this) + problems_.comment;
-        chart_settings_ = fmt::format("cost = {}\nnames = {}\n", toml_value(cost_), toml_value(names_));
-        for (std::size_t p = 0; p < problems_.all.size(); ++p)
-            for (const auto& solver : solvers_)
-                if (solver.supports(problems_.all[p])) studies_.push_back({p, solver});
+        problems = scene_ ? problem_of(film_) : standard_problems(problem_names_, table);
+        references_ = std::make_unique<SharedReference[]>(problems.all.size());
+        settings_ = settings_text(*this) + problems.comment;
+        chart_settings_ = fmt::format("cost = {}\nnames = {}\n", toml_value(cost), toml_value(names));
+        const auto solvers = solvers_of(table);
+        for (std::size_t p = 0; p < problems.all.size(); ++p)
+            for (const auto& solver : solvers)
+                if (solver.supports(problems.all[p])) studies_.push_back({p, solver});
         if (studies_.empty())
-            throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems_.all[0].name,
-                              name_of(problems_.all[0].motion.model));
+            throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems.all[0].name,
+                              name_of(problems.all[0].motion.model));
     }
 
     void fields(KeyVisitor& visit) {
@@ -79,9 +75,9 @@ public:
             writer->add("duration_s", toml_text(film_.duration_s.text()));
         else
             visit({"duration_s", "of the motion of `scene`", "s", positive, "the film's", of_scene}, film_.duration_s);
-        visit({"repeats", "of a measurement of time", "", from_to(1, 99)}, repeats_);
-        visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, max_evaluations_);
-        visit({"least_error", "below which no finer setting is taken", "", positive}, min_error_);
+        visit({"repeats", "of a measurement of time", "", from_to(1, 99)}, repeats);
+        visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, max_evaluations);
+        visit({"least_error", "below which no finer setting is taken", "", positive}, min_error);
         visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
         visit({.key = "methods", .help = "names of methods", .absent = "all", .known = names_of_methods()}, methods_);
     }
@@ -92,13 +88,13 @@ public:
         return chart;
     }
 
-    std::size_t trials() const override { return problems_.all.size() + studies_.size() * repeats(); }
-    bool measures_time() const override { return cost_ == Cost::time; }
+    std::size_t trials() const override { return problems.all.size() + studies_.size() * rounds(); }
+    bool measures_time() const override { return cost == Cost::time; }
     std::string unit() const override { return "step-size studies"; }
-    double units(std::size_t trial) const override { return trial < problems_.all.size() ? 0 : 1; }
+    double units(std::size_t trial) const override { return trial < problems.all.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        if (trial < problems_.all.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
+        if (trial < problems.all.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
         if (numbers.empty() || numbers.size() % numbers_in<StepResult> != 0) return false;
         const auto is_count_or_none = [](double x) { return std::isnan(x) || is_count(x); };
         const auto outcomes = rows_of<StepResult>(numbers);
@@ -121,12 +117,12 @@ public:
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        const auto problems = merged_studies(numbers);
-        for (std::size_t p = 0; p < problems.size(); ++p)
-            for (const auto& study : problems[p])
+        const auto all = merged_studies(numbers);
+        for (std::size_t p = 0; p < all.size(); ++p)
+            for (const auto& study : all[p])
                 for (const auto& outcome : study.outcomes) {
                     const auto add = [&](const auto& error) {
-                        add_row(table, problems_.all[p].name, name_of(study.solver.model), study.solver.name(),
+                        add_row(table, problems.all[p].name, name_of(study.solver.model), study.solver.method,
                                 outcome.setting, error, outcome.energy_error, outcome.length_error, outcome.cpu_s,
                                 outcome.evaluations, outcome.steps);
                     };
@@ -138,7 +134,7 @@ public:
         bool any = false;
         for (const auto& studies : merged_studies(numbers))
             for (const auto& study : studies) {
-                if (!pareto_front({&study, 1}, cost_, {0, max_error_shown}).empty()) return std::nullopt;
+                if (!pareto_front({&study, 1}, cost, {0, max_error_shown}).empty()) return std::nullopt;
                 for (const auto& outcome : study.outcomes) {
                     any |= std::isfinite(outcome.error);
                     if (study.solver.is_kao_study() && outcome.is_kao_study() && !outcome.failed()) return std::nullopt;
@@ -152,143 +148,108 @@ public:
     }
 
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        const auto studies = merged_studies(numbers);
-        const auto named = names_in_colour(studies);
-        for (std::size_t p = 0; p < problems_.all.size(); ++p)
-            figure.panels.push_back(work_plot({problems_.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
-                                               studies[p], cost_, named, has_libraries(), names_}));
-        figure.captions.push_back(color_words(studies));
+        const auto all = merged_studies(numbers);
+        auto named = ranked(all, cost, accuracies);
+        const bool are_all = named.size() <= best_shown;
+        named.resize(std::min(named.size(), best_shown));
+        for (std::size_t p = 0; p < problems.all.size(); ++p)
+            figure.panels.push_back(work_plot({problems.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
+                                               all[p], all[p], cost, named, names}));
+        figure.captions.push_back(
+            are_all ? "Each method in its best model; the pale band is the Pareto front."
+                    : fmt::format("In colour the five best, by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}, each in "
+                                  "its best model; the pale band is the Pareto front of all.",
+                                  has_angles() ? " rad" : ""));
         figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
-        if (cost_ == Cost::time) figure.captions.push_back(timing_caption(studies));
+        if (cost == Cost::time) figure.captions.push_back(timing_caption(all));
     }
 
-    std::string subtitle() const override { return problems_.subtitle; }
+    std::string subtitle() const override { return problems.subtitle; }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
-        Json all;
-        const auto studies = merged_studies(numbers);
-        for (std::size_t p = 0; p < problems_.all.size(); ++p) {
-            const auto& name = problems_.all[p].name;
+        Json found;
+        const auto all = merged_studies(numbers);
+        for (std::size_t p = 0; p < problems.all.size(); ++p) {
+            const auto& name = problems.all[p].name;
             const auto problem = row_of<ProblemRow>(numbers[p]);
-            all[name + "_sensitivity"] = problem.sensitivity;
-            all[name + "_reference_disagreement"] = problem.disagreement;
-            for (const double accuracy : accuracies) add_findings(studies[p], name, accuracy, all);
+            found[name + "_sensitivity"] = problem.sensitivity;
+            found[name + "_reference_disagreement"] = problem.disagreement;
+            for (const double accuracy : accuracies) {
+                const auto best = cheapest(all[p], cost, accuracy);
+                if (!best.study) continue;
+                const auto key = fmt::format("{}_1e{}_", name, std::lround(std::log10(accuracy)));
+                const auto& solver = best.study->solver;
+                found[key + "best"] = fmt::format("{}, {}", solver.method, name_of(solver.model));
+                found[key + "cost"] = best.cost;
+            }
         }
-        if (cost_ == Cost::evaluations) return all;
-        const auto [typical, worst] = time_spread(studies);
-        all["spread_typical"] = typical;
-        all["spread_worst"] = worst;
+        if (cost == Cost::evaluations) return found;
+        const auto [typical, worst] = time_spread(all);
+        found["spread_typical"] = typical;
+        found["spread_worst"] = worst;
+        return found;
+    }
+
+    const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const override {
+        auto& shared = references_[problem];
+        const auto& motion = problems.all[problem].motion;
+        std::call_once(shared.once, [&] { shared.reference = reference_end(motion, motion.sample_interval, stop); });
+        return shared.reference;
+    }
+
+    Studies merged_studies(std::span<const TrialNumbers> numbers) const override {
+        Studies all(problems.all.size());
+        for (std::size_t i = 0; i < studies_.size(); ++i) {
+            std::vector<std::vector<StepResult>> measured;
+            for (std::size_t trial = problems.all.size() + i; trial < numbers.size(); trial += studies_.size())
+                measured.push_back(rows_of<StepResult>(numbers[trial]));
+            all[studies_[i].first].push_back(merged(studies_[i].second, measured));
+        }
         return all;
     }
 
 private:
-    using Studies = std::vector<std::vector<StepStudy>>;  // for each problem
+    std::size_t rounds() const { return cost == Cost::time ? static_cast<std::size_t>(repeats) : 1; }
+    bool has_angles() const { return problems.all.front().has_angles(); }
 
-    std::size_t repeats() const { return cost_ == Cost::time ? static_cast<std::size_t>(repeats_) : 1; }
-    bool has_libraries() const {
-        return std::any_of(studies_.begin(), studies_.end(),
-                           [](const auto& l) { return l.second.external != nullptr; });
-    }
-    bool has_angles() const { return problems_.all.front().has_angles(); }
-
-    void find_solvers(TomlReader& table) {
+    std::vector<Solver> solvers_of(TomlReader& table) const {
         for (const auto& name : methods_)
             if (!find_method(name))
                 throw table.error("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
         check_distinct(table, "methods", methods_);
+        std::vector<Solver> solvers;
         constexpr std::array of_model{&MethodEntry::angles, &MethodEntry::constraints, &MethodEntry::mechanism};
         for (const auto& model_name : model_names_)
             for (const auto& name : methods_)
                 if (const auto model = value_named<Model>(model_name);
                     find_method(name)->*of_model[static_cast<std::size_t>(model)])
-                    solvers_.push_back({model, name});
-        if (solvers_.empty())
+                    solvers.push_back({model, name});
+        if (solvers.empty())
             throw table.error(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it supports");
+        return solvers;
     }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        const std::size_t problems = problems_.all.size();
-        if (trial < problems) {
+        const std::size_t first = problems.all.size();
+        if (trial < first) {
             const auto& known = reference(trial, stop);
             return {known.sensitivity, known.disagreement};
         }
-        const auto& [p, solver] = studies_[(trial - problems) % studies_.size()];
-        const bool is_first = trial - problems < studies_.size();
+        const auto& [p, solver] = studies_[(trial - first) % studies_.size()];
+        const bool is_first = trial - first < studies_.size();
         TrialNumbers numbers;
-        for (const auto& outcome : run_step_study(problems_.all[p], reference(p, stop), solver,
-                                                  {max_evaluations_, min_error_, cost_ == Cost::time, is_first}, stop))
+        for (const auto& outcome : run_step_study(problems.all[p], reference(p, stop), solver,
+                                                  {max_evaluations, min_error, cost == Cost::time, is_first}, stop))
             append(numbers, outcome);
         return numbers;
-    }
-
-    /// Computed on first use, by any thread.
-    const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const {
-        auto& shared = references_[problem];
-        const auto& motion = problems_.all[problem].motion;
-        std::call_once(shared.once, [&] { shared.reference = reference_end(motion, motion.sample_interval, stop); });
-        return shared.reference;
-    }
-
-    /// For each problem; those of other libraries come last.
-    Studies merged_studies(std::span<const TrialNumbers> numbers) const {
-        Studies all(problems_.all.size());
-        for (std::size_t i = 0; i < studies_.size(); ++i) {
-            std::vector<std::vector<StepResult>> repeats;
-            for (std::size_t trial = problems_.all.size() + i; trial < numbers.size(); trial += studies_.size())
-                repeats.push_back(rows_of<StepResult>(numbers[trial]));
-            all[studies_[i].first].push_back(merged(studies_[i].second, repeats));
-        }
-        return all;
-    }
-
-    void add_findings(const std::vector<StepStudy>& studies, const std::string& problem, double accuracy,
-                      Json& all) const {
-        const auto key = fmt::format("{}_1e{}_", problem, std::lround(std::log10(accuracy)));
-        const auto best = cheapest(studies, cost_, accuracy, [](const Solver& solver) { return !solver.external; });
-        const auto external = cheapest(studies, cost_, accuracy, [](const Solver& solver) { return solver.external; });
-        if (best.study) {
-            const auto& solver = best.study->solver;
-            all[key + "best"] = fmt::format("{}, {}", solver.method, name_of(solver.model));
-            all[key + "cost"] = best.cost;
-        }
-        if (!external.study) return;
-        all[key + "best_peer"] = external.study->solver.external->name;
-        all[key + "peer_cost"] = external.cost;
-        if (best.study) all[key + "peer_ratio"] = external.cost / best.cost;
-    }
-
-    /// The five best methods; if other libraries are shown, preceded by Doppel's best one.
-    std::vector<std::string> names_in_colour(const Studies& studies) const {
-        auto names = ranked(studies, cost_, accuracies, false);
-        if (!has_libraries()) {
-            names.resize(std::min(names.size(), best_shown));
-            return names;
-        }
-        names.resize(1);
-        const auto others = ranked(studies, cost_, accuracies, true);
-        names.insert(names.end(), others.begin(), others.begin() + std::min(others.size(), best_shown));
-        return names;
-    }
-
-    std::string color_words(const Studies& studies) const {
-        const bool all = ranked(studies, cost_, accuracies, has_libraries()).size() <= best_shown;
-        const auto rank = fmt::format("by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}", has_angles() ? " rad" : "");
-        if (has_libraries())
-            return fmt::format(
-                "In colour {} of other libraries{} and Doppel’s best; the pale band is the Pareto front of all of "
-                "Doppel’s.",
-                all ? "all methods" : "the five best methods", all ? "" : fmt::format(" ({})", rank));
-        if (all) return "Each method in its best model; the pale band is the Pareto front.";
-        return fmt::format(
-            "In colour the five best, {}, each in its best model; the pale band is the Pareto front of all.", rank);
     }
 
     std::string error_words(bool floors) const {
         return fmt::format("Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
                            has_angles() ? "angle" : "place, as a part of the mechanism's size,",
-                           problems_.all.front().is_plain_chain() ? "in two formulations" : "at two tolerances",
+                           problems.all.front().is_plain_chain() ? "in two formulations" : "at two tolerances",
                            floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 
@@ -297,26 +258,19 @@ private:
         return fmt::format(
             "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
             "± {:.0f} %, shown as bars.",
-            repeats_, 100 * typical, 100 * worst);
+            repeats, 100 * typical, 100 * worst);
     }
 
-    static constexpr std::size_t best_shown = 5;
     inline static const Field cost_field{.key = "cost", .help = "the cost axis"};
     inline static const Field names_field{.key = "names", .help = "which curves are labelled: the five best, or all"};
-    Cost cost_ = Cost::time;
-    NamedCurves names_ = NamedCurves::best;
     std::optional<std::string> scene_;
     Preset film_;  // of the key `scene`
     std::vector<std::string> problem_names_, model_names_, methods_;
-    WorkProblems problems_;
     struct SharedReference {
         std::once_flag once;
         Reference reference;
     };
-    std::unique_ptr<SharedReference[]> references_;  // for each problem
-    int repeats_ = 5, max_evaluations_ = 300'000;
-    double min_error_ = 1e-16;
-    std::vector<Solver> solvers_;
+    std::unique_ptr<SharedReference[]> references_;        // for each problem
     std::vector<std::pair<std::size_t, Solver>> studies_;  // the problem and the solver of each study
 };
 

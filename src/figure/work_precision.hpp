@@ -3,6 +3,8 @@
 #include "analysis/work_precision.hpp"
 #include "figure/kinds.hpp"
 
+#include <array>
+
 namespace doppel {
 
 template <>
@@ -24,20 +26,38 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
 std::span<const std::string_view> standard_problem_names();
 WorkProblems problem_of(Preset film);
 
+/// What a work-precision figure compares, and its results.
+struct WorkComparison {
+    using Studies = std::vector<std::vector<StepStudy>>;  // for each problem
+
+    WorkProblems problems;
+    Cost cost = Cost::time;
+    NamedCurves names = NamedCurves::best;
+    int repeats = 5, max_evaluations = 300'000;
+    double min_error = 1e-16;
+
+    virtual ~WorkComparison() = default;
+    /// The reference of a problem; computed on first use, by any thread.
+    virtual const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const = 0;
+    virtual Studies merged_studies(std::span<const TrialNumbers> numbers) const = 0;
+};
+
+/// Errors, rad, for which the cheapest method is named.
+inline constexpr std::array accuracies{1e-3, 1e-6, 1e-9, 1e-12};
+inline constexpr std::size_t best_shown = 5;  // methods in colour
 inline constexpr double max_error_shown = 1;  // rad, or relative to the size
 
 struct WorkDiagram {
     const WorkProblem& problem;
-    double floor;  // smallest error that the problem's sensitivity allows in double; NaN if unknown
-    const std::vector<StepStudy>& studies;  // those of other libraries last
+    double floor;                      // smallest error that the problem's sensitivity allows in double; NaN if unknown
+    std::span<const StepStudy> front;  // whose Pareto front is shown as a pale band
+    std::span<const StepStudy> studies;  // shown as curves
     Cost cost;
-    const std::vector<std::string>& named;  // coloured methods, the best first: Solver::name()
-    bool of_libraries;                      // the pale curves are those of other libraries, otherwise Doppel's
+    const std::vector<std::string>& named;  // coloured methods
     NamedCurves names = NamedCurves::best;
 };
 
-/// Error against cost, a curve for each method in its best model: the named ones in colour, the others pale. Behind
-/// them, a pale band follows the front of Doppel's methods.
+/// Error against cost, a curve for each method in its best model: the named ones in colour, the others pale.
 Plot work_plot(const WorkDiagram& diagram);
 
 }  // namespace doppel

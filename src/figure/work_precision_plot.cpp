@@ -50,26 +50,21 @@ void add_front(std::span<const StepStudy> studies, const WorkDiagram& diagram, C
         add_point(curve, point.cost(diagram.cost), shown(point.error));
 }
 
+bool is_named(const StepStudy& study, const WorkDiagram& diagram) {
+    return std::ranges::count(diagram.named, study.solver.method) > 0;
+}
+
 /// In colour with its name, or pale.
 Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
-    const auto& [model, method, external] = study.solver;
-    const auto rank = std::find(diagram.named.begin(), diagram.named.end(), study.solver.name());
-    const bool named = rank != diagram.named.end();
-    Curve curve;
-    if (!named) {
-        curve.quiet = true;
-        if (diagram.names == NamedCurves::all)
-            curve.label = external ? external->name : method;
-        else
-            curve.background = Background::line;
-    } else if (external) {
-        curve.label = external->name;
-        curve.hue = static_cast<int>(rank - diagram.named.begin());
-    } else {
+    const auto& method = study.solver.method;
+    Curve curve{.label = method};
+    if (is_named(study, diagram)) {
         const auto style = style_of(method);
-        curve.label = diagram.of_libraries ? method + " of Doppel" : method;
         curve.hue = style.hue;
         curve.dashed = style.dashed;
+    } else {
+        curve.quiet = true;
+        if (diagram.names == NamedCurves::best) curve.label = "", curve.background = Background::line;
     }
     add_front({&study, 1}, diagram, curve);
     return curve;
@@ -137,15 +132,11 @@ Plot work_plot(const WorkDiagram& diagram) {
     plot.y = {.label = diagram.problem.has_angles() ? "angle error at the end, rad"
                                                     : "error of place at the end, of the size",
               .logarithmic = true};
-    const auto own = std::find_if(diagram.studies.begin(), diagram.studies.end(),
-                                  [](const StepStudy& study) { return study.solver.external != nullptr; });
-    add_front({diagram.studies.begin(), own}, diagram, plot.curves.emplace_back(Curve{.background = Background::band}));
-    if (!diagram.of_libraries) add_kao_point(diagram, plot);
+    add_front(diagram.front, diagram, plot.curves.emplace_back(Curve{.background = Background::band}));
+    add_kao_point(diagram, plot);
     for (const bool named : {false, true})
         for (const auto* study : best_models(diagram.studies, diagram.cost)) {
-            const bool is_named = std::count(diagram.named.begin(), diagram.named.end(), study->solver.name()) > 0;
-            const bool is_subject = (study->solver.external != nullptr) == diagram.of_libraries;
-            if (is_named != named || !(named || is_subject)) continue;
+            if (is_named(*study, diagram) != named) continue;
             plot.curves.push_back(curve_of(*study, diagram));
             if (named && diagram.cost == Cost::time)
                 plot.curves.push_back(spread_bars(*study, diagram, plot.curves.back().hue));

@@ -347,7 +347,7 @@ TEST(Grid, TheChoiceOfItsMethodCanBeInterrupted) {
     const PresetText preset{"x", "presets/x.toml",
                             "[scene]\nkind = \"grid\"\n[system]\nlinks = 6\naccuracy = 1e-6\n"
                             "model = \"constraints\"\n[grid]\ndifference = 0.01\n"};
-    test::expect_error(ExitCode::interrupted, {"interrupted"}, [&] { read_figure(preset, {}, {}, stop); });
+    test::expect_error(ExitCode::interrupted, {"interrupted"}, [&] { read_figure(preset, {}, stop); });
 }
 
 }  // namespace grid_test

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
 
 namespace doppel {
@@ -67,53 +66,6 @@ TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
     EXPECT_EQ(faint_ones(page.panels[0]), 0);
     EXPECT_TRUE(labels_of(page.panels[0]).contains("midpoint"));
     EXPECT_TRUE(page.captions[0].starts_with("Each method in its best model;")) << page.captions[0];
-}
-
-/// Has the exact result at a given cost.
-class Oracle final : public Motion {
-public:
-    explicit Oracle(long evaluations) : evaluations_(evaluations) {}
-    void advance(const std::atomic<bool>& /*stop*/) override {}
-    void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) override {}
-    Observation observe() const override {
-        Observation seen;
-        seen.bobs.resize(2);
-        return seen;
-    }
-    Effort effort() const override { return {.steps = 1, .evaluations = evaluations_}; }
-
-private:
-    long evaluations_;
-};
-
-TEST(WorkPrecisionChart, OfLibrariesHasTheirFiveBestAndDoppelsBest) {
-    // all report no motion, which is correct within 1e-8 for a pendulum almost at rest
-    std::vector<ExternalMethod> libraries;
-    for (const int cost : {70, 10, 60, 20, 50, 30, 40})
-        libraries.push_back(
-            {fmt::format("at {}", cost), true, 1e-4, 1e-2,
-             [cost](const Pendulum<double>&, double, double) { return std::make_unique<Oracle>(cost); }});
-    const auto path = std::filesystem::path(DOPPEL_TEST_OUTPUT) / fmt::format("still-{}.toml", getpid());
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path) << "[scene]\nduration_s = 1\n[system]\nangle_deg = [1e-7, 0]\n";
-    const auto figure = read_figure(
-        {"x", "presets/x.toml",
-         fmt::format("[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"{}\"\n", path.string())},
-        sets([] {
-            auto arguments = quick;
-            arguments.emplace_back("work_precision.methods=[\"rk4\", \"taylor\", \"euler\"]");
-            return arguments;
-        }()),
-        libraries);
-    const auto page = page_of(figure);
-    const auto labels = labels_of(page.panels[0]);
-    for (const int cost : {10, 20, 30, 40, 50}) EXPECT_TRUE(labels.contains(fmt::format("at {}", cost))) << cost;
-    EXPECT_EQ(labels.size(), 5u + 1);
-    EXPECT_EQ(std::count_if(labels.begin(), labels.end(), [](auto& label) { return label.ends_with(" of Doppel"); }),
-              1);
-    EXPECT_EQ(faint_ones(page.panels[0]), 2);  // the other libraries' methods, and none of Doppel's
-    EXPECT_TRUE(page.captions[0].starts_with("In colour the five best methods of other libraries")) << page.captions[0];
-    std::filesystem::remove(path);
 }
 
 }  // namespace work_precision_chart_test

@@ -187,46 +187,6 @@ TEST(WorkPrecision, TimesItsRuns) {
     EXPECT_GT(last, 0);
 }
 
-/// Computes nothing, slowly.
-class Idle final : public Motion {
-public:
-    explicit Idle(double setting) : setting_(setting) {}
-    void advance(const std::atomic<bool>& /*stop*/) override {
-        if (setting_ < 1e-3) throw method_failed("idle: it gives up");
-    }
-    void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) override {}
-    Observation observe() const override {
-        Observation seen;
-        seen.bobs.resize(2);
-        return seen;
-    }
-    Effort effort() const override { return {.steps = 3, .evaluations = 7}; }
-
-private:
-    double setting_;
-};
-
-TEST(WorkPrecision, HasPeers) {
-    const std::vector<ExternalMethod> peers{
-        {"idle", true, 1e-4, 1e-2,
-         [](const Pendulum<double>&, double, double setting) { return std::make_unique<Idle>(setting); }}};
-    const auto figure = read_figure({"x", "presets/x.toml",
-                                     fmt::format("[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = "
-                                                 "\"{}\"\nmodels = [\"angles\"]\nmethods = [\"taylor\"]\n",
-                                                 film_path())},
-                                    sets({by_evaluations}), peers);
-    int given_up = 0, done = 0;
-    for (const auto& row : rows_of(figure)) {
-        if (row.cells.at("method") != "peer:idle") continue;
-        EXPECT_EQ(row.cells.at("model"), "angles");
-        const bool gave_up = row.cells.at("angle_error_rad") == "failed";
-        ++(gave_up ? given_up : done);
-        EXPECT_EQ(row.cells.at("steps"), "3");
-    }
-    EXPECT_EQ(done, 3);      // 1e-2, 3.16e-3, 1e-3
-    EXPECT_EQ(given_up, 2);  // 3.16e-4, 1e-4
-}
-
 TEST(WorkPrecision, TakesAMechanism) {
     const auto figure = figure_from(
         "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"springs\"\nduration_s = 0.5\n"

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "analysis/work_precision.hpp"
 #include "base/error.hpp"
 #include "chain_rate.hpp"
+#include "external_method.hpp"
 
 #include <algorithm>
 #include <string_view>

@@ -2,6 +2,7 @@
 #include "cli/options.hpp"
 #include "cli/terminal.hpp"
 #include "figure/run.hpp"
+#include "library_chart.hpp"
 #include "peers.hpp"
 
 #include <CLI/CLI.hpp>
@@ -33,8 +34,8 @@ std::string where_and_when() {
 
 /// A work-precision chart like that of `doppel figure`, but of the methods of other libraries.
 void make_figure(const RunCommandOptions& options) {
-    const auto peers = all_peers();
-    std::vector<FigurePreset> figures{read_figure(find_preset(options.presets.front()), overrides_of(options), peers)};
+    std::vector<FigurePreset> figures{
+        library_chart(find_preset(options.presets.front()), overrides_of(options), all_peers())};
     figures[0].name += "-libraries";
     figures[0].title += fmt::format(": other libraries, on {}", where_and_when());
     ProgressReport show(progress_style(options.progress), figures[0].name, figures[0].experiment->unit());

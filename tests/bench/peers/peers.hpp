@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/work_precision.hpp"
+#include "external_method.hpp"
 
 #include <vector>
 
