@@ -57,10 +57,10 @@ bool is_sound(const WorkProblem& problem, MotionSpec spec, StepResult& outcome, 
     return true;
 }
 
-StepResult run_setting(const WorkProblem& problem, const Reference& reference, const SolverRuns& runs,
-                       const Setting& setting, bool is_timed, const std::atomic<bool>& stop) {
-    StepResult outcome{.setting = setting.value(problem)};
-    const auto motion = runs.make(setting);
+StepResult run_setting(const WorkProblem& problem, const Reference& reference, const StepStudySpec& spec,
+                       const MotionSpec& setting, const auto& make, const std::atomic<bool>& stop) {
+    StepResult outcome{.setting = setting_of(setting)};
+    const auto motion = make(setting);
     const ErrorScale proportion(motion->observe(), problem.energy_unit, problem.size);
     bool ends = false;
     const double first_s = cpu_of([&] { ends = advanced(*motion, stop); });
@@ -68,12 +68,21 @@ StepResult run_setting(const WorkProblem& problem, const Reference& reference, c
     outcome.steps = static_cast<double>(motion->effort().steps);
     if (!ends) return outcome;
     const auto end = motion->observe();
-    if (!proportion.is_plausible(end) || (runs.watch && !runs.watch(setting, outcome))) return outcome;
+    if (!proportion.is_plausible(end) || (spec.watched && !is_sound(problem, setting, outcome, stop))) return outcome;
     const double error_of_end = ErrorMeasure{problem.has_angles(), problem.size}.distance(end, reference.end);
     if (!std::isfinite(error_of_end)) return outcome;
     outcome.error = error_of_end;
-    if (is_timed) outcome.cpu_s = timed([&] { return runs.make(setting); }, first_s, stop);
+    if (spec.timed) outcome.cpu_s = timed([&] { return make(setting); }, first_s, stop);
     return outcome;
+}
+
+MotionSpec at_setting(const WorkProblem& problem, const Solver& solver, long steps, const Quad& tolerance) {
+    auto motion = problem.motion;
+    motion.model = solver.model;
+    motion.method = solver.method;
+    motion.steps_per_sample = steps;
+    motion.tolerance = tolerance;
+    return motion;
 }
 
 /// A quantile of sorted values, interpolated linearly.
@@ -86,23 +95,33 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-std::vector<Setting> settings_of(const WorkProblem& problem, bool adaptive, long max_steps) {
-    std::vector<Setting> all;
+double setting_of(const MotionSpec& motion) {
+    if (motion.steps_per_sample == 0) return static_cast<double>(motion.tolerance);
+    return motion.sample_interval.value() / static_cast<double>(motion.steps_per_sample);
+}
+
+std::vector<MotionSpec> settings_of(const WorkProblem& problem, const Solver& solver, bool adaptive, long max_steps) {
+    std::vector<MotionSpec> all;
+    const auto add = [&](long steps, const Quad& tolerance) {
+        all.push_back(at_setting(problem, solver, steps, tolerance));
+    };
     constexpr int finest = 30;
     for (int k = 2; adaptive && k <= finest; ++k)
-        all.push_back({0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2))});
+        add(0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2)));
     if (adaptive) return all;
     const double kao_steps = problem.duration() / kao_step;
     for (int k = static_cast<int>(2 * std::log2(problem.natural_time / kao_step));; --k) {
         const double factor = std::ldexp(k % 2 == 0 ? 1 : std::numbers::sqrt2, -((k + (k % 2 != 0)) / 2));
         const long steps = std::max(1L, std::lround(kao_steps * factor));
         if (steps > max_steps && !all.empty()) return all;
-        if (all.empty() || steps > all.back().steps) all.push_back({steps, 0});
+        if (all.empty() || steps > all.back().steps_per_sample) add(steps, 0);
     }
 }
 
-std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference& reference, const SolverRuns& runs,
-                                     const StepStudySpec& spec, const std::atomic<bool>& stop) {
+std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference& reference,
+                                     std::span<const MotionSpec> settings, const StepStudySpec& spec,
+                                     const std::atomic<bool>& stop,
+                                     const std::function<std::unique_ptr<Motion>(const MotionSpec&)>& make) {
     double best = std::numeric_limits<double>::infinity();
     long since_best = 0;
     // finer settings do not help any more
@@ -114,8 +133,8 @@ std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference
         return best < near * reference.floor() ? since_best >= patience : best < useful && since_best >= long_patience;
     };
     std::vector<StepResult> outcomes;
-    for (const auto& setting : runs.settings) {
-        const auto& outcome = outcomes.emplace_back(run_setting(problem, reference, runs, setting, spec.timed, stop));
+    for (const auto& setting : settings) {
+        const auto& outcome = outcomes.emplace_back(run_setting(problem, reference, spec, setting, make, stop));
         const bool next_too_costly =
             std::numbers::sqrt2 * outcome.evaluations > static_cast<double>(spec.max_evaluations);
         if (next_too_costly || outcome.error < spec.min_error || is_at_floor(outcome.error)) break;
@@ -125,25 +144,12 @@ std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference
 
 std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                                        const StepStudySpec& spec, const std::atomic<bool>& stop) {
-    const auto spec_at = [&](const Setting& setting) {
-        auto motion = problem.motion;
-        motion.model = solver.model;
-        motion.method = solver.method;
-        motion.steps_per_sample = setting.steps;
-        motion.tolerance = setting.tolerance;
-        return motion;
-    };
-    SolverRuns runs{settings_of(problem, find_method(solver.method)->adaptive, spec.max_evaluations),
-                    [&](const Setting& setting) { return make_motion(spec_at(setting)); }};
-    if (spec.watched)
-        runs.watch = [&](const Setting& setting, StepResult& outcome) {
-            return is_sound(problem, spec_at(setting), outcome, stop);
-        };
-    auto outcomes = run_settings(problem, reference, runs, spec, stop);
+    const auto settings = settings_of(problem, solver, find_method(solver.method)->adaptive, spec.max_evaluations);
+    auto outcomes = run_settings(problem, reference, settings, spec, stop);
     if (solver.is_kao_study() &&
         std::none_of(outcomes.begin(), outcomes.end(), [](auto& r) { return r.is_kao_study(); })) {
-        runs.settings = {{std::lround(problem.duration() / kao_step), 0}};
-        outcomes.push_back(run_settings(problem, reference, runs, spec, stop).front());
+        const auto kao = at_setting(problem, solver, std::lround(problem.duration() / kao_step), 0);
+        outcomes.push_back(run_setting(problem, reference, spec, kao, make_motion, stop));
     }
     return outcomes;
 }

@@ -64,35 +64,22 @@ struct StepStudySpec {
     bool watched = true;  // errors of energies and lengths are measured in a separate run
 };
 
-/// A setting of a solver: the number of steps of the whole motion, or a tolerance if `steps` is 0.
-struct Setting {
-    long steps = 0;
-    Quad tolerance = 0;
+/// The motion of a problem at the settings of a solver, from coarse to fine: step sizes of 2^(k/2)/30000 s, from the
+/// problem's natural time down to `max_steps` in the whole motion, or tolerances of 10^(−k/2) rounded to three digits,
+/// from 0.1 to the limit of double, with 0 steps.
+std::vector<MotionSpec> settings_of(const WorkProblem& problem, const Solver& solver, bool adaptive, long max_steps);
+/// The step size, s, or the tolerance.
+double setting_of(const MotionSpec& motion);
 
-    /// The step size, s, or the tolerance.
-    double value(const WorkProblem& problem) const {
-        return steps == 0 ? static_cast<double>(tolerance) : problem.duration() / static_cast<double>(steps);
-    }
-};
-/// From coarse to fine: step sizes of 2^(k/2)/30000 s, from the problem's natural time down to `max_steps`, or
-/// tolerances of 10^(−k/2) rounded to three digits, from 0.1 to the limit of double.
-std::vector<Setting> settings_of(const WorkProblem& problem, bool adaptive, long max_steps);
-
-/// How a solver runs a problem.
-struct SolverRuns {
-    std::vector<Setting> settings;                                // from coarse to fine
-    std::function<std::unique_ptr<Motion>(const Setting&)> make;  // the first sample of the motion is its end
-    /// Adds errors during the run to its result; returns false if the run fails. Optional.
-    std::function<bool(const Setting&, StepResult&)> watch = {};
-};
 /// Runs the settings until the errors reach the floor or fall below `min_error`, or the next setting would take too
 /// many evaluations; never until a time. A failed setting has no numbers. CPU times are those of the thread for the
 /// whole motion, without set-up, after a run that warms the caches; short runs are repeated. Throws Error (exit 130)
 /// soon after `stop` is set.
-std::vector<StepResult> run_settings(const WorkProblem& problem, const Reference& reference, const SolverRuns& runs,
-                                     const StepStudySpec& spec, const std::atomic<bool>& stop);
-
-/// The same for a solver of Doppel. Kao's step size is always included.
+std::vector<StepResult> run_settings(
+    const WorkProblem& problem, const Reference& reference, std::span<const MotionSpec> settings,
+    const StepStudySpec& spec, const std::atomic<bool>& stop,
+    const std::function<std::unique_ptr<Motion>(const MotionSpec&)>& make = make_motion);
+/// The same for all settings of a solver of Doppel, and Kao's step size.
 std::vector<StepResult> run_step_study(const WorkProblem& problem, const Reference& reference, const Solver& solver,
                                        const StepStudySpec& spec, const std::atomic<bool>& stop);
 

@@ -54,7 +54,6 @@ bool Computation::take(const std::filesystem::path& path, bool must_be) {
     is_whole_ = !part.is_damaged;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
-    kept_units_ = done_units_;
     report_.note(fmt::format("resuming from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
                              part.is_damaged ? "; the rest is damaged or incomplete, and computed again" : ""));
     return true;
@@ -111,8 +110,9 @@ Error Computation::with_record(const Error& error) {
     const std::lock_guard lock(mutex_);
     if (!has_record_) return error;
     if (writer_) writer_->flush();
-    return {error.code(), fmt::format("{}; {:.0f} % is done and kept in {}: the same command resumes", error.what(),
-                                      percent(kept_units_), record_.string())};
+    return {error.code(),
+            fmt::format("{}; {:.0f} % is done and kept in {}: the same command resumes", error.what(),
+                        percent(writer_ ? done_units_ : done_units_ - computed_units_), record_.string())};
 }
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
@@ -138,7 +138,6 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
             flushed_s_ = time;
         }
     }
-    if (writer_) kept_units_ = done_units_;
     if (groups_done_ == groups_ahead && groups_.size() >= many_groups) report_estimate(time);
     report_.progress({done_units_, total_units_});
     return is_last;

@@ -70,7 +70,7 @@ private:
     bool has_record_ = false, is_whole_ = false;  // results in a file, and that file is not damaged
     std::size_t groups_done_ = 0;
     double start_s_ = 0, flushed_s_ = 0, cpu_s_ = 0;
-    double done_units_ = 0, kept_units_ = 0, total_units_ = 0, computed_units_ = 0;
+    double done_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };
 
 /// What a figure takes with so many threads, extrapolated from some trials. The process's memory counts from

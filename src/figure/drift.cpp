@@ -48,11 +48,11 @@ public:
         const auto &methods = keys.methods, &projected = keys.projected;
         if (methods.empty()) throw table.error("methods", "must name at least one");
         for (const auto& name : methods)
-            if (known(table, "methods", name).angles) add_run(name, Model::angles);
+            if (find_method(name)->angles) add_run(name, Model::angles);
         for (const auto& name : methods)
             if (find_method(name)->constraints) add_run(name, Model::constraints);
         for (const auto& name : projected) {
-            if (!known(table, "projected", name).constraints)
+            if (!find_method(name)->constraints)
                 throw table.error("projected", "needs methods that integrate constraints; \"{}\" does not", name);
             add_run(name, Model::constraints, Stabilise::projection);
         }
@@ -148,12 +148,6 @@ private:
             times_s_.push_back(time);
         }
         times_s_.push_back(duration_s_);
-    }
-
-    static const MethodEntry& known(const TomlReader& table, std::string_view key, const std::string& name) {
-        const auto* method = find_method(name);
-        if (method && (method->angles || method->constraints)) return *method;
-        throw table.error(key, "must be names of methods (doppel list methods); \"{}\" is none", name);
     }
 
     void add_run(const std::string& method, Model model, Stabilise stabilise = Stabilise::none) {

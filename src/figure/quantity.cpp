@@ -259,7 +259,6 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         throw table.error(key, "\"{}\" needs sides with the same number of masses", name_of(quantity));
     if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, a);
     const auto scene = make_scene(pair);
-    motion_ = scene.a.motion;
     if (quantity == Quantity::stability &&
         !(released_energy(chain_of(a).cast<double>()) > 1e-10 * chain_of(a).cast<double>().potential_range()))
         throw table.error(key, "\"stability\" needs a release with more energy than hanging at rest");
@@ -383,14 +382,11 @@ TrialNumbers Measurement::watched(const Preset& pair, const std::atomic<bool>& s
 /// Computes energy errors as max_energy_errors(), one group of equal settings at a time.
 void Measurement::append_energies(const PairAt& pair, std::span<TrialNumbers> into,
                                   const std::atomic<bool>& stop) const {
-    auto motion = motion_;
-    motion.follows_turns = false;
     for (std::size_t first = 0; first < into.size();) {
         const auto first_pair = pair(first);
-        motion.sample_interval = *quotient({1, 1}, first_pair.sample_hz);
-        motion.tolerance = first_pair.a.allowed_error();
-        if (const auto& step = first_pair.a.step_s)
-            motion.steps_per_sample = std::lround(motion.sample_interval.value() / step->value());
+        const auto scene = make_scene(first_pair, stop);
+        auto motion = scene.a.motion;
+        motion.follows_turns = false;
         std::vector<Pendulum<Quad>> chains{chain_of(first_pair.a)};
         for (auto i = first + 1; i < into.size(); ++i) {
             const auto& next = pair(i);
@@ -399,8 +395,8 @@ void Measurement::append_energies(const PairAt& pair, std::span<TrialNumbers> in
                 break;
             chains.push_back(chain_of(next.a));
         }
-        const long samples = std::lround(first_pair.duration_s.value() * first_pair.sample_hz.value());
-        for (const double error : max_energy_errors(motion, chains, samples, stop)) into[first++].push_back(error);
+        for (const double error : max_energy_errors(motion, chains, scene.samples, stop))
+            into[first++].push_back(error);
     }
 }
 

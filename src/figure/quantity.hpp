@@ -120,7 +120,6 @@ private:
     QuantityOptions options_;
     FlipSpec flip_;
     std::optional<PairBatchSpec> run_;
-    MotionSpec motion_;  // of side a of the first pair
     bool flips_in_lanes_ = false;
 };
 

@@ -32,29 +32,6 @@ bool is_of_both(std::string_view film_column) {
     return film_column == "distance" || film_column == "log_ratio";
 }
 
-/// The value of a film's table column (film/pair_table.hpp); NaN if it is empty.
-double film_value(const PairState& state, double start_distance, const std::string& column) {
-    if (column == "distance") return state.distance;
-    if (column == "log_ratio") return log_ratio(state.distance, start_distance).value_or(NAN);
-    const bool is_a = column.starts_with("a_");
-    const auto& seen = is_a ? state.a : state.b;
-    const auto name = std::string_view(column).substr(2);
-    if (name == "energy_J") return seen.energy;
-    if (name == "energy_error") return (is_a ? state.energy_error_a : state.energy_error_b).value_or(NAN);
-    if (name == "length_error_m") return seen.length_error;
-    if (name == "kinetic_J") return seen.kinetic_energy;
-    if (name == "potential_J") return seen.energy - seen.kinetic_energy;
-    if (name == "work_J") return seen.work;
-    if (name.starts_with("pivot_")) return name == "pivot_x_m" ? seen.pivot.x : seen.pivot.y;
-    using Member = std::pair<std::string_view, double Bob<double>::*>;
-    constexpr std::array members{Member{"theta", &Bob<double>::theta}, Member{"omega", &Bob<double>::omega},
-                                 Member{"x", &Bob<double>::x},         Member{"y", &Bob<double>::y},
-                                 Member{"vx", &Bob<double>::vx},       Member{"vy", &Bob<double>::vy}};
-    const auto digits = name.find_first_of("123456789");
-    const auto* member = std::ranges::find(members, name.substr(0, digits), &Member::first);
-    return seen.bobs[std::stoul(std::string(name.substr(digits))) - 1].*member->second;
-}
-
 /// Columns in place of a film's: the radius of the certified enclosure of side a, with each precision.
 constexpr std::array<std::string_view, 3> certified_columns{"radius_double_rad", "radius_quad_rad",
                                                             "radius_256_bits_rad"};
@@ -213,13 +190,15 @@ private:
         const auto& shown = *curves_[trial % curves_.size()].film_column;
         if (const auto* of = std::ranges::find(certified_columns, shown); of != certified_columns.end())
             return certified_radii(scene, static_cast<std::size_t>(of - certified_columns.begin()), stop);
+        const auto names = columns_of(scene);
+        const auto column = static_cast<std::size_t>(std::ranges::find(names, shown) - names.begin());
         PairRun run(scene);
         TrialNumbers values;
         double start = 0;
         for (long n = 0; n <= samples_; ++n) {
-            const auto state = run.next(stop);
-            if (n == 0) start = state.distance;
-            values.push_back(film_value(state, start, shown));
+            const Snapshot now{run.next(stop), {}};
+            if (n == 0) start = now.pair.distance;
+            values.push_back(numbers_of(scene, now, start)[column]);
         }
         return values;
     }
@@ -291,11 +270,6 @@ std::vector<FieldTable> series_tables() {
 
 }  // namespace
 
-SeriesKeys::SeriesKeys() {
-    for (const auto& method : doppel::methods())
-        if (method.angles || method.constraints) methods.emplace_back(method.name);
-}
-
 void SeriesKeys::fields(KeyVisitor& visit) {
     visit({"quantity",
            "the distance of pairs in state space, or ln(d/d₀); all Lyapunov exponents of one motion, as their "
@@ -334,12 +308,12 @@ void SeriesKeys::fields(KeyVisitor& visit) {
            .help = "names of methods",
            .absent = "all that step chains",
            .only = of_errors,
-           .known = names_of_methods()},
+           .names = names_of_methods()},
           methods);
     visit({.key = "projected",
            .help = "methods that are also shown with projection onto the constraints",
            .only = of_errors,
-           .known = names_of_methods()},
+           .names = names_of_methods()},
           projected);
 }
 

@@ -18,8 +18,6 @@ inline constexpr auto names_of<SeriesQuantity> = std::to_array<std::string_view>
 
 struct SeriesKeys {
     static constexpr std::string_view table_key = "series";
-    SeriesKeys();
-
     SeriesQuantity quantity = SeriesQuantity::distance;
     bool logarithmic = false;
     std::optional<std::string> film_column;
@@ -27,7 +25,7 @@ struct SeriesKeys {
     double duration_s = 500;
     int samples = 500, points_per_decade = 10;
     double tolerance = SpectrumSpec{}.tolerance, evaluations_per_s = 500;
-    std::vector<std::string> methods, projected;
+    std::vector<std::string> methods{names_of_methods().begin(), names_of_methods().end()}, projected;
 
     bool is_of_pairs() const { return quantity <= SeriesQuantity::log_ratio; }
 

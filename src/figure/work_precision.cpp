@@ -41,9 +41,8 @@ public:
     static constexpr std::string_view table_key = "work_precision";
     WorkPrecision()
         : problem_names_(standard_problem_names().begin(), standard_problem_names().end()),
-          model_names_(names_of<Model>.begin(), names_of<Model>.end()) {
-        for (const auto& method : doppel::methods()) methods_.emplace_back(method.name);
-    }
+          model_names_(names_of<Model>.begin(), names_of<Model>.end()),
+          methods_(names_of_methods().begin(), names_of_methods().end()) {}
     explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
         reader.chart(cost_field, cost);
         reader.chart(names_field, names);
@@ -79,7 +78,7 @@ public:
         visit({"most_evaluations", "of the right-hand side, in one run", "", from_to(100, 1e9)}, max_evaluations);
         visit({"least_error", "below which no finer setting is taken", "", positive}, min_error);
         visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
-        visit({.key = "methods", .help = "names of methods", .absent = "all", .known = names_of_methods()}, methods_);
+        visit({.key = "methods", .help = "names of methods", .absent = "all", .names = names_of_methods()}, methods_);
     }
     static FieldTable other_table() {
         FieldTable chart{"[chart] kind = \"work-precision\"", "Besides those of all figures:\n"};
@@ -214,9 +213,6 @@ private:
     bool has_angles() const { return problems.all.front().has_angles(); }
 
     std::vector<Solver> solvers_of(TomlReader& table) const {
-        for (const auto& name : methods_)
-            if (!find_method(name))
-                throw table.error("methods", "must be names of methods (doppel list methods); \"{}\" is not", name);
         check_distinct(table, "methods", methods_);
         std::vector<Solver> solvers;
         constexpr std::array of_model{&MethodEntry::angles, &MethodEntry::constraints, &MethodEntry::mechanism};

@@ -77,6 +77,17 @@ std::vector<std::string> columns_of(const Scene& scene) {
     return names;
 }
 
+std::vector<double> numbers_of(const Scene& scene, const Snapshot& snapshot, double start_distance) {
+    std::vector<double> numbers;
+    visit_row(scene, snapshot, start_distance, [&](const std::string&, const char*, std::size_t, const auto& value) {
+        if constexpr (requires { value.value_or(NAN); })
+            numbers.push_back(value.value_or(NAN));
+        else
+            numbers.push_back(static_cast<double>(value));
+    });
+    return numbers;
+}
+
 std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::string>& chosen) {
     auto all = columns_of(scene);
     if (chosen.empty()) return all;

@@ -10,6 +10,8 @@
 namespace doppel {
 
 std::vector<std::string> columns_of(const Scene& scene);
+/// The numbers of a row in all columns; NaN for empty cells.
+std::vector<double> numbers_of(const Scene& scene, const Snapshot& snapshot, double start_distance);
 /// The columns that are `chosen`: names of columns, or "a" or "b" for all of a side; all columns if it is empty. Throws
 /// Error (exit 2) for an unknown column.
 std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::string>& chosen);

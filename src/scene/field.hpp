@@ -56,7 +56,6 @@ struct Field {
     std::string_view needed_by = {};               // kind of entry that requires the key
     bool is_drawn = false;                         // shown in pictures: at most `max_letters`, all of them in the font
     std::size_t maximum = 0;                       // for arrays of 1 or more numbers: the most
-    std::span<const std::string_view> known = {};  // known values, if the reader does not check them
     std::string_view pattern = {};                 // regular expression of a text, for the schema
     std::optional<Bounds> otherwise = {};          // the widest bounds, if `bounds` depend on other keys
     std::string_view caption = {};                 // name in pictures; the key without its unit if not given

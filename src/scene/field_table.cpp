@@ -57,7 +57,6 @@ void FieldTable::key(const Field& field, const KeyMember& by_default) {
     const auto type = std::visit([]<class M>(const M&) { return value_type<std::remove_pointer_t<M>>; }, by_default);
     ListedField listed{field, by_default.index(), type, {}, {}};
     if (is_widest) listed.bounds = field.otherwise.value_or(field.bounds);
-    if (listed.names.empty()) listed.names = field.known;
     if (const auto* choice = std::get_if<ChosenName>(&by_default)) listed.names = choice->names;
     listed.described_default = !field.needed_by.empty() ? must_be_given : field.absent.empty() ? "none" : field.absent;
     if (field.needed_by.empty() && field.absent.empty()) listed.default_value = toml_value(by_default);

@@ -123,15 +123,16 @@ private:
         const auto& [p, m] = studies_[number];
         const auto& problem = problems_[p];
         const auto& method = methods_[m];
-        SolverRuns runs{settings_of(problem, method.adaptive, compared_.max_evaluations), [&](const Setting& setting) {
-                            return method.make(problem.motion.chain->cast<double>(), problem.duration(),
-                                               setting.value(problem));
-                        }};
-        std::erase_if(runs.settings, [&](const Setting& setting) {
-            return setting.value(problem) < method.minimum || setting.value(problem) > method.maximum;
+        auto settings = settings_of(problem, {Model::angles, method.name}, method.adaptive, compared_.max_evaluations);
+        std::erase_if(settings, [&](const MotionSpec& setting) {
+            return setting_of(setting) < method.minimum || setting_of(setting) > method.maximum;
         });
-        auto outcomes = run_settings(problem, compared_.reference(p, stop), runs,
-                                     {compared_.max_evaluations, compared_.min_error, measures_time()}, stop);
+        const auto make = [&](const MotionSpec& setting) {
+            return method.make(setting.chain->cast<double>(), problem.duration(), setting_of(setting));
+        };
+        auto outcomes =
+            run_settings(problem, compared_.reference(p, stop), settings,
+                         {compared_.max_evaluations, compared_.min_error, measures_time(), false}, stop, make);
         if (outcomes.empty()) outcomes.emplace_back();
         for (const auto& outcome : outcomes) append(numbers, outcome);
         return numbers;
