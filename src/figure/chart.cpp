@@ -47,37 +47,20 @@ void chart_fields(KeyVisitor& visit, ChartSpec& chart) {
           chart.format);
     visit(size_field, chart.size);
     visit(theme_field, chart.theme);
-    visit({.key = "width_cm",
-           .help = "width on paper",
-           .unit = "cm",
-           .bounds = {.low = 2, .high = 200},
-           .absent = "none: as wide as `size`"},
-          chart.width_cm);
-    visit({.key = "height_cm",
-           .help = "height on paper",
-           .unit = "cm",
-           .bounds = {.low = 2, .high = 200},
-           .absent = "in proportion, as `size`",
-           .only = of_paper("is the height on paper")},
+    const Condition of_pixels{!on_paper, "is for a size in pixels; with width_cm, dpi sets it"};
+    const auto sizes_cm = from_to(2, 200);
+    constexpr Bounds scales{.low = 0, .high = 8, .is_open = true};
+    visit({"width_cm", "width on paper", "cm", sizes_cm, "none: as wide as `size`"}, chart.width_cm);
+    visit({"height_cm", "height on paper", "cm", sizes_cm, "in proportion, as `size`",
+           of_paper("is the height on paper")},
           chart.height_cm);
-    visit({.key = "font_pt",
-           .help = "text on paper, with `width_cm`",
-           .unit = "pt",
-           .bounds = {.low = 4, .high = 40},
-           .only = of_paper("is the size of text on paper")},
+    visit({"font_pt", "text on paper, with `width_cm`", "pt", from_to(4, 40), "",
+           of_paper("is the size of text on paper")},
           chart.font_pt);
-    visit({.key = "dpi",
-           .help = "pixels an inch of a PNG, with `width_cm`",
-           .bounds = {.low = 72, .high = 1200},
-           .only = of_paper("is the resolution on paper")},
+    visit({"dpi", "pixels an inch of a PNG, with `width_cm`", "", from_to(72, 1200), "",
+           of_paper("is the resolution on paper")},
           chart.dpi);
-    visit({"scale",
-           "picture pixels to a pixel of `size`: 2 for print",
-           "",
-           {.low = 0, .high = 8, .is_open = true},
-           "",
-           Condition{!on_paper, "is for a size in pixels; with width_cm, dpi sets it"}},
-          chart.scale);
+    visit({"scale", "picture pixels to a pixel of `size`: 2 for print", "", scales, "", of_pixels}, chart.scale);
     visit({.key = "title",
            .help = "text in place of title and subtitle, one or a list of both; `false`: none",
            .is_drawn = true},

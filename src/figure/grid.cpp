@@ -25,22 +25,17 @@ void Grid::fields(KeyVisitor& visit) {
           right_);
     visit({"difference", "difference between the two pendulums of a pair in the key of x"}, difference_);
     const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
-    visit({"exponent_duration_s",
-           "duration of the motion from which an exponent is computed",
-           "s",
-           positive,
-           "",
-           {.applies = has(Quantity::exponent), .hides = true}},
+    const Condition of_exponents{.applies = has(Quantity::exponent), .hides = true},
+        of_flips{has(Quantity::flip_time), "is only for flip_time"},
+        strobed{.applies = quantity_ == Quantity::stroboscopic, .hides = true},
+        of_convergence{.applies = quantity_ == Quantity::convergence, .hides = true};
+    constexpr Bounds of_series{.low = 1e-15, .is_positive = true};
+    visit({"exponent_duration_s", "duration of the motion from which an exponent is computed", "s", positive, "",
+           of_exponents},
           options_.exponent_duration_s);
-    const Condition of_flips{has(Quantity::flip_time), "is only for flip_time"};
-    visit({"flip_tolerance",
-           "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
-           "rad/s",
-           {.low = 1e-15, .is_positive = true},
-           "1e-8 up to 20 s, for longer times less",
-           of_flips},
+    visit({"flip_tolerance", "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
+           "rad/s", of_series, "1e-8 up to 20 s, for longer times less", of_flips},
           options_.flip_tolerance);
-    const Condition strobed{.applies = quantity_ == Quantity::stroboscopic, .hides = true};
     auto& strobe = options_.stroboscope;
     visit({"link", "link whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);
     visit({"transient_periods", "length of the transient, drive periods", "", from_to(0, 1'000'000), "", strobed},
@@ -48,24 +43,15 @@ void Grid::fields(KeyVisitor& visit) {
     visit({"periods", "number of drive periods shown", "", from_to(1, 100'000), "", strobed}, strobe.periods);
     visit({"overlay",
            "theoretical curves on a map: where a vibrating pivot stabilises one link upright, where two links "
-           "released "
-           "at rest have the energy to flip, or the linear stability limit of a method"},
+           "released at rest have the energy to flip, or the linear stability limit of a method"},
           overlay_);
-    visit({"mark_step_s",
-           "a step marked by a line",
-           "s",
-           positive,
-           "",
-           {.applies = quantity_ == Quantity::convergence, .hides = true}},
-          mark_step_);
+    visit({"mark_step_s", "a step marked by a line", "s", positive, "", of_convergence}, mark_step_);
     const Condition of_this{!visit.from_command_line("quantity") || visit.from_command_line("range"),
                             "belongs to the preset's quantity", true};
-    visit({"range",
-           "of the quantity: its axis, or the colours of a map; [lowest, highest]",
-           "",
-           {},
-           "that of the numbers",
-           of_this},
+    visit({.key = "range",
+           .help = "of the quantity: its axis, or the colours of a map; [lowest, highest]",
+           .absent = "that of the numbers",
+           .only = of_this},
           range_);
     visit({"threshold", "of a map: two colours, up to it and above it", "", {}, "colours for all numbers"}, threshold_);
     visit.table("x", [&](KeyVisitor& table) { x_.fields(table, key_help); });

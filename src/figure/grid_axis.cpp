@@ -69,31 +69,18 @@ void GridAxis::fields(KeyVisitor& visit, std::string_view help) {
     visit({.key = "from", .help = "the first value; for a map the lower edge", .only = even}, from);
     visit({.key = "to", .help = "the last value; for a map the upper edge", .only = even}, to);
     visit({.key = "spacing", .help = "by equal differences, or by equal ratios", .only = even}, spacing);
-    visit({.key = "points",
-           .help = "number of values; for a map number of cells, each computed at its centre",
-           .bounds = from_to(2, max_points),
-           .absent = "given by `step`",
-           .only = even},
+    visit({"points", "number of values; for a map number of cells, each computed at its centre", "",
+           from_to(2, max_points), "given by `step`", even},
           points);
     visit({"step", "difference of two values; must divide the range from `from` to `to`", "", positive, "",
            Condition{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
                      visit.from_command_line("points") || visit.from_command_line("spacing")}},
           step);
     const Condition of_setting{is_setting(), "is only for key = \"setting\""};
-    visit({"tolerance_from",
-           "of adaptive methods, in place of `from`",
-           "",
-           {.low = 1e-32, .is_positive = true},
-           "",
-           of_setting},
+    constexpr Bounds tolerances{.low = 1e-32, .is_positive = true};
+    visit({"tolerance_from", "of adaptive methods, in place of `from`", "", tolerances, "", of_setting},
           tolerance_from);
-    visit({"tolerance_to",
-           "of adaptive methods, in place of `to`",
-           "",
-           {.low = 1e-32, .is_positive = true},
-           "",
-           of_setting},
-          tolerance_to);
+    visit({"tolerance_to", "of adaptive methods, in place of `to`", "", tolerances, "", of_setting}, tolerance_to);
     visit({"tolerance_points", "of adaptive methods", "", from_to(2, max_points), "as `points`", of_setting},
           tolerance_points);
 }

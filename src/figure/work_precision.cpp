@@ -103,16 +103,9 @@ public:
     }
 
     std::vector<std::string> columns() const override {
-        return {"problem",
-                "model",
-                "method",
-                "setting",
-                has_angles() ? "angle_error_rad" : "place_error",
-                "energy_error",
-                "length_error_m",
-                "cpu_seconds",
-                "evaluations",
-                "steps"};
+        const auto* error = has_angles() ? "angle_error_rad" : "place_error";
+        return {"problem",      "model",          "method",      "setting",     error,
+                "energy_error", "length_error_m", "cpu_seconds", "evaluations", "steps"};
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {

@@ -10,27 +10,20 @@
 namespace doppel {
 namespace {
 
-using namespace std::string_view_literals;
-
 constexpr double rounding = 0x1p-53;
 
-/// Methods of a family share a hue; the second of two is dashed.
+/// Methods of a family, one below the other here, share a hue; the second of two is dashed.
 struct CurveStyle {
     int hue = 0;
     bool dashed = false;
 };
 CurveStyle style_of(std::string_view method) {
-    constexpr std::array<std::array<std::string_view, 2>, 8> families{{{"taylor"sv},
-                                                                       {"dop853"sv, "dopri5"sv},
-                                                                       {"gauss6"sv, "gauss4"sv},
-                                                                       {"rattle6"sv, "rattle"sv},
-                                                                       {"rk4"sv},
-                                                                       {"adams"sv},
-                                                                       {"euler"sv, "semi-implicit-euler"sv},
-                                                                       {"midpoint"sv}}};
-    for (std::size_t i = 0; i < families.size(); ++i)
-        for (std::size_t k = 0; k < 2; ++k)
-            if (families[i][k] == method) return {static_cast<int>(i), k == 1};
+    constexpr std::array<std::string_view, 8> first{"taylor", "dop853", "gauss6", "rattle6",
+                                                    "rk4",    "adams",  "euler",  "midpoint"},
+        second{"", "dopri5", "gauss4", "rattle", "", "", "semi-implicit-euler", ""};
+    for (const auto* names : {&first, &second})
+        if (const auto at = std::ranges::find(*names, method) - names->begin(); at < std::ssize(*names))
+            return {static_cast<int>(at), names == &second};
     return {};
 }
 

@@ -49,19 +49,10 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
 }
 
 /// An axis at an edge of the area. The numbers below it stay inside `held`.
-void draw_axis(const Axis& axis, const PlotAxis& requested, AxisStyle::Edge edge, const Area& area, const Area& held,
-               bool has_grid, bool has_numbers, Color text, const PlotStyle& style, PageList& list) {
-    const bool across = edge == AxisStyle::Edge::bottom;
-    const auto items = axis_items(axis, ticks_of(axis, requested, across, style), area, across ? held : area,
-                                  {.edge = edge,
-                                   .em = style.tick,
-                                   .line = style.line,
-                                   .grid = style.theme.grid,
-                                   .frame = style.theme.frame,
-                                   .text = text,
-                                   .has_grid = has_grid,
-                                   .has_numbers = has_numbers});
-    for (const auto& item : page_list(items)) list.push_back(item);
+void draw_axis(const Axis& axis, const PlotAxis& requested, const AxisStyle& style, const Area& area, const Area& held,
+               PageList& list) {
+    const auto ticks = spaced_ticks(axis, style.edge == AxisStyle::Edge::bottom, style.em, requested.every);
+    for (const auto& item : page_list(axis_items(axis, ticks, area, held, style))) list.push_back(item);
 }
 
 void draw_x_label(const std::string& text, const Area& area, const Area& held, const PlotStyle& style, PageList& list) {
@@ -82,11 +73,14 @@ void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right
                const AxisWords& words, const PlotStyle& style, PageList& list) {
     using Edge = AxisStyle::Edge;
     const Theme& theme = style.theme;
-    draw_axis(x, plot.x, Edge::bottom, area, held, !plot.map, words.x, theme.quiet_text, style, list);
+    const auto styled = [&](Edge edge, bool has_grid, bool has_numbers, Color text) {
+        return AxisStyle{edge, style.tick, style.line, theme.grid, theme.frame, text, has_grid, has_numbers};
+    };
+    draw_axis(x, plot.x, styled(Edge::bottom, !plot.map, words.x, theme.quiet_text), area, held, list);
     if (words.x) draw_x_label(plot.x.label, area, held, style, list);
-    draw_axis(y, plot.y, Edge::left, area, held, !plot.map, words.y, theme.quiet_text, style, list);
+    draw_axis(y, plot.y, styled(Edge::left, !plot.map, words.y, theme.quiet_text), area, held, list);
     if (right) {
-        draw_axis(*right, *plot.right, Edge::right, area, held, false, true, axis_color(plot, true, style), style,
+        draw_axis(*right, *plot.right, styled(Edge::right, false, true, axis_color(plot, true, style)), area, held,
                   list);
         list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
