@@ -15,20 +15,17 @@
 namespace doppel {
 namespace {
 
-/// The name of a law of growth, and the hue of its curves.
+/// The name of a law of growth, and the hue of its curves; in the order of Growth::Kind.
 struct GrowthStyle {
-    Growth::Kind kind;
     std::string_view words, law;
     int hue;
 };
-constexpr std::array styles{GrowthStyle{Growth::Kind::bounded, "stays bounded", "", 1},
-                            GrowthStyle{Growth::Kind::root, "grows like √t", " ∝ √t", 2},
-                            GrowthStyle{Growth::Kind::linear, "grows linearly", " ∝ t", 0},
-                            GrowthStyle{Growth::Kind::steeper, "grows like t²", " ∝ t²", 3},
-                            GrowthStyle{Growth::Kind::failed, "fails", "", 6}};
+constexpr std::array styles{GrowthStyle{"stays bounded", "", 1}, GrowthStyle{"grows like √t", " ∝ √t", 2},
+                            GrowthStyle{"grows linearly", " ∝ t", 0}, GrowthStyle{"grows like t²", " ∝ t²", 3},
+                            GrowthStyle{"fails", "", 6}};
 
 const GrowthStyle& style_of(const Growth& growth) {
-    return *std::find_if(styles.begin(), styles.end(), [&](const auto& style) { return style.kind == growth.kind; });
+    return styles.at(static_cast<std::size_t>(growth.kind));
 }
 
 /// The running maximum; NaN is kept.

@@ -123,10 +123,10 @@ std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
     return PairBatchSpec{a, b, scene.samples};
 }
 
-/// A quantity computed from the distances at all samples in order.
-class DistanceWatch {
+/// A quantity computed from the distances, or the changes of energy, at all samples in order.
+class Watch {
 public:
-    explicit DistanceWatch(Quantity quantity) : quantity_(quantity) {}
+    explicit Watch(Quantity quantity) : quantity_(quantity) {}
     void add(double time, double distance) {
         last_ = distance;
         if (!(distance <= largest_)) largest_ = distance;  // keeps NaN
@@ -315,33 +315,25 @@ void Measurement::append_flips(const PairAt& pair, std::span<TrialNumbers> into,
 
 void Measurement::append_in_lanes(const PairAt& pair, std::span<TrialNumbers> into,
                                   const std::atomic<bool>& stop) const {
+    const bool is_distance = is_of_distance(quantity_);
     std::vector<PendulumPair> pairs;
     for (std::size_t i = 0; i < into.size(); ++i) {
         const auto& sides = pair(i);
         const auto a = chain_of(sides.a).cast<double>();
-        pairs.push_back({a, is_of_distance(quantity_) ? chain_of(sides.b).cast<double>() : a});
+        pairs.push_back({a, is_distance ? chain_of(sides.b).cast<double>() : a});
     }
-    if (is_of_distance(quantity_)) {
-        std::vector<DistanceWatch> watches(into.size(), DistanceWatch(quantity_));
-        const double interval = run_->a.sample_interval.value();
-        const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>& b) {
-            watches[i].add(static_cast<double>(n) * interval, state_space_distance(a, b));
-        };
-        step_pairs(pairs, *run_, watch, stop);
-        for (std::size_t i = 0; i < into.size(); ++i) into[i].push_back(watches[i].value());
-        return;
-    }
-    std::vector<double> start(into.size()), worst(into.size());
-    const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>&) {
-        const double now = energy(a, pairs[i].a.gravity);
-        if (n == 0) start[i] = now;
-        const double error = std::abs(now - start[i]);
-        if (!(error <= worst[i])) worst[i] = error;  // keeps NaN
+    std::vector<double> start(into.size());  // energy, J; 0 for distances
+    std::vector<Watch> watches(into.size(), Watch(quantity_));
+    const double interval = run_->a.sample_interval.value();
+    const auto watch = [&](std::size_t i, long n, const Bobs<double>& a, const Bobs<double>& b) {
+        const double now = is_distance ? state_space_distance(a, b) : energy(a, pairs[i].a.gravity);
+        if (n == 0 && !is_distance) start[i] = now;
+        watches[i].add(static_cast<double>(n) * interval, std::abs(now - start[i]));
     };
     step_pairs(pairs, *run_, watch, stop);
     for (std::size_t i = 0; i < into.size(); ++i) {
-        const double error = worst[i] / pairs[i].a.potential_range();
-        into[i].push_back(std::isfinite(error) ? error : NAN);
+        const double error = watches[i].greatest() / pairs[i].a.potential_range();
+        into[i].push_back(is_distance ? watches[i].value() : std::isfinite(error) ? error : NAN);
     }
 }
 
@@ -351,7 +343,7 @@ TrialNumbers Measurement::watched(const Preset& pair, const std::atomic<bool>& s
     try {
         if (is_of_distance(quantity_)) {
             PairRun run(scene);
-            DistanceWatch watch(quantity_);
+            Watch watch(quantity_);
             for (long n = 0; n <= scene.samples; ++n) watch.add(scene.time(n), run.next(stop).distance);
             if (quantity_ != Quantity::convergence) return {watch.value()};
             const auto steps = static_cast<double>(run.effort_a().steps + run.effort_b().steps);
