@@ -20,16 +20,17 @@ namespace {
 
 SimulationEstimate estimated_side(const Scene& scene, Side side, char name, const std::atomic<bool>& stop) {
     constexpr double probe_s = 0.025, patience_s = 0.3;
-    // one sample may take many steps: some parts of it are timed, a few steps each, or shortened
+    // one sample may take many steps: parts of it are timed
     constexpr long few_steps = 250;
     constexpr double shortened_s = 0.01, max_parts = 1e12;
     const bool adaptive = side.method.adaptive;
     auto& interval = side.motion.sample_interval;
+    const long steps_per_sample = side.motion.steps_per_sample;
     long parts = adaptive ? std::llround(std::clamp(std::ceil(interval.value() / shortened_s), 1.0, max_parts))
-                          : std::max(1L, side.motion.steps_per_sample / few_steps);
-    if (const auto shortened = quotient(interval, {parts, 1}); adaptive && shortened)
-        interval = *shortened;
-    else if (adaptive)
+                          : std::max(1L, steps_per_sample / few_steps);
+    if (const auto shortened = quotient(interval, {parts, 1}))
+        interval = *shortened, side.motion.steps_per_sample = std::max(1L, steps_per_sample / parts);
+    else
         parts = 1;
     const double all = static_cast<double>(scene.samples) * static_cast<double>(parts);
     SideRun run(scene, side, name);
@@ -40,20 +41,17 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
         run.next(limit.reached());
         start = seconds_of(CLOCK_MONOTONIC);
         while (static_cast<double>(done) < all && elapsed < probe_s) {
-            const long next = done + 1;
-            const double part = adaptive ? 0 : static_cast<double>(next % parts) / static_cast<double>(parts);
-            run.advance_to({adaptive ? next : next / parts, part}, limit.reached());
+            run.next(limit.reached());
             elapsed = seconds_of(CLOCK_MONOTONIC) - start;
-            done = next;
+            ++done;
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
         elapsed = seconds_of(CLOCK_MONOTONIC) - start;
     }
     const double share = all / static_cast<double>(std::max(done, 1L));
-    const double steps = adaptive
-                             ? static_cast<double>(run.effort().steps) * share
-                             : static_cast<double>(scene.samples) * static_cast<double>(side.motion.steps_per_sample);
+    const double steps = adaptive ? static_cast<double>(run.effort().steps) * share
+                                  : static_cast<double>(scene.samples) * static_cast<double>(steps_per_sample);
     return {elapsed * share, steps, done < 1};
 }
 

@@ -224,6 +224,12 @@ Color member_color(const Style& style, double share) {
     return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
 }
 
+double ShownPendulum::least_bob() const {
+    double thickest = 1;
+    for (const auto& line : side.lines) thickest = std::max<double>(thickest, line.width);
+    return thickest > 1 ? 0.5 * thickest : 1.6;
+}
+
 std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style) {
     std::vector<ShownPendulum> shown;
     const auto& theme = style.theme;

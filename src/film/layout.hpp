@@ -46,6 +46,9 @@ struct ShownPendulum {
     const Side& side;
     std::vector<double> mass;  // kg
     Color color;
+
+    /// Radius of its lightest bobs, in units of the rods'.
+    double least_bob() const;
 };
 /// From the first or front one on. `style`: for their colours.
 std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style = {});

@@ -24,28 +24,6 @@ Json track_json(const Replay& replay, const TrackSpec& spec) {
     return {{"measured", measured}};
 }
 
-}  // namespace
-
-Json method_json(const Scene& scene, const Side& side) {
-    Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
-    if (side.method.adaptive) {
-        json["tolerance"] = static_cast<double>(side.motion.tolerance);
-    } else {
-        json["step_s"] = side.step.text();
-        json["steps_per_sample"] = side.motion.steps_per_sample;
-    }
-    if (side.choice)
-        json["accuracy"] = {{"unit", side.has_angles ? "rad" : fmt::format("{:g} m, the size", side.reach)},
-                            {"asked_rad", side.choice->accuracy},
-                            {"estimated_error_rad", side.choice->estimated_error},
-                            {"horizon_s", scene.time(side.choice->horizon)},
-                            {"holds_to_the_end", side.choice->horizon == scene.samples},
-                            {"verified_by", side.choice->reference->description()}};
-    return json;
-}
-
-namespace {
-
 Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     auto json = method_json(scene, side);
     json["steps"] = record.effort.steps;
@@ -80,6 +58,24 @@ Json fonts_json(const Preset& preset) {
 }
 
 }  // namespace
+
+Json method_json(const Scene& scene, const Side& side) {
+    Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
+    if (side.method.adaptive) {
+        json["tolerance"] = static_cast<double>(side.motion.tolerance);
+    } else {
+        json["step_s"] = side.step.text();
+        json["steps_per_sample"] = side.motion.steps_per_sample;
+    }
+    if (side.choice)
+        json["accuracy"] = {{"unit", side.has_angles ? "rad" : fmt::format("{:g} m, the size", side.reach)},
+                            {"asked_rad", side.choice->accuracy},
+                            {"estimated_error_rad", side.choice->estimated_error},
+                            {"horizon_s", scene.time(side.choice->horizon)},
+                            {"holds_to_the_end", side.choice->horizon == scene.samples},
+                            {"verified_by", side.choice->reference->description()}};
+    return json;
+}
 
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
     constexpr double maximum = 0.01, min_patience_s = 1, max_patience_s = 2;

@@ -34,6 +34,39 @@ bool is_by_angles(const Side& side) {
     return side.has_angles && side.motion.model == Model::angles && !side.replay;
 }
 
+/// What the file contains of one sample.
+struct Numbers {
+    std::vector<double> places;  // of all pendulums: angles or coordinates of bobs, then of the pivot if it moves
+    std::vector<double> curves;  // of all strips, then of a phase panel
+};
+
+Numbers numbers_of(const Scene& scene, const Snapshot& snapshot, double start_distance, bool computes) {
+    const auto& pair = snapshot.pair;
+    const auto& video = scene.preset.video;
+    auto [places, curves] = Numbers{};
+    const auto pendulums = computes ? std::vector<ShownPendulum>() : shown_pendulums(scene);
+    for (std::size_t k = 0; k < pendulums.size(); ++k) {
+        const auto& side = pendulums[k].side;
+        const auto& seen = &side == &scene.a ? pair.a : pair.b;
+        for (const auto& bob : snapshot.members.empty() ? seen.bobs : snapshot.members[k])
+            if (is_by_angles(side))
+                places.push_back(std::remainder(bob.theta, 2 * pi));
+            else
+                places.insert(places.end(), {bob.x, bob.y});
+        if (side.pivot_reach > 0) places.insert(places.end(), {seen.pivot.x, seen.pivot.y});
+    }
+    for (const auto kind : video.strips)
+        if (!computes || !page_computes(kind))
+            for (const auto& curve : strip_curves(kind, scene, pair, start_distance))
+                curves.push_back(curve.value.value_or(NAN));
+    for (const auto* seen : {&pair.a, &pair.b}) {
+        if (video.layout != Arrangement::phase || computes) break;
+        const auto& bob = seen->bobs[static_cast<std::size_t>(video.phase_link - 1)];
+        curves.insert(curves.end(), {bob.theta, bob.omega, seen->bobs[0].theta});
+    }
+    return {places, curves};
+}
+
 /// The player with the data of a film.
 HtmlPage player(const Scene& scene, Json film) {
     const auto file = [](std::string_view name) { return embedded_file(film_files(), name); };
@@ -43,8 +76,7 @@ HtmlPage player(const Scene& scene, Json film) {
             .styles = {file("film/page/player.css")},
             .scripts = {file("film/page/chain.js"), file("film/page/motion.js"), file("film/page/player.js"),
                         file("film/page/controls.js")},
-            .data = {{"film", std::move(film)}},
-            .is_packed = true};
+            .data = {{"film", std::move(film)}}};
 }
 
 }  // namespace
@@ -57,32 +89,10 @@ FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& 
       parts_(parts) {}
 
 void FilmPage::add(const Snapshot& snapshot) {
-    const auto& pair = snapshot.pair;
-    const auto& video = scene_.preset.video;
-    if (pair.share > 0) return;
-    if (pair.sample == 0) start_distance_ = pair.distance;
-    std::vector<double> places, curves;
-    const auto pendulums = computes_ ? std::vector<ShownPendulum>() : shown_pendulums(scene_);
-    for (std::size_t k = 0; k < pendulums.size(); ++k) {
-        const auto& side = pendulums[k].side;
-        const auto& seen = &side == &scene_.a ? pair.a : pair.b;
-        for (const auto& bob : snapshot.members.empty() ? seen.bobs : snapshot.members[k])
-            if (is_by_angles(side))
-                places.push_back(std::remainder(bob.theta, 2 * pi));
-            else
-                places.insert(places.end(), {bob.x, bob.y});
-        if (side.pivot_reach > 0) places.insert(places.end(), {seen.pivot.x, seen.pivot.y});
-    }
-    for (const auto kind : video.strips)
-        if (!computes_ || !page_computes(kind))
-            for (const auto& curve : strip_curves(kind, scene_, pair, start_distance_))
-                curves.push_back(curve.value.value_or(NAN));
-    for (const auto* seen : {&pair.a, &pair.b}) {
-        if (video.layout != Arrangement::phase || computes_) break;
-        const auto& bob = seen->bobs[static_cast<std::size_t>(video.phase_link - 1)];
-        curves.insert(curves.end(), {bob.theta, bob.omega, seen->bobs[0].theta});
-    }
-    for (auto [channels, numbers] : {std::pair(&places_, &places), {&curves_, &curves}}) {
+    if (snapshot.pair.share > 0) return;
+    if (snapshot.pair.sample == 0) start_distance_ = snapshot.pair.distance;
+    const auto now = numbers_of(scene_, snapshot, start_distance_, computes_);
+    for (auto [channels, numbers] : {std::pair(&places_, &now.places), {&curves_, &now.curves}}) {
         channels->resize(numbers->size());
         for (std::size_t i = 0; i < numbers->size(); ++i) (*channels)[i].push_back(static_cast<float>((*numbers)[i]));
     }
@@ -146,15 +156,9 @@ std::optional<HtmlPage> film_player(Scene scene) {
 
 double estimated_page_bytes(const Scene& scene) {
     constexpr double script = 33e3, place = 1.3 / 16, number = 4;  // bytes; per bit of a place, measured: 0.05 to 0.13
-    const auto& video = scene.preset.video;
-    const bool computes = page_computes(scene);
-    double per_sample = !computes && video.layout == Arrangement::phase ? 6 * number : 0;
-    for (const auto& [motion, side, mass, color] : shown_pendulums(scene))
-        if (!computes)
-            per_sample += place * video.position_bits * static_cast<double>(mass.size()) * (is_by_angles(side) ? 1 : 2);
-    for (const auto kind : video.strips)
-        if (!computes || !page_computes(kind))
-            per_sample += number * (kind == StripKind::distance || kind == StripKind::exponent ? 1 : 2);
+    const auto one = numbers_of(scene, blank_snapshot(scene), 0, page_computes(scene));
+    const double per_sample = place * scene.preset.video.position_bits * static_cast<double>(one.places.size()) +
+                              number * static_cast<double>(one.curves.size());
     return script + static_cast<double>(scene.samples) * per_sample;
 }
 

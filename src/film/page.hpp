@@ -26,7 +26,7 @@ public:
     void finish();
 
 private:
-    using Channels = std::vector<std::vector<float>>;  // numbers over time
+    using Channels = std::vector<std::vector<float>>;  // each number of a sample, over time
     Json motion_json() const;
 
     const Scene& scene_;
@@ -36,8 +36,7 @@ private:
     Transaction& parts_;
     double start_distance_ = 0;
     long samples_ = 0;  // added
-    Channels places_;   // of all pendulums: angles or coordinates of bobs, then of the pivot if it moves
-    Channels curves_;   // of all strips, then of a phase panel
+    Channels places_, curves_;
 };
 
 /// The player of a scene's chains of one to three ideal links, for another kind of page, which adds to its body and

@@ -46,26 +46,25 @@ struct PictureJson {
     }
 };
 
-/// A strip: its axes, its constant items, the position of its value if it has one, and colours and widths of curves.
-Json strip_json(const FilmState& state, std::size_t index, const PictureJson& json_of) {
+/// A strip: its axes, the position of its value if it has one, and colours and widths of curves. Adds its constant items
+/// to `backdrop`.
+Json strip_json(const FilmState& state, std::size_t index, const PictureJson& json_of, DisplayList& backdrop) {
     const auto& strip = state.layout.strips[index];
     const double start_distance = state.snapshot.pair.distance;
-    DisplayList backdrop;
     make_strip_layer(state, index)->backdrop(backdrop);
     const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance, state.layout.style);
     auto words = placed_caption(strip, state.scene, state.layout, curves, start_distance == 0);
     Json json{{"kind", name_of(strip.kind)},
               {"area", json_of(strip.area)},
               {"time", axis_json(strip.time)},
-              {"axis", axis_json(strip.value)},
-              {"backdrop", json_of.all(backdrop)}};
+              {"axis", axis_json(strip.value)}};
     const bool has_value =
         strip.kind == StripKind::distance || (strip.kind == StripKind::exponent && start_distance > 0);
     if (has_value && words.back().color == curves[0].color) {
         json["value"] = json_of(words.back());
         words.pop_back();
     }
-    json["words"] = json_of.all(words);
+    backdrop.insert(backdrop.end(), words.begin(), words.end());
     for (const auto& curve : curves) json["pens"].push_back(json_of.list(curve.color, curve.width));
     return json;
 }
@@ -106,8 +105,9 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
         json["phase"] = {
             {"area", json_of(phase->area)}, {"angle", axis_json(phase->angle)}, {"rate", axis_json(phase->rate)}};
     }
+    for (std::size_t i = 0; i < layout.strips.size(); ++i)
+        json["strips"].push_back(strip_json(state, i, json_of, backdrop));
     json["backdrop"] = json_of.all(backdrop);
-    for (std::size_t i = 0; i < layout.strips.size(); ++i) json["strips"].push_back(strip_json(state, i, json_of));
     for (const auto& [key, label] : {std::pair("clock", &layout.clock), {"speed", &layout.speed}})
         if (*label) json[key] = json_of(**label);
     return json;
@@ -120,21 +120,18 @@ Json end_json(const End<double>& end) {
     return {place[0], place[1]};
 }
 
-/// A pendulum's masses, lines and chain. `least_bob`: radius of its lightest bobs, in units of the rods'.
+/// A pendulum's masses, lines and chain.
 Json body_json(const ShownPendulum& pendulum) {
     constexpr std::array<const char*, 5> kinds{"rod", "spring", "anchor", "slot_line", "slot_circle"};
     const auto& [motion, side, mass, color] = pendulum;
-    float thickest = 1;
     Json lines = Json::array();
-    for (const auto& line : side.lines) {
+    for (const auto& line : side.lines)
         lines.push_back(
             {kinds[static_cast<std::size_t>(line.kind)], end_json(line.from), end_json(line.to), line.width});
-        thickest = std::max(thickest, line.width);
-    }
     return {{"mass", mass},
             {"color", hexadecimal(color)},
             {"lines", lines},
-            {"least_bob", thickest > 1 ? 0.5 * thickest : 1.6},
+            {"least_bob", pendulum.least_bob()},
             {"chain", side.replay ? Json() : chain_json(motion)}};
 }
 

@@ -66,14 +66,11 @@ void visit_row(const Scene& scene, const Snapshot& snapshot, double start_distan
 }  // namespace
 
 std::vector<std::string> columns_of(const Scene& scene) {
-    Snapshot any;
-    any.pair.a.bobs.resize(scene.a.mass.size());
-    any.pair.b.bobs.resize(scene.b.mass.size());
-    any.members.resize(scene.members.size(), any.pair.a.bobs);
     std::vector<std::string> names;
-    visit_row(scene, any, 0, [&](const std::string& of, const char* name, std::size_t number, const auto&) {
-        names.push_back(of + fmt::format(fmt::runtime(name), number));
-    });
+    visit_row(scene, blank_snapshot(scene), 0,
+              [&](const std::string& of, const char* name, std::size_t number, const auto&) {
+                  names.push_back(of + fmt::format(fmt::runtime(name), number));
+              });
     return names;
 }
 

@@ -23,10 +23,7 @@ void add_line(Point from, Point to, float radius, Color color, const Area& area,
 
 class PendulumLayer final : public Layer {
 public:
-    PendulumLayer(const FilmState& state, const PendulumPanel& panel)
-        : Layer(state),
-          panel_(panel),
-          heaviest_(std::max({std::ranges::max(state.scene.a.mass), std::ranges::max(state.scene.b.mass), 1e-300})) {
+    PendulumLayer(const FilmState& state, const PendulumPanel& panel) : Layer(state), panel_(panel) {
         const float thinner = std::max(size_of_many(pendulums_.size()), 0.4f);
         for (const auto& pendulum : pendulums_) {
             heaviest_ = std::max(heaviest_, std::ranges::max(pendulum.mass));
@@ -83,7 +80,7 @@ private:
     const VideoSpec& video_ = state_.scene.preset.video;
     const std::vector<ShownPendulum>& pendulums_ = state_.pendulums;
     const bool is_ensemble_ = !state_.scene.members.empty(), is_many_ = size_of_many(pendulums_.size()) < 1;
-    double heaviest_;  // kg
+    double heaviest_ = 1e-300;  // kg
     std::vector<Path> paths_;
 };
 
@@ -271,11 +268,8 @@ void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& 
 
 /// Radius in px: area proportional to mass, with a visible minimum.
 float PendulumLayer::bob_radius(std::size_t k, std::size_t bob) const {
-    const auto& [motion, side, mass, color] = pendulums_[k];
-    const auto share = static_cast<float>(std::sqrt(mass[bob] / heaviest_));
-    float thickest = 1;
-    for (const auto& line : side.lines) thickest = std::max(thickest, line.width);
-    return std::max(layout_.bob_radius * share, (thickest > 1 ? 0.5f * thickest : 1.6f) * layout_.rod_radius);
+    const auto share = px(std::sqrt(pendulums_[k].mass[bob] / heaviest_));
+    return std::max(layout_.bob_radius * share, px(pendulums_[k].least_bob()) * layout_.rod_radius);
 }
 
 }  // namespace

@@ -19,6 +19,16 @@ void add(SideRecord& record, const Observation& seen, std::optional<double> ener
 
 }  // namespace
 
+Snapshot blank_snapshot(const Scene& scene) {
+    Snapshot blank;
+    for (const auto& [seen, side] : {std::pair{&blank.pair.a, &scene.a}, {&blank.pair.b, &scene.b}}) {
+        seen->bobs.resize(side->mass.size());
+        seen->tension.resize(side->mass.size());
+    }
+    blank.members.resize(scene.members.size(), blank.pair.a.bobs);
+    return blank;
+}
+
 Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
                      std::filesystem::path file, Report report, double max_bytes)
     : scene_(scene),

@@ -21,6 +21,9 @@ struct Snapshot {
     std::vector<Bobs<double>> members;
 };
 
+/// With as many numbers as every snapshot of the scene has, all of them zero.
+Snapshot blank_snapshot(const Scene& scene);
+
 /// Distances of a pair, updated sample by sample.
 struct Outcome {
     double start_distance = 0, largest_distance = 0;  // in state space

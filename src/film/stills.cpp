@@ -36,6 +36,42 @@ Moment still_moment(const Scene& scene, const Rational& time) {
     return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 
+/// The scene of a tile: only its panels, side by side.
+Scene tile_scene(Scene scene) {
+    auto& video = scene.preset.video;
+    constexpr int sheet_width = 1920;  // approximate width, px
+    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
+    video.strips.clear();
+    video.pendulums = true;
+    video.transparent = false;
+    video.title_card_s = video.end_card_s = {0, 1};
+    if (video.layout == Arrangement::portrait) video.layout = Arrangement::side_by_side;
+    if (video.layout == Arrangement::phase) video.layout = Arrangement::overlay;
+    video.size = tile_size(scene, width);
+    return scene;
+}
+
+/// The title and subtitle of the film, and the captions of the sides.
+DisplayList title_of(const Scene& scene, const Style& style, Size size, float unit) {
+    const auto& font = style.font;
+    const auto& theme = style.theme;
+    const auto width = static_cast<float>(size.width);
+    const float edge = 14 * unit, left = 0.58f * width, right = 0.34f * width;
+    const auto said = side_captions(scene);
+    DisplayList list{filled(size, theme.background)};
+    const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, bool at_right) {
+        const float fits = style.type.fitting_size(text, px(wanted), weight, at_right ? right : left);
+        list.push_back(label(text, {at_right ? width - edge : edge, y}, fits, color,
+                             at_right ? Align::right : Align::left, weight));
+    };
+    add(scene.preset.title, 50 * unit, font.title, Weight::bold, theme.text, false);
+    add(scene_caption(scene), 86 * unit, font.subtitle, Weight::regular, theme.quiet_text, false);
+    for (std::size_t side = 0; side < scene.letters().size(); ++side)
+        add(said[side].heading, (side == 0 ? 48.0f : 86.0f) * unit, 0.9 * font.heading, Weight::bold,
+            scene.members.empty() ? theme.sides[side] : theme.text, true);
+    return list;
+}
+
 }  // namespace
 
 std::string still_name(const Scene& scene, const Rational& time, PictureFormat format) {
@@ -79,46 +115,6 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     });
     return {.files = std::move(files), .frames = 1, .samples = samples, .wall_s = seconds_of(CLOCK_MONOTONIC) - start};
 }
-
-namespace {
-
-/// The scene of a tile: only its panels, side by side.
-Scene tile_scene(Scene scene) {
-    auto& video = scene.preset.video;
-    constexpr int sheet_width = 1920;  // approximate width, px
-    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
-    video.strips.clear();
-    video.pendulums = true;
-    video.transparent = false;
-    video.title_card_s = video.end_card_s = {0, 1};
-    if (video.layout == Arrangement::portrait) video.layout = Arrangement::side_by_side;
-    if (video.layout == Arrangement::phase) video.layout = Arrangement::overlay;
-    video.size = tile_size(scene, width);
-    return scene;
-}
-
-/// The title and subtitle of the film, and the captions of the sides.
-DisplayList title_of(const Scene& scene, const Style& style, Size size, float unit) {
-    const auto& font = style.font;
-    const auto& theme = style.theme;
-    const auto width = static_cast<float>(size.width);
-    const float edge = 14 * unit, left = 0.58f * width, right = 0.34f * width;
-    const auto said = side_captions(scene);
-    DisplayList list{filled(size, theme.background)};
-    const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, bool at_right) {
-        const float fits = style.type.fitting_size(text, px(wanted), weight, at_right ? right : left);
-        list.push_back(label(text, {at_right ? width - edge : edge, y}, fits, color,
-                             at_right ? Align::right : Align::left, weight));
-    };
-    add(scene.preset.title, 50 * unit, font.title, Weight::bold, theme.text, false);
-    add(scene_caption(scene), 86 * unit, font.subtitle, Weight::regular, theme.quiet_text, false);
-    for (std::size_t side = 0; side < scene.letters().size(); ++side)
-        add(said[side].heading, (side == 0 ? 48.0f : 86.0f) * unit, 0.9 * font.heading, Weight::bold,
-            scene.members.empty() ? theme.sides[side] : theme.text, true);
-    return list;
-}
-
-}  // namespace
 
 Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,
                          const std::atomic<bool>& stop) {

@@ -1,5 +1,6 @@
 #include "film/strips.hpp"
 
+#include "film/recording.hpp"
 #include "numeric/state.hpp"
 #include "scene/captions.hpp"
 #include "scene/certificate.hpp"
@@ -214,12 +215,7 @@ std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, 
 }
 
 int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width) {
-    PairState any;
-    for (const auto& [seen, side] : {std::pair{&any.a, &scene.a}, {&any.b, &scene.b}}) {
-        seen->bobs.resize(side->mass.size());
-        seen->tension.resize(side->mass.size());
-    }
-    const auto curves = strip_curves(kind, scene, any, 0, layout.style);
+    const auto curves = strip_curves(kind, scene, blank_snapshot(scene).pair, 0, layout.style);
     const auto labels = strip_caption(kind, scene, layout, curves, false, width);
     return 1 + static_cast<int>(std::lround(labels.back().anchor.y / caption_line(layout)));
 }

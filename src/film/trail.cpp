@@ -51,7 +51,7 @@ void Trail::simplify(Points& points) const {
     }
     std::size_t kept = begin;
     for (std::size_t i = 0; i < path.size(); ++kept) {
-        const auto piece = i + 1 < path.size() ? next_piece(path, i, Bends::yes) : StrokePiece{i, i + 1};
+        const auto piece = i + 1 < path.size() ? next_piece(path, i) : StrokePiece{i, i + 1};
         points[kept] = points[begin + i];
         points[kept].bend = piece.bend;
         points[kept].joint = true;

@@ -57,24 +57,23 @@ std::string page_text(const HtmlPage& page) {
     std::string style_sources, script_sources, scripts;
     auto styles = element("style", file("output/page.css"), style_sources);
     for (const auto style : page.styles) styles += element("style", style, style_sources);
-    const auto add = [&](std::string_view type, std::string_view contents) {
-        scripts += fmt::format("<script type=\"{}\">{}</script>\n", type, contents);
+    const bool has_data = !page.data.is_null();
+    const auto add_packed = [&](std::string_view attributes, std::string_view contents) {
+        scripts += fmt::format("<script type=\"text/packed\"{}>{}</script>\n", attributes, deflated(contents));
     };
-    const auto add_script = [&](std::string_view script) {
+    const auto add = [&](std::string_view script) {
         const auto plain = element("script", script, script_sources);
-        if (page.is_packed)
-            add("text/packed", deflated(fmt::format("\n{}", script)));
+        if (has_data)
+            add_packed("", fmt::format("\n{}", script));
         else
             scripts += plain;
     };
-    if (page.is_packed) scripts = element("script", file("output/unpack.js"), script_sources);
-    if (!page.data.is_null()) {
-        const auto json = in_script(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-        add(page.is_packed ? "text/packed\" id=\"data" : "application/json\" id=\"data",
-            page.is_packed ? deflated(json) : json);
-        add_script(file("output/helpers.js"));
+    if (has_data) {
+        scripts = element("script", file("output/unpack.js"), script_sources);
+        add_packed(" id=\"data\"", page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+        add(file("output/helpers.js"));
     }
-    for (const auto script : page.scripts) add_script(script);
+    for (const auto script : page.scripts) add(script);
     return fmt::format(R"({}
 <html lang="en">
 <head>

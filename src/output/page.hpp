@@ -15,8 +15,8 @@ struct HtmlPage {
     std::string body;                       // markup; the policy blocks style attributes and inline handlers
     std::vector<std::string_view> styles;   // CSS of this kind of page
     std::vector<std::string_view> scripts;  // JavaScript, run in this order; empty ones are omitted
-    nlohmann::ordered_json data = nullptr;  // pageData of the scripts, with the helpers that pages share; null: none
-    bool is_packed = false;                 // scripts and data are compressed; the browser unpacks them
+    nlohmann::ordered_json data = nullptr;  // pageData of the scripts, with the helpers that pages share; null: none.
+                                            // Data and scripts are compressed; the browser unpacks them
     bool has_pictures_beside = false;       // reads files in folders beside it; otherwise all pictures are data URLs
 };
 

@@ -2,6 +2,7 @@
 
 #include "figure/support.hpp"
 #include "image/color.hpp"
+#include "output/packed.hpp"
 #include "output/png.hpp"
 
 #include <gtest/gtest.h>
@@ -135,7 +136,7 @@ TEST(TilePage, HasItsTextsEscaped) {
     const auto page = test::bytes_of(out / "x/x.html");
     EXPECT_LT(page.size(), 100'000u);
     EXPECT_NE(page.find("<title>&lt;b&gt; &amp; more&lt;/script&gt;</title>"), std::string::npos);
-    EXPECT_NE(page.find("\"columns\":600"), std::string::npos);
+    EXPECT_EQ(test::data_of(page)["columns"], 600);
     EXPECT_NE(page.find("no flip within 0.6 s"), std::string::npos);
     EXPECT_EQ(page.find("http:"), std::string::npos);
     EXPECT_EQ(page.find("https:"), std::string::npos);
@@ -158,15 +159,11 @@ TEST(TilePage, TakesAnyNames) {
         Transaction files(out);
         write_tiles(figure, drawn, themes[0], files, 1, never_stopped);
         const auto page = test::bytes_of(files.folder() / ".doppel-run" / (figure.name + ".html"));
-        const std::string begin = "id=\"data\">";
-        const auto from = page.find(begin) + begin.size(), to = page.find("</script>", from);
-        const auto data = page.substr(from, to - from);
-        EXPECT_EQ(data.find('<'), std::string::npos) << data;
-        const auto map = Json::parse(data);
+        const auto map = test::data_of(page);
         EXPECT_EQ(map["folder"], address);
         EXPECT_EQ(map["x"]["label"], label);
-        // its data and two scripts, one title, one comment
-        for (const auto& [tag, times] : {std::pair("<script", 3), {"</script", 3}, {"</title", 1}, {"<!--", 1}}) {
+        // its data and three scripts, one title, one comment
+        for (const auto& [tag, times] : {std::pair("<script", 4), {"</script", 4}, {"</title", 1}, {"<!--", 1}}) {
             int found = 0;
             for (auto at = page.find(tag); at != std::string::npos; at = page.find(tag, at + 1)) ++found;
             EXPECT_EQ(found, times) << tag;

@@ -1,10 +1,9 @@
 #include "output/page.hpp"
 
 #include "output/fixtures.hpp"
+#include "output/packed.hpp"
 #include "output/png.hpp"
 #include "output/written.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace doppel {
 namespace page_test {
@@ -66,13 +65,11 @@ TEST(HtmlPage, LettersOfTitlesAndDataStayText) {
     EXPECT_NE(text.find("<title>&lt;/script&gt;&lt;!--&lt;script&gt;&quot;&#39;&amp;    שלום \\`${1}{}</title>"),
               std::string::npos)
         << text;
-    const auto data = all_between(text, "<script type=\"application/json\" id=\"data\">", "</script>");
-    ASSERT_EQ(data.size(), 1u);
-    const auto read = nlohmann::json::parse(data[0]);
+    const auto read = test::data_of(text);
     EXPECT_EQ(read[hostile], hostile);
     EXPECT_EQ(read["bad"], "\ufffd");
-    for (const char* tag : {"<script", "</script>"})  // of the data, of the shared helpers, of the page's own script
-        EXPECT_EQ(all_between(text, tag, "\n").size(), 3u) << tag;
+    // that unpacks, of the data, of the shared helpers, of the page's own script
+    for (const char* tag : {"<script", "</script>"}) EXPECT_EQ(all_between(text, tag, "\n").size(), 4u) << tag;
     for (const char* once : {"<!--", "</title>", "</body>"}) EXPECT_EQ(all_between(text, once, "\n").size(), 1u);
     EXPECT_EQ(page_text(small).find("<script"), std::string::npos);  // none without data and scripts
 }

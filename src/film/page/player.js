@@ -1,9 +1,9 @@
 // player.js: draws the film at any time. What is drawn, and in what order, is what src/film/pendulum_layer.cpp,
 // strip_layer.cpp and phase_layer.cpp draw; lengths are pixels of the film's picture.
 "use strict";
-const canvas = $("canvas"), screen = canvas.getContext("2d"), backdrop = document.createElement("canvas");
+const canvas = $("canvas"), g = canvas.getContext("2d");
 const isEnsemble = layout === "ensemble", isMany = bodies.length > 8, shows = part => film.show.includes(part);
-let g = screen, picture = film.pictures[0];
+let picture = film.pictures[0];
 let motion = null, original = null;  // what is shown, and the film's own
 let time = 0;                        // s
 
@@ -219,7 +219,6 @@ function drawStrip(strip, index) {
   const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[index];
   const axis = motion === original ? strip.axis : decadesOf(strip, curves[0]), at = t => along(strip.time, t);
   const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
-  drawAll(strip.words);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
   const marks = motion === original ? [...film.limits] : [];  // their lines are in the backdrop
@@ -269,13 +268,12 @@ function drawWords() {
 }
 
 function draw() {
-  g = screen;
-  g.setTransform(1, 0, 0, 1, 0, 0);
-  g.clearRect(0, 0, canvas.width, canvas.height);
-  g.drawImage(backdrop, 0, 0);
+  const [width, height] = picture.size, scale = canvas.width / width;
+  g.setTransform(scale, 0, 0, scale, 0, 0);
+  g.clearRect(0, 0, width, height + 1);
+  drawAll(picture.backdrop);
   if (!motion) return;
-  const scale = canvas.width / picture.size[0], poses = posesNow();
-  g.scale(scale, scale);
+  const poses = posesNow();
   drawWords();
   for (const panel of picture.panels) drawPanel(panel, poses);
   if (picture.phase && motion.phase) drawPhase(picture.phase);
@@ -290,9 +288,6 @@ function resize() {
   picture = film.pictures[height > 1.2 * width ? 1 : 0] ?? film.pictures[0];
   const [w, h] = picture.size, scale = Math.min(width / w, height / h);
   Object.assign(canvas.style, { width: `${scale * w}px`, height: `${scale * h}px` });
-  for (const of of [canvas, backdrop]) setSize(of, scale * w, scale * h);
-  g = backdrop.getContext("2d");
-  g.scale(canvas.width / w, canvas.width / w);
-  drawAll([...picture.backdrop, ...picture.strips.flatMap(strip => strip.backdrop)]);
+  setSize(canvas, scale * w, scale * h);
   draw();
 }
