@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <unordered_set>
 #include <utility>
 
 namespace doppel {
@@ -34,53 +36,20 @@ void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint
     disjoint.push_back(rect);
 }
 
-/// Rectangles along a path; joins neighbours if that is cheaper.
-class RectChain {
-public:
-    void add(const Rect& rect) {
-        if (!rects_.empty() && cheaper_as_one(rects_.back(), rect)) {
-            rects_.back() = united(rects_.back(), rect);
-        } else {
-            rects_.push_back(rect);
-        }
+struct PrimitiveHash {
+    std::size_t operator()(const Primitive& q) const {
+        std::size_t hash = 0;
+        for (const float value :
+             {q.origin.x, q.origin.y, q.axis.x, q.half.x, q.half.y, q.shape[1], q.shape[2], q.shape[3]})
+            hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u;
+        return hash ^ hash >> 29;
     }
-    std::vector<Rect> take() { return std::move(rects_); }
-
-private:
-    std::vector<Rect> rects_;
-};
-
-std::size_t hash_of(const Primitive& q) {
-    std::size_t hash = 0;
-    const auto mix = [&](float value) { hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u; };
-    for (const float value : {q.origin.x, q.origin.y, q.axis.x, q.half.x, q.half.y, q.shape[1], q.shape[2], q.shape[3]})
-        mix(value);
-    return hash ^ hash >> 29;
-}
-
-/// Looks up the primitives of a part.
-class PrimitiveSet {
-public:
-    PrimitiveSet(const RenderList& items, const RenderList::Part& part) : items_(items) {
-        for (std::size_t i = part.begin; i < part.end; ++i) places_.emplace_back(hash_of(items.primitives[i]), i);
-        std::sort(places_.begin(), places_.end());
-    }
-    bool has(const Primitive& primitive, const Rect& bounds) const {
-        const auto hash = hash_of(primitive);
-        auto at = std::lower_bound(places_.begin(), places_.end(), std::pair{hash, std::size_t{0}});
-        for (; at != places_.end() && at->first == hash; ++at)
-            if (items_.primitives[at->second] == primitive && items_.bounds[at->second] == bounds) return true;
-        return false;
-    }
-
-private:
-    const RenderList& items_;
-    std::vector<std::pair<std::size_t, std::size_t>> places_;
 };
 
 /// Calls visit(rect) for disjoint rectangles that cover the primitive: its bounds, or strips if it is long and slanted.
 template <class Visit>
-void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& visit) {
+void for_each_band(const Primitive& primitive, const Visit& visit) {
+    const Rect& bounds = primitive.bounds;
     const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
     const int thick = 16 + 4 * static_cast<int>(std::min(primitive.half.y, 1000.f));
     const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
@@ -104,26 +73,25 @@ void for_each_band(const Primitive& primitive, const Rect& bounds, const Visit& 
     }
 }
 
+using Primitives = std::span<const Primitive>;
+
 /// For strokes: the order and repetition of their primitives does not change the picture.
 template <class Add>
-void compare_masks(const RenderList& before, RenderList::Part old, const RenderList& after, RenderList::Part now,
-                   const Add& add) {
+void compare_masks(Primitives olds, Primitives news, const Add& add) {
     // most of a path is usually unchanged
-    const auto same = [&](std::size_t i, std::size_t j) {
-        return before.bounds[i] == after.bounds[j] && before.primitives[i] == after.primitives[j];
-    };
-    while (old.begin < old.end && now.begin < now.end && same(old.begin, now.begin)) ++old.begin, ++now.begin;
-    while (old.begin < old.end && now.begin < now.end && same(old.end - 1, now.end - 1)) --old.end, --now.end;
-    const PrimitiveSet olds(before, old), news(after, now);
-    for (std::size_t i = old.begin; i < old.end; ++i)
-        if (!news.has(before.primitives[i], before.bounds[i]))
-            for_each_band(before.primitives[i], before.bounds[i], add);
-    for (std::size_t j = now.begin; j < now.end; ++j)
-        if (!olds.has(after.primitives[j], after.bounds[j])) for_each_band(after.primitives[j], after.bounds[j], add);
+    while (!olds.empty() && !news.empty() && olds.front() == news.front())
+        olds = olds.subspan(1), news = news.subspan(1);
+    while (!olds.empty() && !news.empty() && olds.back() == news.back())
+        olds = olds.first(olds.size() - 1), news = news.first(news.size() - 1);
+    using Set = std::unordered_set<Primitive, PrimitiveHash>;
+    const Set old_set(olds.begin(), olds.end()), new_set(news.begin(), news.end());
+    for (const auto& primitive : olds)
+        if (!new_set.contains(primitive)) for_each_band(primitive, add);
+    for (const auto& primitive : news)
+        if (!old_set.contains(primitive)) for_each_band(primitive, add);
 }
 
-}  // namespace
-
+/// A few disjoint rectangles that cover all of `rects`. Rectangles are joined if that is cheaper to draw.
 std::vector<Rect> merged(std::vector<Rect> rects) {
     // a rectangle that grows is compared with all others again
     for (std::size_t i = 0; i < rects.size(); ++i) {
@@ -141,28 +109,35 @@ std::vector<Rect> merged(std::vector<Rect> rects) {
     return disjoint;
 }
 
+}  // namespace
+
 std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after) {
-    RectChain touched;
+    std::vector<Rect> touched;
+    const auto add = [&](const Rect& rect) {  // neighbours along a path are joined if that is cheaper
+        if (!touched.empty() && cheaper_as_one(touched.back(), rect))
+            touched.back() = united(touched.back(), rect);
+        else
+            touched.push_back(rect);
+    };
     for (std::size_t p = 0; p < std::max(before.parts.size(), after.parts.size()); ++p) {
-        const RenderList::Part none{.kind = Kind::shape};
-        const RenderList::Part& old = p < before.parts.size() ? before.parts[p] : none;
-        const RenderList::Part& now = p < after.parts.size() ? after.parts[p] : none;
-        const std::size_t olds = old.end - old.begin, nows = now.end - now.begin;
-        const auto add = [&](const Rect& r) { touched.add(r); };
+        const auto part_of = [&](const RenderList& list) {
+            return p < list.parts.size() ? list.parts[p] : RenderList::Part{.kind = Kind::shape};
+        };
+        const auto old = part_of(before), now = part_of(after);
+        const auto olds = Primitives(before.primitives).subspan(old.begin, old.end - old.begin),
+                   news = Primitives(after.primitives).subspan(now.begin, now.end - now.begin);
         if (old.kind == Kind::mask && now.kind == Kind::mask) {
-            compare_masks(before, old, after, now, add);
+            compare_masks(olds, news, add);
             continue;
         }
-        for (std::size_t k = 0; k < std::max(olds, nows); ++k) {
-            const std::size_t i = old.begin + k, j = now.begin + k;
-            if (k < olds && k < nows && old.kind == now.kind && before.bounds[i] == after.bounds[j] &&
-                before.primitives[i] == after.primitives[j])
-                continue;
-            if (k < olds) for_each_band(before.primitives[i], before.bounds[i], add);
-            if (k < nows) for_each_band(after.primitives[j], after.bounds[j], add);
+        for (std::size_t k = 0; k < std::max(olds.size(), news.size()); ++k) {
+            const bool is_old = k < olds.size(), is_new = k < news.size();
+            if (is_old && is_new && old.kind == now.kind && olds[k] == news[k]) continue;
+            if (is_old) for_each_band(olds[k], add);
+            if (is_new) for_each_band(news[k], add);
         }
     }
-    return merged(touched.take());
+    return merged(std::move(touched));
 }
 
 }  // namespace doppel

@@ -15,6 +15,7 @@ namespace doppel {
 /// A position in the picture, px from its top left corner; y points down. Pixel centres are at half-integers.
 struct Point {
     float x = 0, y = 0;
+    friend bool operator==(const Point&, const Point&) = default;
 };
 
 /// In px.
@@ -73,7 +74,7 @@ struct Stroke {
         float glow = 1;   // factor of Stroke::glow
         float bend =
             0;  // of the parabola to the next vertex: px right of the chord at its middle, at most 1/16 of its length
-        bool joint = false;  // always drawn as a vertex, even if it could be left out
+        bool joint = false;  // next_piece() ends here
     };
     std::vector<Vertex> vertices;
     float width = 1;  // px

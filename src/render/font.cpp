@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <span>
 #include <system_error>
 #include <utility>
 #include FT_FREETYPE_H
@@ -32,18 +31,11 @@ namespace {
 constexpr float bold_width = 0.043f, bold_height = 0.026f, bold_spacing = 0.030f;
 
 /// The rectangle that contains an outline, in px right of the pen's pixel and below the baseline.
-Area extent_of(std::span<const stbtt_vertex> outline, float scale, float shift) {
-    Area extent{1e9f, 1e9f, -1e9f, -1e9f};
-    const auto include = [&](float x, float y) {
-        extent = {std::min(extent.left, x), std::min(extent.top, y), std::max(extent.right, x),
-                  std::max(extent.bottom, y)};
-    };
-    for (const stbtt_vertex& v : outline) {
-        include(v.x * scale + shift, -v.y * scale);
-        if (v.type == STBTT_vcurve || v.type == STBTT_vcubic) include(v.cx * scale + shift, -v.cy * scale);
-        if (v.type == STBTT_vcubic) include(v.cx1 * scale + shift, -v.cy1 * scale);
-    }
-    return extent;
+Area extent_of(const FT_Outline& outline, float scale, float shift) {
+    FT_BBox units;
+    FT_Outline_Get_CBox(&outline, &units);
+    const auto pixels = [&](FT_Pos of) { return static_cast<float>(of) * scale; };
+    return {pixels(units.xMin) + shift, -pixels(units.yMax), pixels(units.xMax) + shift, -pixels(units.yMin)};
 }
 
 /// The part of pixel i…i + 1 that lies between `from` and `to`, 0…1.
@@ -72,40 +64,31 @@ Coverage missing_box(float size, Weight weight, float shift) {
 
 constexpr float max_ems = 16;  // largest distance from the pen; a glyph that extends further is damaged
 
-/// Converts an outline to stb_truetype's vertices, in font units.
-class OutlineBuilder {
-public:
-    explicit OutlineBuilder(FT_Outline& outline) {
-        // at twice the size, the points half way between two others are integers
-        static constexpr FT_Outline_Funcs steps{
-            &OutlineBuilder::move, &OutlineBuilder::line, &OutlineBuilder::curve, &OutlineBuilder::cubic, 1, 0};
-        is_whole_ = FT_Outline_Decompose(&outline, &steps, this) == 0;
-    }
-    /// Empty if the outline is damaged.
-    std::vector<stbtt_vertex> vertices() && { return is_whole_ ? std::move(vertices_) : std::vector<stbtt_vertex>(); }
-
-private:
-    static short units(FT_Pos twice) {
-        using Limits = std::numeric_limits<short>;
-        return static_cast<short>(std::clamp<FT_Pos>(twice >> 1, Limits::min(), Limits::max()));
-    }
-    static int add(void* to, unsigned char kind, const FT_Vector& at, const FT_Vector& first, const FT_Vector& second) {
-        static_cast<OutlineBuilder*>(to)->vertices_.push_back(
+/// The outline as stb_truetype's vertices, in font units; empty if it is damaged.
+std::vector<stbtt_vertex> vertices_of(FT_Outline& outline) {
+    static constexpr auto add = [](void* to, unsigned char kind, const FT_Vector& at, const FT_Vector& first,
+                                   const FT_Vector& second) {
+        const auto units = [](FT_Pos twice) {
+            using Limits = std::numeric_limits<short>;
+            return static_cast<short>(std::clamp<FT_Pos>(twice >> 1, Limits::min(), Limits::max()));
+        };
+        static_cast<std::vector<stbtt_vertex>*>(to)->push_back(
             {units(at.x), units(at.y), units(first.x), units(first.y), units(second.x), units(second.y), kind, 0});
         return 0;
-    }
-    static int move(const FT_Vector* at, void* to) { return add(to, STBTT_vmove, *at, {}, {}); }
-    static int line(const FT_Vector* at, void* to) { return add(to, STBTT_vline, *at, {}, {}); }
-    static int curve(const FT_Vector* first, const FT_Vector* at, void* to) {
-        return add(to, STBTT_vcurve, *at, *first, {});
-    }
-    static int cubic(const FT_Vector* first, const FT_Vector* second, const FT_Vector* at, void* to) {
-        return add(to, STBTT_vcubic, *at, *first, *second);
-    }
-
-    std::vector<stbtt_vertex> vertices_;
-    bool is_whole_ = false;
-};
+    };
+    using Vector = const FT_Vector*;
+    // at twice the size, the points half way between two others are integers
+    const FT_Outline_Funcs steps{
+        [](Vector at, void* to) { return add(to, STBTT_vmove, *at, {}, {}); },
+        [](Vector at, void* to) { return add(to, STBTT_vline, *at, {}, {}); },
+        [](Vector first, Vector at, void* to) { return add(to, STBTT_vcurve, *at, *first, {}); },
+        [](Vector first, Vector second, Vector at, void* to) { return add(to, STBTT_vcubic, *at, *first, *second); },
+        1,
+        0};
+    std::vector<stbtt_vertex> vertices;
+    const bool is_whole = FT_Outline_Decompose(&outline, &steps, &vertices) == 0;
+    return is_whole ? vertices : std::vector<stbtt_vertex>();
+}
 
 }  // namespace
 
@@ -203,9 +186,9 @@ Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) con
         FT_Outline_EmboldenXY(read, units(bold_width), units(bold_height));  // to the right and up
         FT_Outline_Translate(read, units((bold_spacing - bold_width) / 2), units(-bold_height / 2));
     }
-    auto outline = OutlineBuilder(*read).vertices();
+    auto outline = vertices_of(*read);
     if (outline.empty()) return {};
-    const Area extent = extent_of(outline, scale, shift);
+    const Area extent = extent_of(*read, scale, shift);
     const float reach = std::max({-extent.left, -extent.top, extent.right, extent.bottom});
     if (!(reach <= max_ems * size)) return missing_box(size, weight, shift);
 

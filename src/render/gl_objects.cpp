@@ -3,6 +3,8 @@
 #include "base/error.hpp"
 #include "embedded/render.hpp"
 
+#include <utility>
+
 namespace doppel::gl {
 namespace {
 
@@ -31,18 +33,14 @@ void attach(GLuint program, GLenum type, const std::string& name) {
 }
 
 std::string name_of(GLenum error) {
-    switch (error) {
-        case GL_INVALID_ENUM:
-            return "GL_INVALID_ENUM";
-        case GL_INVALID_VALUE:
-            return "GL_INVALID_VALUE";
-        case GL_INVALID_OPERATION:
-            return "GL_INVALID_OPERATION";
-        case GL_INVALID_FRAMEBUFFER_OPERATION:
-            return "GL_INVALID_FRAMEBUFFER_OPERATION";
-        default:
-            return fmt::format("error {:#06x}", error);
-    }
+    constexpr std::pair<GLenum, const char*> names[] = {
+        {GL_INVALID_ENUM, "GL_INVALID_ENUM"},
+        {GL_INVALID_VALUE, "GL_INVALID_VALUE"},
+        {GL_INVALID_OPERATION, "GL_INVALID_OPERATION"},
+        {GL_INVALID_FRAMEBUFFER_OPERATION, "GL_INVALID_FRAMEBUFFER_OPERATION"}};
+    for (const auto& [number, name] : names)
+        if (number == error) return name;
+    return fmt::format("error {:#06x}", error);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 namespace doppel::gl {
 namespace {
 
-constexpr std::size_t max_quads = 16384;  // in one call: the range of 16-bit indices
 constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
                                    "vertex_params",   "vertex_parabola", "vertex_tint"};
 
@@ -29,7 +28,7 @@ Painter::Painter(Size size)
     : programs_{Program("quad.vert", "shape.frag", inputs), Program("quad.vert", "glyph.frag", inputs),
                 Program("quad.vert", "mask.frag", inputs)},
       cover_("quad.vert", "cover.frag", inputs) {
-    // constant state: pixel coordinates from the top left, and two triangles for each quad
+    // constant state: pixel coordinates from the top left
     for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &cover_}) {
         UseProgram(*program);
         Uniform2f(GetUniformLocation(*program, "picture"), static_cast<float>(size.width),
@@ -38,27 +37,17 @@ Painter::Painter(Size size)
     Viewport(0, 0, size.width, size.height);
     Enable(GL_BLEND);
     BindVertexArray(vertex_array_);
-    std::vector<std::uint16_t> indices;
-    for (std::size_t first = 0; first < 4 * max_quads; first += 4) {
-        for (const std::size_t corner : {0, 1, 2, 2, 1, 3}) {
-            indices.push_back(static_cast<std::uint16_t>(first + corner));
-        }
-    }
-    BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
-    BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint16_t)), indices.data(),
-               GL_STATIC_DRAW);
-
     BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
     const auto input = [](GLuint location, GLint count, GLenum type, std::size_t offset) {
         EnableVertexAttribArray(location);
         VertexAttribPointer(location, count, type, GL_TRUE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
     };
     input(0, 2, GL_FLOAT, offsetof(Vertex, at));
-    input(1, 4, GL_FLOAT, offsetof(Vertex, origin));
-    input(2, 4, GL_FLOAT, offsetof(Vertex, shape));
-    input(3, 4, GL_FLOAT, offsetof(Vertex, params));
-    input(4, 2, GL_FLOAT, offsetof(Vertex, parabola));
-    input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, tint));
+    input(1, 4, GL_FLOAT, offsetof(Vertex, of) + offsetof(Primitive, origin));
+    input(2, 4, GL_FLOAT, offsetof(Vertex, of) + offsetof(Primitive, shape));
+    input(3, 4, GL_FLOAT, offsetof(Vertex, of) + offsetof(Primitive, params));
+    input(4, 2, GL_FLOAT, offsetof(Vertex, of) + offsetof(Primitive, parabola));
+    input(5, 4, GL_UNSIGNED_BYTE, offsetof(Vertex, of) + offsetof(Primitive, tint));
 
     BindTexture(GL_TEXTURE_2D, atlas_);
     TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -68,52 +57,44 @@ Painter::Painter(Size size)
 }
 
 void Painter::paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas) {
-    make_batches(items, regions);
+    auto batches = batches_of(items, regions);
     vertices_.clear();
-    for (std::size_t r = 0; r < used_batches_; ++r) {
-        Batch& batch = batches_[r];
-        batch.begin = vertices_.size() / 4;
-        for (const std::size_t p : batch.parts) {
-            for (std::size_t i = items.parts[p].begin; i < items.parts[p].end; ++i) {
-                add(items.primitives[i], items.bounds[i], regions);
-            }
-        }
-        batch.end = vertices_.size() / 4;
+    for (Batch& batch : batches) {
+        batch.begin = vertices_.size();
+        for (const std::size_t p : batch.parts)
+            for (std::size_t i = items.parts[p].begin; i < items.parts[p].end; ++i) add(items.primitives[i], regions);
+        batch.end = vertices_.size();
     }
     upload_vertices();
     upload(atlas);
-    for (std::size_t r = 0; r < used_batches_; ++r) draw(batches_[r]);
+    for (const Batch& batch : batches) draw(batch);
 }
 
 /// Groups the parts into few batches. A part may be drawn earlier than its turn if it overlaps nothing in between.
-void Painter::make_batches(const RenderList& items, const std::vector<Rect>& regions) {
-    used_batches_ = 0;
+std::vector<Painter::Batch> Painter::batches_of(const RenderList& items, const std::vector<Rect>& regions) {
+    std::vector<Batch> batches;
     const auto meet = [](const Rect& a, const Rect& b) { return !intersection(a, b).empty(); };
     for (std::size_t p = 0; p < items.parts.size(); ++p) {
         const RenderList::Part& part = items.parts[p];
-        if (std::none_of(regions.begin(), regions.end(), [&](const Rect& r) { return meet(r, part.bounds); })) continue;
-        std::size_t home = used_batches_;
-        for (std::size_t r = used_batches_; r-- > 0;) {
-            const bool met = meet(batches_[r].bounds, part.bounds);
+        if (std::ranges::none_of(regions, [&](const Rect& r) { return meet(r, part.bounds); })) continue;
+        std::size_t home = batches.size();
+        for (std::size_t r = batches.size(); r-- > 0;) {
+            const bool met = meet(batches[r].bounds, part.bounds);
             // the masks of two strokes must not mix
-            if (batches_[r].kind == part.kind && !(met && part.kind == Kind::mask)) home = r;
-            if (met || used_batches_ - r > 16) break;
+            if (batches[r].kind == part.kind && !(met && part.kind == Kind::mask)) home = r;
+            if (met || batches.size() - r > 16) break;
         }
-        if (home == used_batches_) {
-            if (++used_batches_ > batches_.size()) batches_.emplace_back();
-            batches_[home].kind = part.kind;
-            batches_[home].bounds = {};
-            batches_[home].parts.clear();
-        }
-        batches_[home].bounds = united(batches_[home].bounds, part.bounds);
-        batches_[home].parts.push_back(p);
+        if (home == batches.size()) batches.push_back({.kind = part.kind});
+        batches[home].bounds = united(batches[home].bounds, part.bounds);
+        batches[home].parts.push_back(p);
     }
+    return batches;
 }
 
 /// Adds the part of the primitive inside the regions. Each pixel is drawn once.
-void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& regions) {
+void Painter::add(const Primitive& primitive, const std::vector<Rect>& regions) {
     for (const Rect& region : regions) {
-        const Rect seen = intersection(bounds, region);
+        const Rect seen = intersection(primitive.bounds, region);
         if (seen.empty()) continue;
         const auto left = static_cast<float>(seen.left), right = static_cast<float>(seen.right);
         const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
@@ -122,13 +103,12 @@ void Painter::add(const Primitive& primitive, const Rect& bounds, const std::vec
             // the rotated outline covers fewer pixels than the bounds
             const auto corners = outline(primitive);
             outline_.assign(corners.begin(), corners.end());
-            if (seen != bounds) clip(left, right, top, bottom);
+            if (seen != primitive.bounds) clip(left, right, top, bottom);
         }
-        // a fan of quads
-        for (std::size_t i = 2; i < outline_.size(); i += 2)
-            for (const std::size_t corner : {i - 1, std::size_t{0}, i, std::min(i + 1, outline_.size() - 1)})
-                vertices_.push_back({outline_[corner], primitive.origin, primitive.axis, primitive.shape,
-                                     primitive.params, primitive.parabola, primitive.tint});
+        // a fan of triangles
+        for (std::size_t i = 2; i < outline_.size(); ++i)
+            for (const std::size_t corner : {std::size_t{0}, i - 1, i})
+                vertices_.push_back({outline_[corner], primitive});
     }
 }
 
@@ -159,7 +139,7 @@ void Painter::upload_vertices() {
     if (needed > vertex_room_) {
         vertex_room_ = needed + needed / 2;
         BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertex_room_), nullptr, GL_DYNAMIC_DRAW);
-        check_errors(fmt::format("the outlines of {} shapes", vertices_.size() / 4));
+        check_errors(fmt::format("the outlines of {} shapes", vertices_.size() / 6));
     }
     BufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(needed), vertices_.data());
 }
@@ -175,26 +155,22 @@ void Painter::upload(const GlyphAtlas& atlas) {
 }
 
 void Painter::draw(const Batch& batch) {
-    const auto draw_quads = [&](const Program& program) {
+    const auto draw_triangles = [&](const Program& program) {
         UseProgram(program);
-        for (std::size_t begin = batch.begin; begin < batch.end; begin += max_quads) {
-            const std::size_t count = std::min(batch.end - begin, max_quads);
-            DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(6 * count), GL_UNSIGNED_SHORT, nullptr,
-                                   static_cast<GLint>(4 * begin));
-        }
+        DrawArrays(GL_TRIANGLES, static_cast<GLint>(batch.begin), static_cast<GLsizei>(batch.end - batch.begin));
     };
     if (batch.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
     if (batch.kind == Kind::mask) {
         BlendEquation(GL_MIN);
         ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
-        draw_quads(programs_[static_cast<std::size_t>(batch.kind)]);
+        draw_triangles(programs_[static_cast<std::size_t>(batch.kind)]);
         BlendEquation(GL_FUNC_ADD);
         ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         BlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ZERO);
-        draw_quads(cover_);
+        draw_triangles(cover_);
     } else {
         BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-        draw_quads(programs_[static_cast<std::size_t>(batch.kind)]);
+        draw_triangles(programs_[static_cast<std::size_t>(batch.kind)]);
     }
 }
 

@@ -19,22 +19,19 @@ public:
 
 private:
     struct Vertex {
-        Point at, origin, axis;
-        std::array<float, 4> shape;
-        std::array<float, 4> params;
-        std::array<float, 2> parabola;
-        std::array<std::uint8_t, 4> tint;
+        Point at;
+        Primitive of;
     };
     /// Parts drawn together.
     struct Batch {
         Kind kind;
-        Rect bounds;             // union of its parts' bounds
-        std::size_t begin, end;  // in quads
-        std::vector<std::size_t> parts;
+        Rect bounds{};                   // union of its parts' bounds
+        std::size_t begin = 0, end = 0;  // in vertices
+        std::vector<std::size_t> parts{};
     };
 
-    void make_batches(const RenderList& items, const std::vector<Rect>& regions);
-    void add(const Primitive& primitive, const Rect& bounds, const std::vector<Rect>& regions);
+    static std::vector<Batch> batches_of(const RenderList& items, const std::vector<Rect>& regions);
+    void add(const Primitive& primitive, const std::vector<Rect>& regions);
     void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);
@@ -43,14 +40,12 @@ private:
     std::array<Program, 3> programs_;  // for each Kind
     Program cover_;
     VertexArray vertex_array_;
-    Buffer vertex_buffer_, index_buffer_;
+    Buffer vertex_buffer_;
     std::size_t vertex_room_ = 0;  // size of the buffer, bytes
     Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
     std::vector<Vertex> vertices_;
     std::vector<Point> outline_, clipped_;  // of the primitive being added
-    std::vector<Batch> batches_;            // reused; those in use come first
-    std::size_t used_batches_ = 0;
 };
 
 }  // namespace doppel::gl

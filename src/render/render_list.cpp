@@ -55,17 +55,19 @@ public:
             v.glow *= std::max(stroke.glow, 0.f);
         }
         segments_.clear();
-        if (path_.size() == 1) segments_.push_back({path_[0], path_[0], 0});
-        for (std::size_t i = 0; i + 1 < path_.size();) {
-            const StrokePiece piece = next_piece(path_, i, Bends::no);
-            const Segment segment{path_[i], path_[piece.last], piece.bend};
-            // a piece of zero length between two joints only changes width and opacity
+        if (path_.size() == 1) {
+            path_[0].bend = 0;
+            segments_.push_back({path_[0], path_[0]});
+        }
+        for (std::size_t i = 0; i + 1 < path_.size(); ++i) {
+            const Segment segment{path_[i], path_[i + 1]};
+            // one of zero length between two joints only changes width and opacity
             if (!(segment.from.joint && segment.to.joint && segment.chord.length == 0)) segments_.push_back(segment);
-            i = piece.last;
         }
         const auto color = tint(stroke.color);
         for (std::size_t i = 0; i < segments_.size(); ++i) {
-            const auto& [from, to, bend, s] = segments_[i];
+            const auto& [from, to, s] = segments_[i];
+            const float bend = from.bend;
             if (!(from.alpha > 0 || to.alpha > 0)) continue;
             const float per_px = s.length > 0 ? 1 / s.length : 0;
             const float alpha = s.length > 0 ? (from.alpha + to.alpha) / 2 : std::max(from.alpha, to.alpha);
@@ -110,12 +112,10 @@ public:
 private:
     struct Segment {
         Stroke::Vertex from, to;
-        float bend;  // px
         Chord chord{from.at, to.at};
 
-        float steepness() const {
-            return chord.length > 0 ? 4 * bend / chord.length : 0;
-        }  // at the start; at the end it is the negative
+        /// At the start; at the end it is the negative.
+        float steepness() const { return chord.length > 0 ? 4 * from.bend / chord.length : 0; }
         Point direction(float slope) const {
             const float scale = 1 / std::sqrt(1 + slope * slope);
             return {scale * (chord.axis.x - slope * chord.axis.y), scale * (chord.axis.y + slope * chord.axis.x)};
@@ -135,19 +135,19 @@ private:
     void begin(Kind kind) { made_.parts.push_back({kind, made_.primitives.size(), made_.primitives.size()}); }
 
     /// Adds the primitive, which touches only pixels between `from` and `to`.
-    void add(const Primitive& primitive, Point from, Point to) {
+    void add(Primitive primitive, Point from, Point to) {
         // fmin and fmax ignore NaN
         const auto within = [](float v, int maximum) {
             return std::fmin(std::fmax(v, 0.f), static_cast<float>(maximum));
         };
-        const Rect bounds{static_cast<int>(within(from.x, size_.width)), static_cast<int>(within(from.y, size_.height)),
-                          static_cast<int>(std::ceil(within(to.x, size_.width))),
-                          static_cast<int>(std::ceil(within(to.y, size_.height)))};
-        if (bounds.empty()) return;
+        primitive.bounds = {static_cast<int>(within(from.x, size_.width)),
+                            static_cast<int>(within(from.y, size_.height)),
+                            static_cast<int>(std::ceil(within(to.x, size_.width))),
+                            static_cast<int>(std::ceil(within(to.y, size_.height)))};
+        if (primitive.bounds.empty()) return;
         made_.primitives.push_back(primitive);
-        made_.bounds.push_back(bounds);
         made_.parts.back().end = made_.primitives.size();
-        made_.parts.back().bounds = united(made_.parts.back().bounds, bounds);
+        made_.parts.back().bounds = united(made_.parts.back().bounds, primitive.bounds);
     }
 
     /// Adds the primitive, which extends by `half` from its origin along its two axes.
@@ -183,16 +183,9 @@ private:
 
 }  // namespace
 
-bool operator==(const Primitive& a, const Primitive& b) {
-    return a.origin.x == b.origin.x && a.origin.y == b.origin.y && a.axis.x == b.axis.x && a.axis.y == b.axis.y &&
-           a.half.x == b.half.x && a.half.y == b.half.y && a.shape == b.shape && a.params == b.params &&
-           a.parabola == b.parabola && a.tint == b.tint;
-}
-
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made) {
     made.parts.clear();
     made.primitives.clear();
-    made.bounds.clear();
     RenderListMaker maker(size, atlas, made);
     for (const Item& item : list) std::visit(maker, item);
 }

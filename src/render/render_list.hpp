@@ -17,7 +17,8 @@ struct Primitive {
     std::array<float, 4> params{};       // likewise
     std::array<float, 2> parabola{};     // likewise
     std::array<std::uint8_t, 4> tint{};  // sRGB and opacity
-    friend bool operator==(const Primitive&, const Primitive&);
+    Rect bounds{};                       // the pixels that it touches, inside the picture
+    friend bool operator==(const Primitive&, const Primitive&) = default;
 };
 
 /// The fragment shaders. A `mask` takes a second pass, in which the shader `cover` blends the stroke's colour by the
@@ -28,19 +29,15 @@ enum class Kind { shape, glyph, mask };
 struct RenderList {
     struct Part {
         Kind kind;
-        std::size_t begin = 0, end = 0;  // range of primitives and bounds
+        std::size_t begin = 0, end = 0;  // range of primitives
         Rect bounds{};                   // union of their bounds
     };
     std::vector<Part> parts;
     std::vector<Primitive> primitives;
-    std::vector<Rect> bounds;  // the pixels that each primitive touches, inside the picture
 };
 
 /// Converts `list` into `made`, whose memory is reused. An invisible item adds an empty part, or none.
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made);
-
-/// A few disjoint rectangles that cover all of `rects`. Rectangles are joined if that is cheaper to draw.
-std::vector<Rect> merged(std::vector<Rect> rects);
 
 /// Where the pictures of two render lists may differ, as a few disjoint rectangles. Outside, both have the same
 /// primitives in the same order.

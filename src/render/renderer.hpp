@@ -2,10 +2,12 @@
 
 #include "image/picture.hpp"
 #include "render/display_list.hpp"
+#include "render/render_list.hpp"
 #include "render/typeface.hpp"
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,12 @@ std::vector<std::string> gl_names();
 
 /// Throws Error (exit 2) for other names.
 Gl gl_named(const std::string& name);
+
+class Context;
+namespace gl {
+class Canvas;
+class Painter;
+}  // namespace gl
 
 /// Draws display lists into pictures of one size, without a display (OSMesa or EGL). A picture is a fixed backdrop with
 /// a list on top. Only the rectangles in which the list differs from the last one are drawn and read back. The pixels
@@ -42,14 +50,24 @@ public:
     const Picture& draw(const DisplayList& list, const std::atomic<bool>& stop = false);
 
     /// Where the last picture differs from the previous one; after the first draw(), everywhere.
-    const std::vector<Rect>& changed() const;
+    const std::vector<Rect>& changed() const { return changed_; }
 
     /// The library and driver for the manifest: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3 Mesa 22.3.6".
     std::string description() const;
 
 private:
-    class State;
-    std::unique_ptr<State> state_;
+    /// Draws the current render list inside `regions`, and reads the pixels back.
+    void paint(const std::vector<Rect>& regions, Picture& into);
+
+    Size size_;
+    std::unique_ptr<Context> context_;
+    std::optional<GlyphAtlas> atlas_;
+    std::unique_ptr<gl::Canvas> canvas_;
+    std::unique_ptr<gl::Painter> painter_;
+    Picture backdrop_, picture_;
+    RenderList last_, now_;  // of the last picture; of the current one
+    bool first_ = true;
+    std::vector<Rect> changed_;
 };
 
 }  // namespace doppel

@@ -34,14 +34,13 @@ bool is_close(const Stroke::Vertex& from, const Stroke::Vertex& to, float part, 
 }
 
 /// The bend of the piece that passes all vertices between first and last within tolerance, if there is one.
-std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_t first, std::size_t last,
-                             Bends bends) {
+std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_t first, std::size_t last) {
     const Stroke::Vertex &from = path[first], &to = path[last];
     const Chord chord(from.at, to.at);
     // the bend given by the vertex in the middle
     const Point middle = local(chord, path[(first + last) / 2].at);
     const float scale = height(part_of(chord, middle.x));
-    const float bend = bends == Bends::yes && scale > 0.3f ? middle.y / scale : 0;
+    const float bend = scale > 0.3f ? middle.y / scale : 0;
     if (!(std::abs(bend) <= steepest / 4 * chord.length)) return {};
 
     Point before;
@@ -57,6 +56,14 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
         before = at;
     }
     return bend;
+}
+
+constexpr float tolerance = 0.2f;  // of a trace, px
+constexpr float any_slope = std::numeric_limits<float>::max();
+
+/// A joint, so that later points change nothing before it.
+Stroke::Vertex vertex(Point at) {
+    return {.at = at, .joint = true};
 }
 
 }  // namespace
@@ -75,27 +82,18 @@ std::optional<Shares> clip_segment(const Area& area, double x0, double y0, doubl
     return meets ? std::optional(within) : std::nullopt;
 }
 
-StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends, std::size_t maximum) {
+StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first) {
+    constexpr std::size_t maximum = 24;
     StrokePiece piece{first, first + 1, path[first].bend};
     const std::size_t end = std::min(path.size() - 1, first + maximum);
     if (path[first].bend != 0 || path[piece.last].joint) return piece;
     while (piece.last < end) {
-        const auto bend = bend_of(path, first, piece.last + 1, bends);
+        const auto bend = bend_of(path, first, piece.last + 1);
         if (!bend) break;
         piece = {first, piece.last + 1, *bend};
     }
     return piece;
 }
-
-namespace {
-constexpr float tolerance = 0.2f;  // px
-constexpr float any_slope = std::numeric_limits<float>::max();
-
-/// A joint, so that later points change nothing before it.
-Stroke::Vertex vertex(Point at) {
-    return {.at = at, .joint = true};
-}
-}  // namespace
 
 void Trace::add(Point point) {
     if (kept_.empty()) {

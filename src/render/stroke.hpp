@@ -28,21 +28,17 @@ struct Shares {
 };
 std::optional<Shares> clip_segment(const Area& area, double x0, double y0, double x1, double y1);
 
-/// A part of a stroke drawn as one primitive: a parabola from vertex `first` to `last`, whose middle is `bend` px to
-/// the right of the chord. Opacity, width and glow vary linearly along the chord.
+/// A part of a stroke that one parabola can replace: from vertex `first` to `last`, its middle `bend` px to the right
+/// of the chord. Opacity, width and glow vary linearly along the chord.
 struct StrokePiece {
     std::size_t first, last;
     float bend = 0;
 };
 
-/// Whether pieces may be parabolas, or only straight lines.
-enum class Bends { no, yes };
-
-/// The longest piece from vertex `first`, of at most `maximum` vertices and up to the next joint, that fits the
+/// The longest piece from vertex `first`, of at most 24 vertices and up to the next joint, that fits the
 /// vertices in between. Tolerances: position and edges 1/10 px (1/5 px half way between vertices), glow 1/2 px, opacity
 /// 1/255. Widths and glow are in px.
-StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first, Bends bends,
-                       std::size_t maximum = 24);
+StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first);
 
 /// The simplified curve of a quantity over time: points within 1/5 px of the line through the kept points are left out.
 /// Which points are kept depends only on earlier points.
