@@ -40,20 +40,6 @@ void describe_pdf(cairo_surface_t* surface, const Metadata& metadata) {
     cairo_pdf_surface_restrict_to_version(surface, CAIRO_PDF_VERSION_1_5);  // newer versions of Cairo would write 1.7
 }
 
-/// Draws the page, with `units` of the surface per pixel of the page.
-void draw(const Page& page, cairo_surface_t* surface, double units, bool pixels, const std::atomic<bool>& stop) {
-    check_cairo(cairo_surface_status(surface));
-    const CairoContext context(cairo_create(surface));
-    cairo_scale(context.get(), units * page.scale, units * page.scale);
-    PagePainter painter(context.get(), page.typeface, page.scale, pixels);
-    for (const auto& item : page.items) {
-        throw_if_set(stop);
-        std::visit(painter, item);
-    }
-    if (!pixels) cairo_show_page(context.get());
-    check_cairo(cairo_status(context.get()));
-}
-
 }  // namespace
 
 std::string page_library() {
