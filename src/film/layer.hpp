@@ -21,33 +21,35 @@ inline double hermite(double p, double v, double q, double w, double dt, double 
 /// A path that fades and narrows with age.
 class Trail {
 public:
-    Trail(const Scene& scene, const Style& style, Color color, float width);
+    /// The path is interrupted between points more than `jump` px apart horizontally.
+    Trail(const Scene& scene, const Style& style, Color color, float width,
+          float jump = std::numeric_limits<float>::infinity());
 
     std::optional<Point> end() const;
     /// Adds a point that was reached at `time`, s. Points that have faded out at `now` are removed.
     void add(Point at, double time, double now);
 
-    /// Draws the path up to the head, if there is one. It is interrupted outside the area, at NaN, and between points
-    /// more than `jump` px apart horizontally. The whole path is moved by `shift`.
-    void draw(const Area& area, double now, std::optional<Point> head, DisplayList& list,
-              float jump = std::numeric_limits<float>::infinity(), Point shift = {}) const;
+    /// Draws the path up to the head, if there is one. It is interrupted outside the area and at NaN. The whole path is
+    /// moved by `shift`.
+    void draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, Point shift = {}) const;
 
 private:
     struct TrailPoint {
         Point at;
-        double time;         // s
-        long group;          // number of the group of points that fade together
-        float bend = 0;      // of the parabola to the next point, px
-        bool joint = false;  // simplify() keeps this point
+        double time;          // s
+        long group;           // number of the group of points that fade together
+        bool starts = false;  // the path is interrupted before it
+        float bend = 0;       // of the parabola to the next point, px
+        bool joint = false;   // simplify() keeps this point
     };
     using Points = std::deque<TrailPoint>;
 
     void simplify(Points& points) const;
     double end_of(long group) const;
     double faded_until(long group, double now) const;
-    void draw_piece(Points points, const Area& area, double now, Point shift, DisplayList& list) const;
 
     double sample_hz_, trail_s_;
+    float jump_;
     Stroke pen_;  // stroke without vertices
     Points points_;
 };

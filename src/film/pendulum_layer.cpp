@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -130,7 +129,7 @@ void PendulumLayer::draw_trail(std::size_t k, DisplayList& list) const {
     const auto& bob = bobs(k).back();
     auto ahead = paths_[k];
     if (state_.is_between() && ahead.last) extend(ahead, bob);
-    ahead.trail.draw(panel_.area, state_.time(), still_at(bob), list, std::numeric_limits<float>::infinity(), shift());
+    ahead.trail.draw(panel_.area, state_.time(), still_at(bob), list, shift());
 }
 
 /// The last pendulum behind: trails, rods, pivots and bobs. If several pendulums share a panel, each has its own hue.

@@ -49,7 +49,8 @@ private:
     }
     Point at(const Bob<double>& bob) const { return at(bob.theta, bob.omega); }
     Trail trail_of(std::size_t side) const {
-        return {state_.scene, style_, theme_.sides[side], px(style_.width.trail)};
+        // a path that leaves at +180° continues at -180°
+        return {state_.scene, style_, theme_.sides[side], px(style_.width.trail), panel_.area.width() / 2};
     }
     void add_to_section(std::size_t side);
 
@@ -97,11 +98,10 @@ void PhaseLayer::frame(DisplayList& list) const {
         const auto color = theme_.sides[side];
         for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
         if (video_.phase != PhaseKind::rate) continue;
-        // a path that leaves at +180° continues at -180°
         const Point now = at(state_.bobs(side)[link_]);
         auto trail = trails_[side];
         if (state_.is_between()) trail.add(now, state_.time(), state_.time());
-        trail.draw(panel_.area, state_.time(), std::nullopt, list, panel_.area.width() / 2);
+        trail.draw(panel_.area, state_.time(), std::nullopt, list);
         list.push_back(Capsule{now, now, head, color});
     }
 }

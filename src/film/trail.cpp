@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -15,9 +16,10 @@ constexpr double fading = 1.6;  // brightness = freshness to this power
 
 }  // namespace
 
-Trail::Trail(const Scene& scene, const Style& style, Color color, float width)
+Trail::Trail(const Scene& scene, const Style& style, Color color, float width, float jump)
     : sample_hz_(scene.preset.sample_hz.value()),
       trail_s_(scene.preset.video.trail_s),
+      jump_(jump),
       pen_{.vertices = {}, .width = width, .color = color, .glow = style.glow} {}
 
 std::optional<Point> Trail::end() const {
@@ -32,9 +34,12 @@ void Trail::add(Point at, double time, double now) {
         // the new group begins where the last one ends
         TrailPoint first = points_.back();
         first.group = g;
+        first.starts = false;
         points_.push_back(first);
     }
-    points_.push_back({at, time, g});
+    const bool starts = !points_.empty() && std::abs(at.x - points_.back().at.x) > jump_;
+    if (starts) points_.back().joint = true;
+    points_.push_back({.at = at, .time = time, .group = g, .starts = starts, .joint = starts});
     while (end_of(points_.front().group) < now - trail_s_) points_.pop_front();
 }
 
@@ -72,34 +77,22 @@ double Trail::faded_until(long g, double now) const {
     return end + (1 - std::pow(std::ceil(steps * light) / steps, 1 / fading)) * trail_s_;
 }
 
-void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, float jump,
-                 Point shift) const {
-    if (!(trail_s_ > 0) || !(pen_.width > 0)) return;
-    Points piece;
-    for (const auto& point : points_) {
-        if (!piece.empty() && std::abs(point.at.x - piece.back().at.x) > jump) {
-            draw_piece(std::move(piece), area, now, shift, list);
-            piece.clear();
-        }
-        piece.push_back(point);
-    }
-    if (piece.empty()) return;
-    if (head) piece.push_back({*head, now, piece.back().group});
-    draw_piece(std::move(piece), area, now, shift, list);
-}
-
-void Trail::draw_piece(Points points, const Area& area, double now, Point shift, DisplayList& list) const {
+void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, Point shift) const {
+    if (!(trail_s_ > 0) || !(pen_.width > 0) || points_.empty()) return;
+    auto points = points_;
+    if (head) points.push_back({.at = *head, .time = now, .group = points.back().group});
     simplify(points);
     Stroke stroke = pen_;
+    const auto end_stroke = [&] {
+        if (!stroke.vertices.empty()) list.push_back(std::exchange(stroke, pen_));
+    };
     std::optional<long> last_group;
     double until = 0;
     for (const auto& point : points) {
         const Point at{point.at.x + shift.x, point.at.y + shift.y};
-        if (!area.contains(at)) {
-            if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
-            stroke = pen_;
-            continue;
-        }
+        const bool is_within = area.contains(at);
+        if (point.starts || !is_within) end_stroke();
+        if (!is_within) continue;
         if (point.group != last_group) until = faded_until(point.group, now);
         last_group = point.group;
         const double freshness = std::clamp(1 - (until - point.time) / trail_s_, 0.0, 1.0);
@@ -111,7 +104,7 @@ void Trail::draw_piece(Points points, const Area& area, double now, Point shift,
                                    .bend = point.bend,
                                    .joint = point.joint});
     }
-    if (!stroke.vertices.empty()) list.push_back(std::move(stroke));
+    end_stroke();
 }
 
 }  // namespace doppel
