@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -90,16 +89,17 @@ public:
     }
     /// Each state needs a rate.
     Quantity state(const Number& start) { return Quantity::argument(start, tape_); }
-    void set_rate(const Quantity& state, const Quantity& rate) { states_[state.node()] = {state.value, rate.node()}; }
+    void set_rate(const Quantity& state, const Quantity& rate) { states_.push_back({state, rate}); }
 
     /// Computes the series for a step h, s.
     void expand(const Number& h) {
         tape_.finish();
-        for (const auto& [node, state] : states_) tape_.term(node, 0) = state.start;
+        for (const auto& [state, rate, image] : states_) tape_.term(state.node(), 0) = state.value;
         for (int k = 0; k <= order_; ++k) {
             tape_.compute(k);
             const Number step = h / Number(k + 1);
-            for (const auto& [node, state] : states_) tape_.term(node, k + 1) = step * tape_.term(state.rate, k);
+            for (const auto& [state, rate, image] : states_)
+                tape_.term(state.node(), k + 1) = step * tape_.term(rate.node(), k);
         }
         last_step_ = bound_of(h) / Bound(order_ + 2);
         bounds_.assign(tape_.nodes().size(), {});
@@ -116,12 +116,12 @@ public:
                 if (const auto& node = tape_.nodes()[i]; node.operation != Operation::argument)
                     bounds_[i].rest = remainder(node, bounds_[i].tail);
             bool is_proved = true;
-            for (auto& [node, state] : states_) {
-                state.image = bound_of(tape_.term(node, order_ + 1)) + last_step_ * bounds(state.rate).rest;
-                is_proved = is_proved && contains(bounds(node).rest, state.image);
+            for (auto& [state, rate, image] : states_) {
+                image = bound_of(tape_.term(state.node(), order_ + 1)) + last_step_ * bounds(rate.node()).rest;
+                is_proved = is_proved && contains(bounds(state.node()).rest, image);
             }
-            for (const auto& [node, state] : states_)
-                bounds(node).rest = is_proved ? state.image : Bound(2) * state.image;
+            for (const auto& [state, rate, image] : states_)
+                bounds(state.node()).rest = is_proved ? image : Bound(2) * image;
             if (is_proved) return true;
         }
         return false;
@@ -141,8 +141,7 @@ private:
     using Operation = typename Tape<Number>::Operation;
     using Node = typename Tape<Number>::Node;
     struct State {
-        Number start;
-        int rate = 0;   // node
+        Quantity state, rate;
         Bound image{};  // of the remainder by Picard's operator
     };
     struct Bounds {
@@ -174,9 +173,9 @@ private:
 
     int order_;
     Tape<Number> tape_;
-    std::map<int, State> states_;  // by nodes
-    std::vector<Bounds> bounds_;   // of all nodes
-    Bound last_step_{};            // h/(n + 2)
+    std::vector<State> states_;
+    std::vector<Bounds> bounds_;  // of all nodes
+    Bound last_step_{};           // h/(n + 2)
 };
 
 }  // namespace doppel

@@ -62,9 +62,7 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
                                        });
     write_rows(scene, proved, place);
     parts.finished(files[0]);
-    RunResult result;
-    result.samples = proved.last() + 1;
-    result.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+    RunResult result{.samples = proved.last() + 1, .wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start};
     write_manifest(
         parts, files[1],
         {{"doppel", program_json()},
