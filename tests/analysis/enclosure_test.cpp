@@ -130,6 +130,17 @@ TEST(BallSeries, ContainsAClosedFormAndRefusesWhatItCannotBound) {
     EXPECT_THROW(series.find_remainders(), std::logic_error);
 }
 
+TEST(BallSeries, AtOrderOneEveryTermOfTheRemainderIsNeeded) {
+    using B = Ball<double>;
+    BallSeries<B> series(1);
+    const auto y = series.state(B(1));
+    series.set_rate(y, y * y);  // y = 1/(1 − t)
+    series.expand(B(1) / B(4));
+    ASSERT_TRUE(series.find_remainders());
+    const B end = series.value(y.node(), B(1));
+    EXPECT_LE(std::abs(end.center - 4.0 / 3), end.radius);  // 0.0833 and 0.097; 0.082 without a product
+}
+
 TEST(Enclosure, ContainsTheReferenceInQuad) {
     const auto known = reference(right_angles, 1200);
     const auto in_double = enclosed<double>(right_angles, 1200);
