@@ -75,15 +75,17 @@ void Canvas::put(const Picture& picture, const Rect& r) {
                   picture.at(r.left, r.top));
 }
 
-Program::Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6])
-    : number_(CreateProgram()) {
-    attach(number_, GL_VERTEX_SHADER, vertex);
+Program::Program(const std::string& fragment) : number_(CreateProgram()) {
+    attach(number_, GL_VERTEX_SHADER, "quad.vert");
     attach(number_, GL_FRAGMENT_SHADER, fragment);
-    for (GLuint location = 0; location < 6; ++location) BindAttribLocation(number_, location, inputs[location]);
+    GLuint location = 0;
+    for (const char* input :
+         {"vertex_position", "vertex_frame", "vertex_shape", "vertex_params", "vertex_parabola", "vertex_tint"})
+        BindAttribLocation(number_, location++, input);
     LinkProgram(number_);
     GLint linked = GL_FALSE;
     GetProgramiv(number_, GL_LINK_STATUS, &linked);
-    if (!linked) throw io_failed("shaders/{} and {}: {}", vertex, fragment, log(GetProgramInfoLog, number_));
+    if (!linked) throw io_failed("shaders/quad.vert and {}: {}", fragment, log(GetProgramInfoLog, number_));
 }
 
 }  // namespace doppel::gl

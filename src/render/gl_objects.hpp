@@ -45,11 +45,11 @@ private:
     Object<GenFramebuffers, DeleteFramebuffers> framebuffer_;
 };
 
-/// The shaders NAME.vert and NAME.frag in shaders/, compiled and linked.
+/// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader beside it;
+/// compiled and linked.
 class Program {
 public:
-    /// `inputs` = names of the vertex shader's inputs, in the order of their locations.
-    Program(const std::string& vertex, const std::string& fragment, const char* const (&inputs)[6]);
+    explicit Program(const std::string& fragment);
     ~Program() { DeleteProgram(number_); }
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;

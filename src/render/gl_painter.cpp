@@ -8,9 +8,6 @@
 namespace doppel::gl {
 namespace {
 
-constexpr const char* inputs[6] = {"vertex_position", "vertex_frame",    "vertex_shape",
-                                   "vertex_params",   "vertex_parabola", "vertex_tint"};
-
 /// The corners of a rotated primitive, in order.
 std::array<Point, 4> outline(const Primitive& primitive) {
     const float room = 0.05f;  // px, so that rounding excludes no pixel
@@ -25,9 +22,7 @@ std::array<Point, 4> outline(const Primitive& primitive) {
 }  // namespace
 
 Painter::Painter(Size size)
-    : programs_{Program("quad.vert", "shape.frag", inputs), Program("quad.vert", "glyph.frag", inputs),
-                Program("quad.vert", "mask.frag", inputs)},
-      cover_("quad.vert", "cover.frag", inputs) {
+    : programs_{Program("shape.frag"), Program("glyph.frag"), Program("mask.frag")}, cover_("cover.frag") {
     // constant state: pixel coordinates from the top left
     for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &cover_}) {
         UseProgram(*program);

@@ -21,16 +21,12 @@ const GlyphAtlas::Slot& GlyphAtlas::slot(const TextLine::Glyph& glyph, float siz
         throw io_failed("no room for a glyph of {} × {} px: the text is too large or has too many sizes",
                         drawn.size.width, drawn.size.height);
     }
-    if (shelf_ + shelf_height_ > height()) {
-        const int rows = std::min(std::max(2 * height(), shelf_ + shelf_height_ + 255), max_height_);
-        values_.resize(static_cast<std::size_t>(width) * rows);
-    }
-
+    if (const int rows = shelf_ + shelf_height_; rows > height())
+        values_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows));
     const Slot slot{drawn.left, drawn.top, drawn.size, pen_, shelf_};
-    for (int row = 0; row < drawn.size.height; ++row) {
+    for (int row = 0; row < drawn.size.height; ++row)
         std::copy_n(&drawn.values[static_cast<std::size_t>(row) * drawn.size.width], drawn.size.width,
                     &values_[static_cast<std::size_t>(shelf_ + row) * width + pen_]);
-    }
     pen_ += drawn.size.width;
     return slots_.emplace(key, slot).first->second;
 }

@@ -36,61 +36,51 @@ Fonts fonts_for(FcConfig* config, char32_t letter) {
     return Fonts(FcFontSort(config, wanted.get(), FcFalse, nullptr, &result));
 }
 
-/// Caches the fonts found by fontconfig. They are kept for the rest of the process.
-class SystemFonts {
-public:
-    const Font* font_for(char32_t letter) {
-        const std::lock_guard lock(mutex_);
-        const auto [place, is_new] = by_letter_.try_emplace(letter, nullptr);
-        if (is_new) place->second = find(letter);
-        return place->second;
-    }
+// What was found is kept for the rest of the process.
 
-private:
-    const Font* find(char32_t letter) {
-        if (!config_) config_.reset(FcInitLoadConfigAndFonts());
-        if (!config_) return nullptr;
-        const auto fonts = fonts_for(config_.get(), letter);
-        for (int i = 0; fonts && i < fonts->nfont; ++i) {
-            FcPattern* const found = fonts->fonts[i];
-            FcCharSet* letters = nullptr;
-            FcChar8* file = nullptr;
-            int index = 0;
-            if (FcPatternGetCharSet(found, FC_CHARSET, 0, &letters) != FcResultMatch ||
-                FcCharSetHasChar(letters, letter) == FcFalse ||
-                FcPatternGetString(found, FC_FILE, 0, &file) != FcResultMatch)
-                continue;
-            FcPatternGetInteger(found, FC_INDEX, 0, &index);
-            // the upper 16 bits number an instance of a variable font; the default instance is used
-            const auto* font = opened(reinterpret_cast<const char*>(file), index & 0xffff);
-            if (font && font->number_of(letter) != 0) return font;
+/// Null if it is no font with outlines.
+const Font* opened(const std::string& file, int index) {
+    static std::map<std::pair<std::string, int>, std::shared_ptr<const Font>> fonts;
+    const auto [place, is_new] = fonts.try_emplace({file, index});
+    if (is_new) {
+        try {
+            place->second = Font::from_file(file, index);
+        } catch (const Error&) {  // a type of font that Doppel does not read; the next may be readable
         }
-        return nullptr;
     }
+    return place->second.get();
+}
 
-    /// Null if it is no font with outlines.
-    const Font* opened(const std::string& file, int index) {
-        const auto [place, is_new] = by_file_.try_emplace({file, index});
-        if (is_new) {
-            try {
-                place->second = Font::from_file(file, index);
-            } catch (const Error&) {  // a type of font that Doppel does not read; the next may be readable
-            }
-        }
-        return place->second.get();
+const Font* find_font(char32_t letter) {
+    static const Config config(FcInitLoadConfigAndFonts());
+    if (!config) return nullptr;
+    const auto fonts = fonts_for(config.get(), letter);
+    for (int i = 0; fonts && i < fonts->nfont; ++i) {
+        FcPattern* const found = fonts->fonts[i];
+        FcCharSet* letters = nullptr;
+        FcChar8* file = nullptr;
+        int index = 0;
+        if (FcPatternGetCharSet(found, FC_CHARSET, 0, &letters) != FcResultMatch ||
+            FcCharSetHasChar(letters, letter) == FcFalse ||
+            FcPatternGetString(found, FC_FILE, 0, &file) != FcResultMatch)
+            continue;
+        FcPatternGetInteger(found, FC_INDEX, 0, &index);
+        // the upper 16 bits number an instance of a variable font; the default instance is used
+        const auto* font = opened(reinterpret_cast<const char*>(file), index & 0xffff);
+        if (font && font->number_of(letter) != 0) return font;
     }
-
-    std::mutex mutex_;
-    Config config_;
-    std::map<char32_t, const Font*> by_letter_;
-    std::map<std::pair<std::string, int>, std::shared_ptr<const Font>> by_file_;
-};
+    return nullptr;
+}
 
 }  // namespace
 
 const Font* system_font_for(char32_t character) {
-    static SystemFonts fonts;
-    return fonts.font_for(character);
+    static std::mutex mutex;
+    static std::map<char32_t, const Font*> fonts;
+    const std::lock_guard lock(mutex);
+    const auto [place, is_new] = fonts.try_emplace(character, nullptr);
+    if (is_new) place->second = find_font(character);
+    return place->second;
 }
 
 }  // namespace doppel
