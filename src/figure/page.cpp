@@ -59,7 +59,7 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
     const auto page = compose_chart(figure.chart, drawn, theme);
     const auto [width, height] =
         std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
-    HtmlPage whole;
+    HtmlPage whole{.kind = "figure"};
     auto keys = Json::array();
     if (auto releases = figure.experiment->releases()) {
         constexpr Rational longest_s{60, 1};
