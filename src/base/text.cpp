@@ -94,12 +94,6 @@ std::string markup(std::string_view text) {
     });
 }
 
-std::string in_script(std::string json) {
-    // in JSON, '<' occurs only inside strings
-    for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
-    return json;
-}
-
 std::string in_address(std::string_view name) {
     std::string address;
     for (const char c : name) {

@@ -27,9 +27,6 @@ std::string on_one_line(std::string_view text);
 /// The text escaped for XML 1.0 and HTML, between tags and in quotes: one line, without characters that XML forbids.
 std::string markup(std::string_view text);
 
-/// JSON escaped for a script in a page: it contains no '<' that could begin a tag or a comment.
-std::string in_script(std::string json);
-
 /// A name escaped as a part of a URL (RFC 3986): every byte except letters, digits and -._~ becomes %XX.
 std::string in_address(std::string_view name);
 

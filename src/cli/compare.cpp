@@ -304,14 +304,12 @@ void check_arguments(const CompareOptions& options) {
     if (options.actual.empty() == options.render.empty())
         throw bad_input("compare needs EXPECTED and ACTUAL, or --render PRESET and EXPECTED");
     std::error_code fault;
-    // the golden of a drawn picture may have variants alone
-    const bool may_be_missing =
-        options.update || (!options.render.empty() && fs::path(options.expected).extension() == ".png");
+    const bool is_drawn = !options.render.empty();  // then goldens may be missing
     for (const auto& path : {options.expected, options.actual})
-        if (!fs::exists(path, fault) && (fault || (!path.empty() && !may_be_missing)))
+        if (!fs::exists(path, fault) && (fault || !is_drawn))
             throw fault ? cannot(path, "read", fault.value()) : bad_input("{}: there is no such file or folder", path);
     const bool folders = fs::is_directory(options.expected, fault);
-    if (options.render.empty() && folders != fs::is_directory(options.actual, fault))
+    if (!is_drawn && folders != fs::is_directory(options.actual, fault))
         throw bad_input("{} is a folder and {} is none; compare takes two pictures or two folders",
                         folders ? options.expected : options.actual, folders ? options.actual : options.expected);
 }

@@ -190,7 +190,7 @@ TEST_F(CompareRender, RefusesWhatMakesNoSense) {
              {{"compare", "--render", "fig6", "golden", "--at", "1"}, "--at and --frames are for films; fig6 is a"},
              {{"compare", "--render", "calm", "golden", "--at", "1000"}, "--at 1000: calm ends at"},
              {{"compare", "--render", "calm", "golden", "--frames", "0:99999"}, "--frames 0:99999: calm has the"},
-             {{"compare", "--render", "calm", "none"}, "none: there is no such file or folder"},
+             {{"compare", "--render", "calm", "none"}, "none: there is no golden frame such as 000000.png"},
              {{"compare", "--render", "calm", "golden/000000.png"},
               "golden/000000.png is a picture; give its time with"}}) {
         const auto refused = run(arguments);
