@@ -106,9 +106,10 @@ std::vector<MotionSpec> settings_of(const WorkProblem& problem, const Solver& so
         all.push_back(at_setting(problem, solver, steps, tolerance));
     };
     constexpr int finest = 30;
-    for (int k = 2; adaptive && k <= finest; ++k)
-        add(0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2)));
-    if (adaptive) return all;
+    if (adaptive) {
+        for (int k = 2; k <= finest; ++k) add(0, parse_quad(fmt::format("{}e-{}", k % 2 == 0 ? "1" : "0.316", k / 2)));
+        return all;
+    }
     const double kao_steps = problem.duration() / kao_step;
     for (int k = static_cast<int>(2 * std::log2(problem.natural_time / kao_step));; --k) {
         const double factor = std::ldexp(k % 2 == 0 ? 1 : std::numbers::sqrt2, -((k + (k % 2 != 0)) / 2));

@@ -4,6 +4,11 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace doppel {
 
@@ -66,15 +71,15 @@ struct StepStudySpec {
 
 /// The motion of a problem at the settings of a solver, from coarse to fine: step sizes of 2^(k/2)/30000 s, from the
 /// problem's natural time down to `max_steps` in the whole motion, or tolerances of 10^(−k/2) rounded to three digits,
-/// from 0.1 to the limit of double, with 0 steps.
+/// from 0.1 to the limit of double, with 0 steps. `adaptive` = whether the setting is a tolerance.
 std::vector<MotionSpec> settings_of(const WorkProblem& problem, const Solver& solver, bool adaptive, long max_steps);
 /// The step size, s, or the tolerance.
 double setting_of(const MotionSpec& motion);
 
 /// Runs the settings until the errors reach the floor or fall below `min_error`, or the next setting would take too
-/// many evaluations; never until a time. A failed setting has no numbers. CPU times are those of the thread for the
-/// whole motion, without set-up, after a run that warms the caches; short runs are repeated. Throws Error (exit 130)
-/// soon after `stop` is set.
+/// many evaluations; the time taken never ends them. A failed setting has no numbers. CPU times are those of the thread
+/// for the whole motion, without set-up, after a run that warms the caches; short runs are repeated. `make` returns the
+/// motion of a setting; `spec.watched` needs Doppel's. Throws Error (exit 130) soon after `stop` is set.
 std::vector<StepResult> run_settings(
     const WorkProblem& problem, const Reference& reference, std::span<const MotionSpec> settings,
     const StepStudySpec& spec, const std::atomic<bool>& stop,

@@ -330,8 +330,8 @@ void print(const FigureCheck& check) {
     constexpr double cm_per_pt = 2.54 / 72;
     print_line("{}: {}", figure.name, figure.title);
     const auto trials = static_cast<long>(figure.experiment->trials());
-    print_line("  kind   {}: {} {} in {} trial{}", figure.kind, grouped(std::lround(units)), figure.experiment->unit(),
-               grouped(trials), trials == 1 ? "" : "s");
+    print_line("  kind   {}: {} trial{}; {}: {}", figure.kind, grouped(trials), trials == 1 ? "" : "s",
+               figure.experiment->unit(), grouped(std::lround(units)));
     const auto format = name_of(figure.chart.format);
     if (figure.chart.width_cm || figure.chart.format != PictureFormat::png)
         print_line("  chart  {:.3g}×{:.3g} cm, {}, {}", cm_per_pt * layout.width_pt,

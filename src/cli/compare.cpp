@@ -158,7 +158,8 @@ void compare_pair(ComparedPicture& pair, const Task& task) {
     const bool same_size = expected.size == actual.size;
     if (same_size || task.is_drawn) write_difference(pair, same_size ? &expected : nullptr, actual, task);
     if (pair.match == Match::missing) {
-        pair.message = fmt::format("{}: missing; drawn now: {}", golden.string(), pair.actual.string());
+        pair.message = fmt::format("{}: missing; drawn now: {}; --update makes it the golden", golden.string(),
+                                   pair.actual.string());
         return;
     }
     const auto count = pair.goldens.size();

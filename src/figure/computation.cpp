@@ -117,11 +117,10 @@ Error Computation::with_record(const Error& error) {
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
     const std::lock_guard lock(mutex_);
+    double units = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         known_[group.first + i] = std::move(numbers[i]);
-        const double units = figure_.experiment->units(group.first + i);
-        computed_units_ += units;
-        done_units_ += units;
+        units += figure_.experiment->units(group.first + i);
     }
     cpu_s_ += cpu_s;
     ++groups_done_;
@@ -138,6 +137,8 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
             flushed_s_ = time;
         }
     }
+    computed_units_ += units;
+    done_units_ += units;
     if (groups_done_ == groups_ahead && groups_.size() >= many_groups) report_estimate(time);
     report_.progress({done_units_, total_units_});
     return is_last;

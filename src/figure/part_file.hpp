@@ -69,8 +69,8 @@ private:
 };
 
 /// Merges the results of a figure's shards in `folder`. Each must exist once, complete and of this figure. Throws
-/// Error: exit 75 if shards are missing, exit 2 for duplicates or shards of other figures, exit 4 if one is unreadable or
-/// damaged, exit 130 soon after `stop` is set.
+/// Error: exit 75 if shards are missing, exit 2 for duplicates or shards of other figures, exit 4 if one is unreadable
+/// or damaged, exit 130 soon after `stop` is set.
 KnownTrials merged_parts(const FigurePreset& figure, const std::filesystem::path& folder,
                          const std::atomic<bool>& stop);
 

@@ -123,15 +123,15 @@ std::optional<PairBatchSpec> lanes_of(const Scene& scene) {
     return PairBatchSpec{a, b, scene.samples};
 }
 
-/// A quantity computed from the distances, or the changes of energy, at all samples in order.
+/// A quantity computed from the distances of a pair, or from the changes of its energy, J, at all samples in order.
 class Watch {
 public:
     explicit Watch(Quantity quantity) : quantity_(quantity) {}
-    void add(double time, double distance) {
-        last_ = distance;
-        if (!(distance <= largest_)) largest_ = distance;  // keeps NaN
-        if (quantity_ == Quantity::divergence) mean_.add(distance);
-        if (quantity_ == Quantity::parting_time) divergence_.add(time, distance);
+    void add(double time, double value) {
+        last_ = value;
+        if (!(value <= largest_)) largest_ = value;  // keeps NaN
+        if (quantity_ == Quantity::divergence) mean_.add(value);
+        if (quantity_ == Quantity::parting_time) divergence_.add(time, value);
     }
     double greatest() const { return largest_; }
     double value() const {

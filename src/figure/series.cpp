@@ -1,6 +1,5 @@
 #include "figure/series.hpp"
 
-#include "analysis/difference.hpp"
 #include "base/error.hpp"
 #include "film/pair_table.hpp"
 #include "scene/captions.hpp"
@@ -85,11 +84,12 @@ public:
             const auto scene = make_scene(curve.pair);  // reports errors now
             samples_ = scene.samples;
             auto known = columns_of(scene);
+            known.erase(known.begin(), known.begin() + 2);  // sample and time
             known.insert(known.end(), certified_columns.begin(), certified_columns.end());
             if (is_certified(*curve.film_column)) check_provable(scene);
             if (std::ranges::count(known, *curve.film_column) == 0)
-                throw table.error("film_column", "must be one of {}; it is \"{}\"",
-                                  fmt::join(known.begin() + 2, known.end(), ", "), *curve.film_column);
+                throw table.error("film_column", "must be one of {}; it is \"{}\"", fmt::join(known, ", "),
+                                  *curve.film_column);
             differ |= !is_of_both(*curve.film_column) || !are_one(scene);
             if (curve.film_column == "log_ratio" && have_same_release(curve.pair.a, curve.pair.b))
                 throw table.error("quantity",

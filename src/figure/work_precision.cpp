@@ -154,7 +154,7 @@ public:
                                   has_angles() ? " rad" : ""));
         figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
                                                           [](const Plot& plot) { return !plot.rules.empty(); })));
-        if (cost == Cost::time) figure.captions.push_back(timing_caption(all));
+        if (cost == Cost::time) figure.captions.push_back(timing_caption(all, repeats));
     }
 
     std::string subtitle() const override { return problems.subtitle; }
@@ -242,14 +242,6 @@ private:
                            floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 
-    std::string timing_caption(const Studies& studies) const {
-        const auto [typical, worst] = time_spread(studies);
-        return fmt::format(
-            "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
-            "± {:.0f} %, shown as bars.",
-            repeats, 100 * typical, 100 * worst);
-    }
-
     inline static const Field cost_field{.key = "cost", .help = "the cost axis"};
     inline static const Field names_field{.key = "names", .help = "which curves are labelled: the five best, or all"};
     std::optional<std::string> scene_;
@@ -264,6 +256,14 @@ private:
 };
 
 }  // namespace
+
+std::string timing_caption(const WorkComparison::Studies& studies, int repeats) {
+    const auto [typical, worst] = time_spread(studies);
+    return fmt::format(
+        "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
+        "± {:.0f} %, shown as bars.",
+        repeats, 100 * typical, 100 * worst);
+}
 
 const FigureKind work_precision_kind = kind_of<WorkPrecision>("work-precision", FigureKind::System::none);
 

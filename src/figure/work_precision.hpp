@@ -26,7 +26,8 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
 std::span<const std::string_view> standard_problem_names();
 WorkProblems problem_of(Preset film);
 
-/// What a work-precision figure compares, and its results.
+/// What a work-precision figure compares, and its results: the interface for a chart that adds methods of other
+/// libraries (tests/bench/peers/library_chart.cpp).
 struct WorkComparison {
     using Studies = std::vector<std::vector<StepStudy>>;  // for each problem
 
@@ -37,10 +38,14 @@ struct WorkComparison {
     double min_error = 1e-16;
 
     virtual ~WorkComparison() = default;
-    /// The reference of a problem; computed on first use, by any thread.
+    /// The reference of a problem; computed on first use, by any thread. Throws Error (exit 130) soon after `stop` is set.
     virtual const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const = 0;
+    /// The step-size studies of each problem, with the medians of repeated times. `numbers` = those of all trials.
     virtual Studies merged_studies(std::span<const TrialNumbers> numbers) const = 0;
 };
+
+/// What a caption says of measured times: their number, median and largest spread.
+std::string timing_caption(const WorkComparison::Studies& studies, int repeats);
 
 /// Errors, rad, for which the cheapest method is named.
 inline constexpr std::array accuracies{1e-3, 1e-6, 1e-9, 1e-12};

@@ -152,7 +152,8 @@ SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bo
 }
 
 Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
-    // up to the middle of the film, where trails are long and members of an ensemble are apart, if that is soon there
+    // measured after the first half of the motion, where trails are long and ensembles have diverged, or after as much as
+    // is simulated in `begin_s`
     constexpr double begin_s = 0.6, patience_s = 1;
     const auto samples = static_cast<double>(scene.samples);
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -64,7 +64,7 @@ std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<Fi
                                         const FrameRange& shown) {
     const auto schedule = schedule_of(scene);
     std::map<long, std::string> chapters;
-    if (schedule.title > 0 && shown.contains(0)) chapters[0] = scene.preset.title;
+    if (schedule.title > 0 || shown.first > 0) chapters[0] = scene.preset.title;
     for (const auto& event : events) {
         const long frame = film_frame(scene, schedule, event.time_s) - shown.first;
         if (!shown.contains(shown.first + frame)) continue;
@@ -72,7 +72,6 @@ std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<Fi
             !chapters.empty() && static_cast<double>(frame - chapters.rbegin()->first) < scene.fps.value();
         if (event.event != "flip" || !is_near) chapters[frame] = event.chapter;
     }
-    if (!chapters.empty()) chapters.emplace(0, scene.preset.title);
     return chapters;
 }
 

@@ -38,8 +38,8 @@ private:
 /// Release, flips, divergence and changes of speed, in order of time.
 std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome);
 
-/// For the manifest. Of a film only those that its frames `shown`, counted in the whole film, show, with their times in
-/// it, s.
+/// For the manifest. `shown` = the frames of the film, counted in the whole film: then only the events in them, with
+/// their times in this film, s; nothing: there is no film.
 Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown);
 
 /// The titles of a film's chapters, by their first frames, counted from the first one shown: its events, but flips only

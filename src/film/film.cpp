@@ -126,7 +126,9 @@ void Film::begin_video() {
         video.first_frame = drawn_.first;
     }
     video.is_stream = options_.to_stream;
-    if (video.is_stream) video.metadata = metadata_of(scene_.preset.title, scene_.preset.name, "a stream");
+    if (video.is_stream)
+        video.metadata =
+            metadata_of(scene_.preset.title, scene_.preset.name, "written as a stream, without a manifest");
     if (options_.is_partial()) video.frames = 0;
     sink_ = make_video_sink(video.is_stream ? "-" : parts_.file(film_name_), video, stop_);
     record_.libav = libav_description();

@@ -40,10 +40,12 @@ struct Numbers {
     std::vector<double> curves;  // of all strips, then of a phase panel
 };
 
-Numbers numbers_of(const Scene& scene, const Snapshot& snapshot, double start_distance, bool computes) {
+/// `computes` = whether the script computes the motion: then places are left out.
+Numbers page_numbers(const Scene& scene, const Snapshot& snapshot, double start_distance, bool computes) {
     const auto& pair = snapshot.pair;
     const auto& video = scene.preset.video;
-    auto [places, curves] = Numbers{};
+    Numbers numbers;
+    auto& [places, curves] = numbers;
     const auto pendulums = computes ? std::vector<ShownPendulum>() : shown_pendulums(scene);
     for (std::size_t k = 0; k < pendulums.size(); ++k) {
         const auto& side = pendulums[k].side;
@@ -64,7 +66,7 @@ Numbers numbers_of(const Scene& scene, const Snapshot& snapshot, double start_di
         const auto& bob = seen->bobs[static_cast<std::size_t>(video.phase_link - 1)];
         curves.insert(curves.end(), {bob.theta, bob.omega, seen->bobs[0].theta});
     }
-    return {places, curves};
+    return numbers;
 }
 
 /// The player with the data of a film.
@@ -91,7 +93,7 @@ FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& 
 void FilmPage::add(const Snapshot& snapshot) {
     if (snapshot.pair.share > 0) return;
     if (snapshot.pair.sample == 0) start_distance_ = snapshot.pair.distance;
-    const auto now = numbers_of(scene_, snapshot, start_distance_, computes_);
+    const auto now = page_numbers(scene_, snapshot, start_distance_, computes_);
     for (auto [channels, numbers] : {std::pair(&places_, &now.places), {&curves_, &now.curves}}) {
         channels->resize(numbers->size());
         for (std::size_t i = 0; i < numbers->size(); ++i) (*channels)[i].push_back(static_cast<float>((*numbers)[i]));
@@ -156,7 +158,7 @@ std::optional<HtmlPage> film_player(Scene scene) {
 
 double estimated_page_bytes(const Scene& scene) {
     constexpr double script = 33e3, place = 1.3 / 16, number = 4;  // bytes; per bit of a place, measured: 0.05 to 0.13
-    const auto one = numbers_of(scene, blank_snapshot(scene), 0, page_computes(scene));
+    const auto one = page_numbers(scene, blank_snapshot(scene), 0, page_computes(scene));
     const double per_sample = place * scene.preset.video.position_bits * static_cast<double>(one.places.size()) +
                               number * static_cast<double>(one.curves.size());
     return script + static_cast<double>(scene.samples) * per_sample;

@@ -46,8 +46,8 @@ struct PictureJson {
     }
 };
 
-/// A strip: its axes, the position of its value if it has one, and colours and widths of curves. Adds its constant items
-/// to `backdrop`.
+/// A strip: its axes, the position of its value if it has one, and colours and widths of curves. Adds its constant
+/// items to `backdrop`.
 Json strip_json(const FilmState& state, std::size_t index, const PictureJson& json_of, DisplayList& backdrop) {
     const auto& strip = state.layout.strips[index];
     const double start_distance = state.snapshot.pair.distance;

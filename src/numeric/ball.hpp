@@ -21,6 +21,7 @@ using Wide = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<256, boost::multiprecision::digit_base_2, void, int>,
     boost::multiprecision::et_off>;
 
+/// 2^−power, exact for 0 ≤ power ≤ 1074.
 constexpr double half_to_the(int power) {
     return power == 0 ? 1 : half_to_the(power - 1) / 2;
 }

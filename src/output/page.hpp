@@ -16,7 +16,7 @@ struct HtmlPage {
     std::vector<std::string_view> styles;   // CSS of this kind of page
     std::vector<std::string_view> scripts;  // JavaScript, run in this order; empty ones are omitted
     nlohmann::ordered_json data = nullptr;  // pageData of the scripts, with the helpers that pages share; null: none.
-                                            // Data and scripts are compressed; the browser unpacks them
+                                            // with data, both are compressed, and the browser unpacks them
     bool has_pictures_beside = false;       // reads files in folders beside it; otherwise all pictures are data URLs
 };
 

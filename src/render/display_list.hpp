@@ -74,7 +74,7 @@ struct Stroke {
         float glow = 1;   // factor of Stroke::glow
         float bend =
             0;  // of the parabola to the next vertex: px right of the chord at its middle, at most 1/16 of its length
-        bool joint = false;  // next_piece() ends here
+        bool joint = false;  // simplification keeps it; two at one place change opacity and width at once
     };
     std::vector<Vertex> vertices;
     float width = 1;  // px

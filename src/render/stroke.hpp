@@ -35,9 +35,9 @@ struct StrokePiece {
     float bend = 0;
 };
 
-/// The longest piece from vertex `first`, of at most 24 vertices and up to the next joint, that fits the
-/// vertices in between. Tolerances: position and edges 1/10 px (1/5 px half way between vertices), glow 1/2 px, opacity
-/// 1/255. Widths and glow are in px.
+/// The longest piece from vertex `first`, of at most 24 vertices and up to the next joint, that fits the vertices in
+/// between. Tolerances: position and edges 1/10 px (1/5 px half way between vertices), glow 1/2 px, opacity 1/255.
+/// Widths and glow are in px.
 StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t first);
 
 /// The simplified curve of a quantity over time: points within 1/5 px of the line through the kept points are left out.

@@ -38,7 +38,7 @@ Fonts fonts_for(FcConfig* config, char32_t letter) {
 
 // What was found is kept for the rest of the process.
 
-/// Null if it is no font with outlines.
+/// Null if it is no font with outlines. One thread at a time: system_font_for() has locked.
 const Font* opened(const std::string& file, int index) {
     static std::map<std::pair<std::string, int>, std::shared_ptr<const Font>> fonts;
     const auto [place, is_new] = fonts.try_emplace({file, index});

@@ -23,7 +23,7 @@ struct Interval {
 /// Enclosures of the true motion at samples 0, 1 … as far as all sides are proved, and what follows for their runs.
 struct Certificate {
     struct Row {
-        // of each side θ1, θ2 (rad), ω1, ω2 (rad/s); of two sides also their distance (analysis/difference.hpp), the last
+        // of each side θ1, θ2 (rad), ω1, ω2 (rad/s); last, of two sides, their distance (analysis/difference.hpp)
         std::vector<Interval> bounds{};
         double radius = 0;  // the largest of all angles, rad
     };

@@ -23,12 +23,11 @@ inline constexpr std::string_view must_be_given = "must be given";
 /// A key with all properties from its list of fields. `names` are also those of an enumeration, and known values. In
 /// "widest" tables its bounds are the widest ones.
 struct ListedField : Field {
-    std::size_t member_type;             // index in KeyMember
+    std::size_t member_type;             // index in KeyMember; for the schema (tests/figure)
     ValueType type;                      // in words
     std::string default_value;           // TOML; empty if there is none, or only a description
     std::string_view described_default;  // the description then
 
-    bool is_needed() const { return described_default == must_be_given; }
     /// The range of a number: "> 0", "0 (none) to 100"; empty if there is none.
     std::string range_text() const;
     /// Type and range in words, Markdown.

@@ -312,7 +312,8 @@ bool corners_inside(const EnclosureCount& counted, double radius, double start =
     return true;
 }
 
-/// Whether the motion from doubles, which are no interval, stays inside. The enclosure takes `coefficient` times gravity.
+/// Whether the motion from doubles, which are no interval, stays inside. The enclosure takes `coefficient` times
+/// gravity.
 bool exact_start_inside(const EnclosureCount& counted, double tolerance, double coefficient = 1) {
     EnclosureSpec spec;
     spec.counted = counted;

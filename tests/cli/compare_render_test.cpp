@@ -167,7 +167,7 @@ TEST_F(CompareRender, ComparesStillsAndFigures) {
         const auto missing = run(with(command, {"kept", "--junit", "missing.xml"}));
         EXPECT_EQ(missing.code, 1) << missing.err;
         const auto drawn = fmt::format("out/{}/compare/{}.actual.png", command[2], fs::path(name).stem().string());
-        EXPECT_EQ(missing.out, fmt::format("{}: missing; drawn now: {}\n", file, drawn));
+        EXPECT_EQ(missing.out, fmt::format("{}: missing; drawn now: {}; --update makes it the golden\n", file, drawn));
         EXPECT_TRUE(fs::exists(folder_ / drawn) && fs::exists(folder_ / "missing.xml"));
         EXPECT_EQ(run(with(command, {"kept/other.png"})).code, 0);
         fs::rename(folder_ / "kept/other.png", folder_ / "kept/other.egl.png");

@@ -60,7 +60,7 @@ TEST(FigureProgram, IsChecked) {
     const auto folder = fresh_folder();
     const auto check = doppel(folder, with({"check", "fig2-right"}, {"--set", "grid.x.to=9"}));
     EXPECT_EQ(check.code, 0) << check.err;
-    EXPECT_TRUE(contains(check.out, "10 pairs")) << check.out;
+    EXPECT_TRUE(contains(check.out, "pairs: 10")) << check.out;
     // On a slow machine one row of exponents takes longer than the second allowed for the estimate: a lower bound.
     const auto map = doppel(folder, {"check", "parting-map", "--set", "grid.quantity=exponent"});
     EXPECT_TRUE(contains(map.out, "takes  about ") || contains(map.out, "takes  more than ")) << map.out << map.err;

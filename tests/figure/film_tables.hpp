@@ -14,6 +14,11 @@ inline constexpr std::string_view torque_table = "[[system.torque]]";
 /// constraints and forces; torques; further keys of [a] and [b]; [video].
 std::vector<FieldTable> film_tables();
 
+/// Whether a preset must give the key.
+inline bool is_needed(const ListedField& field) {
+    return field.described_default == must_be_given;
+}
+
 /// The default of a key, or its description, Markdown.
 std::string default_of(const ListedField& field);
 

@@ -51,7 +51,7 @@ Json ratio_within(Bounds bounds) {
 Json text_schema(const ListedField& field) {
     Json schema{{"type", "string"}};
     if (!field.names.empty()) schema["enum"] = field.names;
-    if (field.is_needed()) schema["minLength"] = 1;
+    if (is_needed(field)) schema["minLength"] = 1;
     if (field.is_drawn) schema["maxLength"] = max_letters;
     if (!field.pattern.empty()) schema["pattern"] = field.pattern;
     return schema;
@@ -140,7 +140,7 @@ std::string description_of(const ListedField& field) {
     auto text = fmt::format("{}.", field.help);
     if (!field.unit.empty()) text += fmt::format(" Unit: {}.", field.unit);
     if (const auto range = field.range_text(); !range.empty()) text += fmt::format(" Range: {}.", range);
-    return text + (field.is_needed() ? " Must be given." : fmt::format(" Default: {}.", default_of(field)));
+    return text + (is_needed(field) ? " Must be given." : fmt::format(" Default: {}.", default_of(field)));
 }
 
 Json key_schema(const ListedField& field) {
@@ -165,7 +165,7 @@ Json reference(std::string_view definition) {
 Json needed_keys(const FieldTable& table) {
     Json keys = Json::array();
     for (const auto& field : table.fields)
-        if (field.is_needed()) keys.push_back(field.key);
+        if (is_needed(field)) keys.push_back(field.key);
     return keys;
 }
 

@@ -241,6 +241,11 @@ TEST(Events, OfAPartOfAFilmAreThoseThatItShows) {
         EXPECT_EQ(video.chapters[0], std::pair(0.0, scene.preset.title));
         EXPECT_NEAR(video.chapters[1].first, 1.73, 1.0 / 12);
     }
+    // 0.23 s after the start of a part, a flip has no chapter
+    const auto scene = film();
+    for (const auto& [frame, title] :
+         chapters_of(scene, film_events(scene, {{10.73, "flip", "A: link 2 flips"}}, {}), {126, 144}))
+        EXPECT_EQ(std::pair(frame, title), std::pair(0L, scene.preset.title));
 }
 
 }  // namespace parts_test

@@ -1,9 +1,11 @@
 #include "library_chart.hpp"
 
+#include "base/error.hpp"
 #include "figure/work_precision.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace doppel {
@@ -74,6 +76,7 @@ public:
             "Doppel’s.",
             are_all ? "all methods" : "the five best methods",
             are_all ? "" : " (by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹² rad)");
+        if (measures_time()) figure.captions.back() = timing_caption(together(ours, theirs), compared_.repeats);
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
@@ -94,10 +97,18 @@ public:
                 if (found.contains(key + "cost"))
                     found[key + "peer_ratio"] = best.cost / found[key + "cost"].get<double>();
             }
+        if (measures_time())
+            std::tie(found["spread_typical"], found["spread_worst"]) =
+                time_spread(together(compared_.merged_studies(own(numbers)), theirs));
         return found;
     }
 
 private:
+    static WorkComparison::Studies together(WorkComparison::Studies all, const WorkComparison::Studies& more) {
+        for (std::size_t p = 0; p < all.size(); ++p) all[p].insert(all[p].end(), more[p].begin(), more[p].end());
+        return all;
+    }
+
     /// Where a trial belongs: to the figure of Doppel's methods, or to a study of another library's.
     struct Place {
         bool is_own;
@@ -188,6 +199,8 @@ private:
 FigurePreset library_chart(const PresetText& source, const std::vector<Override>& overrides,
                            std::vector<ExternalMethod> methods) {
     auto figure = read_figure(source, overrides);
+    if (figure.kind != "work-precision")
+        throw bad_input("{}: kind must be \"work-precision\"; it is \"{}\"", source.path, figure.kind);
     figure.experiment = std::make_shared<LibraryChart>(figure.experiment, std::move(methods));
     return figure;
 }
