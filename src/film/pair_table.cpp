@@ -104,19 +104,15 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
     return all;
 }
 
-void PairTable::add(const Snapshot& snapshot, double start_distance) {
-    visit_row(scene_, snapshot, start_distance, [&](const std::string&, const char*, std::size_t, const auto& value) {
+void add_row(Csv& table, const Scene& scene, const Snapshot& snapshot, double start_distance) {
+    visit_row(scene, snapshot, start_distance, [&](const std::string&, const char*, std::size_t, const auto& value) {
         if constexpr (std::is_same_v<decltype(value), const Quad&>)
-            add_exact(value);
+            std::isfinite(static_cast<double>(value)) ? table.add(text_of(value))
+                                                      : table.add(static_cast<double>(value));
         else
-            csv_.add(value);
+            table.add(value);
     });
-    csv_.end_row();
-}
-
-void PairTable::add_exact(const Quad& value) {
-    if (const auto near = static_cast<double>(value); !std::isfinite(near)) return csv_.add(near);
-    csv_.add(text_of(value));
+    table.end_row();
 }
 
 }  // namespace doppel

@@ -42,7 +42,7 @@ Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, 
         with_pictures && (is_bounded || scene.preset.video.contact_sheet) && recorded_bytes(scene, end) <= max_bytes;
     if (!is_bounded && !is_kept_) return;
     try {
-        simulate(is_bounded ? scene.samples : no_bounds, [&](const Snapshot& snapshot) {
+        simulate(is_bounded, [&](const Snapshot& snapshot) {
             if (is_kept_) kept_.push_back(snapshot);
         });
     } catch (const Error& error) {
@@ -62,61 +62,48 @@ double recorded_bytes(const Scene& scene, const Moment& end) {
 }
 
 void Recording::play(const Visit& visit) {
-    if (!is_kept_) return simulate(no_bounds, visit);
+    if (!is_kept_) return simulate(false, visit);
     for (const auto& snapshot : kept_) visit(snapshot);
     if (error_) std::rethrow_exception(error_);
 }
 
-/// The snapshots in order, simulated or from a file.
-class Recording::Source {
-public:
-    Source(const Recording& of, bool with_members) : stop_(of.stop_) {
-        if (of.file_.empty())
-            pair_.emplace(of.scene_);
-        else
-            file_.emplace(of.file_, of.scene_);
-        if (with_members && pair_) members_.emplace(of.scene_.members, 1);
-    }
-
-    Snapshot at(const Moment& moment, MotionRecord& record) {
-        throw_if_set(stop_);
-        if (file_) return file_->at(moment, record);
-        const bool is_sample = moment.share == 0;
-        Snapshot snapshot{is_sample ? pair_->next(stop_) : pair_->advance_to(moment, stop_), {}};
-        record.a.effort = pair_->effort_a();
-        record.b.effort = pair_->effort_b();
-        if (!members_) return snapshot;
-        if (!is_sample)
-            members_->advance_within(moment.share, stop_);
-        else if (moment.sample > 0)
-            members_->advance(stop_);
-        for (std::size_t k = 0; k < members_->size(); ++k) snapshot.members.push_back(members_->bobs(k));
-        return snapshot;
-    }
-
-    /// CPU time of this thread and of those of the simulation.
-    double spent_s() const { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + (pair_ ? pair_->other_cpu_s() : 0); }
-
-private:
-    const std::atomic<bool>& stop_;
-    std::optional<RecordingReader> file_;
-    std::optional<PairRun> pair_;
-    std::optional<MotionBatch> members_;
-};
-
-/// Simulates the required snapshots; then on to sample `last`, only for the bounds.
-void Recording::simulate(long last, const Visit& visit) {
-    const bool is_bounded = last != no_bounds;
+/// Simulates the required snapshots, or reads them from the file. With bounds of the whole motion, then goes on to its
+/// end.
+void Recording::simulate(bool is_bounded, const Visit& visit) {
     record_ = {};
+    std::optional<RecordingReader> file;
+    std::optional<PairRun> pair;
+    std::optional<MotionBatch> members;
+    if (file_.empty())
+        pair.emplace(scene_);
+    else
+        file.emplace(file_, scene_);
     const bool has_members = (with_pictures_ || scene_.preset.member_columns) && !scene_.members.empty();
-    Source source(*this, has_members && (is_kept_ || !is_bounded));
-    double begun = source.spent_s();
+    if (pair && has_members && (is_kept_ || !is_bounded)) members.emplace(scene_.members, 1);
+    const auto snapshot_at = [&](const Moment& moment, MotionRecord& record) {
+        throw_if_set(stop_);
+        if (file) return file->at(moment, record);
+        const bool is_sample = moment.share == 0;
+        Snapshot snapshot{is_sample ? pair->next(stop_) : pair->advance_to(moment, stop_), {}};
+        record.a.effort = pair->effort_a();
+        record.b.effort = pair->effort_b();
+        if (!members) return snapshot;
+        if (!is_sample)
+            members->advance_within(moment.share, stop_);
+        else if (moment.sample > 0)
+            members->advance(stop_);
+        for (std::size_t k = 0; k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
+        return snapshot;
+    };
+    // CPU time of this thread and of those of the simulation
+    const auto spent_s = [&] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + (pair ? pair->other_cpu_s() : 0); };
+    double begun = spent_s();
     const auto add_sample = [&](const PairState& state) {
         if (is_bounded) bounds_.add(scene_, state, record_.outcome.start_distance);
-        if (report_) report_({state.sample + 1, is_bounded ? last + 1 : end_.sample});
+        if (report_) report_({state.sample + 1, is_bounded ? scene_.samples + 1 : end_.sample});
     };
     const auto take = [&](const Moment& moment) {
-        const auto snapshot = source.at(moment, record_);
+        const auto snapshot = snapshot_at(moment, record_);
         const auto& state = snapshot.pair;
         check_distance(scene_, state);
         if (state.share == 0) {
@@ -125,9 +112,9 @@ void Recording::simulate(long last, const Visit& visit) {
             record_.outcome.add(scene_.time(state.sample), state);
             add_sample(state);
         }
-        cpu_s_ += source.spent_s() - begun;
+        cpu_s_ += spent_s() - begun;
         visit(snapshot);
-        begun = source.spent_s();
+        begun = spent_s();
     };
     const auto& frames = scene_.frames;
     long frame = 0;
@@ -140,10 +127,11 @@ void Recording::simulate(long last, const Visit& visit) {
     }
     MotionRecord beyond;
     try {
-        for (; sample.sample <= last; ++sample.sample) add_sample(source.at(sample, beyond).pair);
+        for (; is_bounded && sample.sample <= scene_.samples; ++sample.sample)
+            add_sample(snapshot_at(sample, beyond).pair);
     } catch (const RunFailure&) {  // the required part is complete
     }
-    cpu_s_ += source.spent_s() - begun;
+    cpu_s_ += spent_s() - begun;
 }
 
 }  // namespace doppel

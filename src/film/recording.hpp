@@ -91,9 +91,7 @@ public:
     double cpu_s() const { return cpu_s_; }
 
 private:
-    static constexpr long no_bounds = -1;
-    class Source;
-    void simulate(long last, const Visit& visit);
+    void simulate(bool is_bounded, const Visit& visit);
 
     const Scene& scene_;
     const Moment end_;

@@ -186,12 +186,12 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         film.emplace(scene, recording.bounds(), options, part.first, part.last, parts, record, stop);
     if (is_page && !recording.fails()) page.emplace(scene, recording.bounds(), parts);
     const auto csv_name = name + ".csv";
-    std::optional<PairTable> table;
+    std::optional<Csv> table;
     if (!options.is_part()) {
         record.first_sample = part.first_sample();
         record.last_sample = part.last_sample();
         record.samples = record.last_sample - record.first_sample + 1;
-        table.emplace(parts.file(csv_name), scene, options.columns);
+        table.emplace(parts.file(csv_name), columns_of(scene), columns_of(scene, options.columns));
     }
     FlipFinder flips(scene);
     long done = 0;
@@ -205,7 +205,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         if (page) page->add(snapshot);
         if (state.share == 0) flips.add(state);
         if (table && state.share == 0 && state.sample >= record.first_sample) {
-            table->add(snapshot, recording.record().outcome.start_distance);
+            add_row(*table, scene, snapshot, recording.record().outcome.start_distance);
             if (!is_film) report({++done, total});
         }
         if (film && film->add(snapshot)) report({table ? ++done : record.frames, total});
