@@ -1,10 +1,9 @@
 #include "render/render_list.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
+#include <functional>
 #include <span>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 
@@ -36,42 +35,12 @@ void add_outside(const Rect& rect, std::size_t from, std::vector<Rect>& disjoint
     disjoint.push_back(rect);
 }
 
+/// Of all bytes; there is no padding.
 struct PrimitiveHash {
     std::size_t operator()(const Primitive& q) const {
-        std::size_t hash = 0;
-        for (const float value :
-             {q.origin.x, q.origin.y, q.axis.x, q.half.x, q.half.y, q.shape[1], q.shape[2], q.shape[3]})
-            hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u;
-        return hash ^ hash >> 29;
+        return std::hash<std::string_view>()({reinterpret_cast<const char*>(&q), sizeof q});
     }
 };
-
-/// Calls visit(rect) for disjoint rectangles that cover the primitive: its bounds, or strips if it is long and slanted.
-template <class Visit>
-void for_each_band(const Primitive& primitive, const Visit& visit) {
-    const Rect& bounds = primitive.bounds;
-    const float across = std::abs(primitive.axis.x), down = std::abs(primitive.axis.y);
-    const int thick = 16 + 4 * static_cast<int>(std::min(primitive.half.y, 1000.f));
-    const int shorter = std::min(bounds.right - bounds.left, bounds.bottom - bounds.top);
-    if (shorter < 3 * thick || !(primitive.half.x > 2 * primitive.half.y) || std::min(across, down) < 0.05f)
-        return visit(bounds);
-    // cut along the axis closest to its direction; 0.05 px for rounding
-    const bool steep = down > across;
-    const float slope = steep ? primitive.axis.x / primitive.axis.y : primitive.axis.y / primitive.axis.x;
-    const float margin = primitive.half.y / std::max(across, down) + 0.05f;
-    const float middle = steep ? primitive.origin.x : primitive.origin.y,
-                start = steep ? primitive.origin.y : primitive.origin.x;
-    const int end = steep ? bounds.bottom : bounds.right;
-    for (int a = steep ? bounds.top : bounds.left; a < end; a += thick) {
-        const int b = std::min(a + thick, end);
-        const float at_a = middle + slope * (static_cast<float>(a) - start);
-        const float at_b = middle + slope * (static_cast<float>(b) - start);
-        const int low = static_cast<int>(std::floor(std::min(at_a, at_b) - margin));
-        const int high = static_cast<int>(std::ceil(std::max(at_a, at_b) + margin));
-        const Rect band = intersection(bounds, steep ? Rect{low, a, high, b} : Rect{a, low, b, high});
-        if (!band.empty()) visit(band);
-    }
-}
 
 using Primitives = std::span<const Primitive>;
 
@@ -79,16 +48,14 @@ using Primitives = std::span<const Primitive>;
 template <class Add>
 void compare_masks(Primitives olds, Primitives news, const Add& add) {
     // most of a path is usually unchanged
-    while (!olds.empty() && !news.empty() && olds.front() == news.front())
-        olds = olds.subspan(1), news = news.subspan(1);
-    while (!olds.empty() && !news.empty() && olds.back() == news.back())
-        olds = olds.first(olds.size() - 1), news = news.first(news.size() - 1);
+    const auto same = static_cast<std::size_t>(std::ranges::mismatch(olds, news).in1 - olds.begin());
+    olds = olds.subspan(same), news = news.subspan(same);
     using Set = std::unordered_set<Primitive, PrimitiveHash>;
     const Set old_set(olds.begin(), olds.end()), new_set(news.begin(), news.end());
     for (const auto& primitive : olds)
-        if (!new_set.contains(primitive)) for_each_band(primitive, add);
+        if (!new_set.contains(primitive)) add(primitive.bounds);
     for (const auto& primitive : news)
-        if (!old_set.contains(primitive)) for_each_band(primitive, add);
+        if (!old_set.contains(primitive)) add(primitive.bounds);
 }
 
 /// A few disjoint rectangles that cover all of `rects`. Rectangles are joined if that is cheaper to draw.
@@ -133,8 +100,8 @@ std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& afte
         for (std::size_t k = 0; k < std::max(olds.size(), news.size()); ++k) {
             const bool is_old = k < olds.size(), is_new = k < news.size();
             if (is_old && is_new && old.kind == now.kind && olds[k] == news[k]) continue;
-            if (is_old) for_each_band(olds[k], add);
-            if (is_new) for_each_band(news[k], add);
+            if (is_old) add(olds[k].bounds);
+            if (is_new) add(news[k].bounds);
         }
     }
     return merged(std::move(touched));
