@@ -3,8 +3,6 @@
 #define GL_GLEXT_PROTOTYPES  // only for the types of functions; no library is linked
 #include <GL/glcorearb.h>
 
-#include <functional>
-
 /// The OpenGL functions that Doppel calls, without the prefix "gl": X(name) for each.
 // clang-format off
 #define DOPPEL_GL_FUNCTIONS(X) \
@@ -43,8 +41,5 @@ struct Call<Result (*)(Arguments...), function> {
 #define X(name) inline constexpr Call<decltype(&::gl##name), &Functions::name> name;
 DOPPEL_GL_FUNCTIONS(X)
 #undef X
-
-/// Looks up each function with `find`. Throws Error if one is missing.
-Functions load(const std::function<Function(const char* name)>& find);
 
 }  // namespace doppel::gl

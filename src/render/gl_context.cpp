@@ -11,32 +11,26 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <utility>
 
-namespace doppel::gl {
+namespace doppel {
 
-constinit thread_local const Functions* current = nullptr;
+constinit thread_local const gl::Functions* gl::current = nullptr;
 
-Functions load(const std::function<Function(const char* name)>& find) {
+namespace {
+
+/// Looks up each function with `find`. Throws Error if one is missing.
+gl::Functions load(const std::function<gl::Function(const char* name)>& find) {
     const auto found = [&](const char* name) {
-        const Function function = find(name);
+        const auto function = find(name);
         if (!function) throw io_failed("its OpenGL has no {}", name);
         return function;
     };
-    Functions functions;
+    gl::Functions functions;
 #define X(name) functions.name = reinterpret_cast<decltype(functions.name)>(found("gl" #name));
     DOPPEL_GL_FUNCTIONS(X)
 #undef X
     return functions;
 }
-
-}  // namespace doppel::gl
-
-namespace doppel {
-namespace {
-
-constexpr std::array<std::pair<const char*, Gl>, 3> by_name{
-    {{"auto", Gl::automatic}, {"osmesa", Gl::osmesa}, {"egl", Gl::egl}}};
 
 constinit thread_local Context* current = nullptr;  // the context that is current in this thread
 
@@ -57,96 +51,72 @@ using Address = gl::Function (*)(const char* name);
 constexpr int format = 0x22, profile = 0x33, core_profile = 0x34, major_version = 0x36, minor_version = 0x37;
 }  // namespace osmesa
 
-class OsmesaContext final : public Context {
-public:
-    explicit OsmesaContext(const std::vector<std::string>& libraries) : library_(libraries) {
-        // clang-format off
-        const int attributes[] = {osmesa::format, GL_RGBA, osmesa::profile, osmesa::core_profile,
-                                  osmesa::major_version, 3, osmesa::minor_version, 3, 0};
-        // clang-format on
-        context_ = create_(attributes, nullptr);
-        if (!context_) throw io_failed("it gives no OpenGL 3.3 core context");
-    }
-    ~OsmesaContext() override {
-        retire();
-        destroy_(context_);
-    }
-    std::string library() const override { return "OSMesa"; }
-
-private:
-    void bind() override {
-        if (!make_current_(context_, window_.data(), GL_UNSIGNED_BYTE, 1, 1))
+std::unique_ptr<Context> osmesa_context(const std::vector<std::string>& names) {
+    const SharedLibrary library(names);
+    const osmesa::Create create = library["OSMesaCreateContextAttribs"];
+    const osmesa::MakeCurrent make_current = library["OSMesaMakeCurrent"];
+    const osmesa::Destroy destroy = library["OSMesaDestroyContext"];
+    const osmesa::Address find = library["OSMesaGetProcAddress"];
+    // clang-format off
+    const int attributes[] = {osmesa::format, GL_RGBA, osmesa::profile, osmesa::core_profile,
+                              osmesa::major_version, 3, osmesa::minor_version, 3, 0};
+    // clang-format on
+    const osmesa::Handle context = create(attributes, nullptr);
+    if (!context) throw io_failed("it gives no OpenGL 3.3 core context");
+    // one pixel, which OSMesa requires; drawing goes to framebuffer objects
+    const auto window = std::make_shared<std::array<unsigned char, 4>>();
+    const auto bind = [=] {
+        if (!make_current(context, window->data(), GL_UNSIGNED_BYTE, 1, 1))
             throw io_failed("it made an OpenGL context but cannot use it");
-    }
-    void release() override { make_current_(nullptr, nullptr, 0, 0, 0); }
-    gl::Function function(const char* name) const override { return address_(name); }
+    };
+    const auto release = [=] { make_current(nullptr, nullptr, 0, 0, 0); };
+    return std::make_unique<Context>(Context::Functions{"OSMesa", bind, release, [=] { destroy(context); }, find});
+}
 
-    const SharedLibrary library_;
-    osmesa::Create create_ = library_["OSMesaCreateContextAttribs"];
-    osmesa::MakeCurrent make_current_ = library_["OSMesaMakeCurrent"];
-    osmesa::Destroy destroy_ = library_["OSMesaDestroyContext"];
-    osmesa::Address address_ = library_["OSMesaGetProcAddress"];
-    osmesa::Handle context_ = nullptr;
-    std::array<unsigned char, 4> window_{};  // one pixel, which OSMesa requires; drawing goes to framebuffer objects
-};
-
-class EglContext final : public Context {
-public:
-    explicit EglContext(const std::vector<std::string>& libraries) : library_(libraries) {
-        // all contexts of the process share one display, so none of them may terminate it
-        display_ = platform_display_(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-        check(display_ != EGL_NO_DISPLAY, "has no Mesa, which draws without a display");
-        check(initialize_(display_, nullptr, nullptr), "finds no driver that draws without a display");
-        check(bind_api_(EGL_OPENGL_API), "has no OpenGL");
-        const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
-        EGLConfig config = nullptr;
-        EGLint configs = 0;
-        check(choose_config_(display_, wanted, &config, 1, &configs) && configs > 0, "has no OpenGL");
-        const EGLint attributes[] = {
-            EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-        context_ = create_(display_, config, EGL_NO_CONTEXT, attributes);
-        check(context_ != EGL_NO_CONTEXT, "gives no OpenGL 3.3 core context");
-    }
-    ~EglContext() override {
-        retire();
-        destroy_(display_, context_);
-    }
-    std::string library() const override { return "EGL"; }
-
-private:
-    void bind() override {
-        check(make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_),
+std::unique_ptr<Context> egl_context(const std::vector<std::string>& names) {
+    const SharedLibrary library(names);
+    const decltype(&eglGetPlatformDisplay) platform_display = library["eglGetPlatformDisplay"];
+    const decltype(&eglInitialize) initialize = library["eglInitialize"];
+    const decltype(&eglBindAPI) bind_api = library["eglBindAPI"];
+    const decltype(&eglChooseConfig) choose_config = library["eglChooseConfig"];
+    const decltype(&eglCreateContext) create = library["eglCreateContext"];
+    const decltype(&eglMakeCurrent) make_current = library["eglMakeCurrent"];
+    const decltype(&eglDestroyContext) destroy = library["eglDestroyContext"];
+    const decltype(&eglGetProcAddress) find = library["eglGetProcAddress"];
+    const decltype(&eglGetError) error = library["eglGetError"];
+    const auto check = [=](bool done, const char* otherwise) {
+        if (!done) throw io_failed("it {} (EGL error {:#x})", otherwise, error());
+    };
+    // all contexts of the process share one display, so none of them may terminate it
+    const EGLDisplay display = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    check(display != EGL_NO_DISPLAY, "has no Mesa, which draws without a display");
+    check(initialize(display, nullptr, nullptr), "finds no driver that draws without a display");
+    check(bind_api(EGL_OPENGL_API), "has no OpenGL");
+    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint configs = 0;
+    check(choose_config(display, wanted, &config, 1, &configs) && configs > 0, "has no OpenGL");
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLContext context = create(display, config, EGL_NO_CONTEXT, attributes);
+    check(context != EGL_NO_CONTEXT, "gives no OpenGL 3.3 core context");
+    const auto bind = [=] {
+        check(make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context),
               "made an OpenGL context but cannot use it without a surface");
-    }
-    void release() override { make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
-    gl::Function function(const char* name) const override { return address_(name); }
-
-    void check(bool done, const char* otherwise) const {
-        if (!done) throw io_failed("it {} (EGL error {:#x})", otherwise, error_());
-    }
-
-    const SharedLibrary library_;
-    decltype(&eglGetPlatformDisplay) platform_display_ = library_["eglGetPlatformDisplay"];
-    decltype(&eglInitialize) initialize_ = library_["eglInitialize"];
-    decltype(&eglBindAPI) bind_api_ = library_["eglBindAPI"];
-    decltype(&eglChooseConfig) choose_config_ = library_["eglChooseConfig"];
-    decltype(&eglCreateContext) create_ = library_["eglCreateContext"];
-    decltype(&eglMakeCurrent) make_current_ = library_["eglMakeCurrent"];
-    decltype(&eglDestroyContext) destroy_ = library_["eglDestroyContext"];
-    decltype(&eglGetProcAddress) address_ = library_["eglGetProcAddress"];
-    decltype(&eglGetError) error_ = library_["eglGetError"];
-    EGLDisplay display_ = EGL_NO_DISPLAY;
-    EGLContext context_ = EGL_NO_CONTEXT;
-};
+    };
+    const auto release = [=] { make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); };
+    return std::make_unique<Context>(
+        Context::Functions{"EGL", bind, release, [=] { destroy(display, context); }, find});
+}
 
 /// Makes a context of this library current. On failure returns null and adds the reason to `errors`. `packages` are
 /// Debian's.
-template <class LibraryContext>
-std::unique_ptr<Context> try_library(const char* library, const char* packages, const std::vector<std::string>& names,
-                                     std::string& errors) {
+std::unique_ptr<Context> try_library(const char* library, const char* packages,
+                                     std::unique_ptr<Context> (*make)(const std::vector<std::string>&),
+                                     const std::vector<std::string>& names, std::string& errors) {
     try {
-        std::unique_ptr<Context> context = std::make_unique<LibraryContext>(names);
+        auto context = make(names);
         context->make_current();
         return context;
     } catch (const Error& error) {
@@ -159,33 +129,35 @@ std::unique_ptr<Context> try_library(const char* library, const char* packages, 
 }  // namespace
 
 std::vector<std::string> gl_names() {
-    std::vector<std::string> all;
-    for (const auto& [name, gl] : by_name) all.emplace_back(name);
-    return all;
+    return {"auto", "osmesa", "egl"};  // in the order of Gl
 }
 
 Gl gl_named(const std::string& name) {
-    const auto found =
-        std::find_if(by_name.begin(), by_name.end(), [&](const auto& known) { return known.first == name; });
-    if (found == by_name.end())
-        throw bad_input("nothing that draws is called \"{}\"; there are {}", name, fmt::join(gl_names(), ", "));
-    return found->second;
+    const auto names = gl_names();
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        throw bad_input("nothing that draws is called \"{}\"; there are {}", name, fmt::join(names, ", "));
+    return static_cast<Gl>(found - names.begin());
+}
+
+Context::~Context() {
+    retire();
+    own_.destroy();
 }
 
 void Context::make_current() {
     if (current == this) return;
     // the libraries are independent: the old context must be released before the new one becomes current
     if (current) current->retire();
-    bind();
+    own_.bind();
     current = this;
-    if (!loaded_) functions_ = gl::load([this](const char* name) { return function(name); });
-    loaded_ = true;
-    gl::current = &functions_;
+    if (!opengl_) opengl_ = load(own_.find);
+    gl::current = &*opengl_;
 }
 
 void Context::retire() {
     if (current != this) return;
-    release();
+    own_.release();
     current = nullptr;
     gl::current = nullptr;
 }
@@ -194,9 +166,9 @@ std::unique_ptr<Context> make_context(Gl gl, const GlLibraries& libraries) {
     [[maybe_unused]] static const bool done = set_mesa_defaults();  // only once: setenv() is not thread-safe
     std::string errors;
     std::unique_ptr<Context> context;
-    if (gl != Gl::egl) context = try_library<OsmesaContext>("OSMesa", "libosmesa6", libraries.osmesa, errors);
+    if (gl != Gl::egl) context = try_library("OSMesa", "libosmesa6", osmesa_context, libraries.osmesa, errors);
     if (!context && gl != Gl::osmesa)
-        context = try_library<EglContext>("EGL", "libegl1, libegl-mesa0, libgl1-mesa-dri", libraries.egl, errors);
+        context = try_library("EGL", "libegl1, libegl-mesa0, libgl1-mesa-dri", egl_context, libraries.egl, errors);
     if (!context) throw Error(ExitCode::io_failed, errors);
     return context;
 }

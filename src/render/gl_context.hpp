@@ -3,8 +3,11 @@
 #include "render/gl_api.hpp"
 #include "render/renderer.hpp"
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -13,27 +16,27 @@ namespace doppel {
 /// different libraries may be used in one thread.
 class Context {
 public:
-    Context() = default;
-    virtual ~Context() = default;
+    /// A context of a library, and the library's functions for it.
+    struct Functions {
+        const char* library;  // "OSMesa" or "EGL"
+        std::function<void()> bind, release, destroy;
+        std::function<gl::Function(const char* name)> find;
+    };
+    explicit Context(Functions functions) : own_(std::move(functions)) {}
+    ~Context();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
     /// Makes this context current in this thread; cheap if it already is. Throws Error on failure.
     void make_current();
-    /// The library: "OSMesa" or "EGL".
-    virtual std::string library() const = 0;
-
-protected:
-    /// If this context is current, makes none current. Destructors of derived classes call it first.
-    void retire();
+    std::string library() const { return own_.library; }
 
 private:
-    virtual void bind() = 0;
-    virtual void release() = 0;
-    virtual gl::Function function(const char* name) const = 0;
+    /// If this context is current, makes none current.
+    void retire();
 
-    gl::Functions functions_;  // loaded when the context is first made current
-    bool loaded_ = false;
+    Functions own_;
+    std::optional<gl::Functions> opengl_;  // loaded when the context is first made current
 };
 
 /// Names under which the dynamic linker may find the libraries, in order.
