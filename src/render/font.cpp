@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <system_error>
 #include <utility>
 #include FT_FREETYPE_H
 #include FT_ADVANCES_H

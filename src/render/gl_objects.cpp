@@ -56,25 +56,6 @@ void check_errors(const std::string& what) {
     throw io_failed("OpenGL failed at {}: {}", what, name_of(first));
 }
 
-Canvas::Canvas(Size size) {
-    const auto what = fmt::format("a picture of {} × {} px", size.width, size.height);
-    check_errors("what came before " + what);
-    BindTexture(GL_TEXTURE_2D, pixels_);
-    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixels_, 0);
-    check_errors(what);
-    if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw io_failed("OpenGL has no memory for {}", what);
-}
-
-void Canvas::put(const Picture& picture, const Rect& r) {
-    BindTexture(GL_TEXTURE_2D, pixels_);
-    TexSubImage2D(GL_TEXTURE_2D, 0, r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
-                  picture.at(r.left, r.top));
-}
-
 Program::Program(const std::string& fragment) : number_(CreateProgram()) {
     attach(number_, GL_VERTEX_SHADER, "quad.vert");
     attach(number_, GL_FRAGMENT_SHADER, fragment);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "image/picture.hpp"
 #include "render/gl_api.hpp"
 
 #include <string>
@@ -28,22 +27,7 @@ private:
 using Buffer = Object<GenBuffers, DeleteBuffers>;
 using Texture = Object<GenTextures, DeleteTextures>;
 using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
-
-/// A framebuffer of RGBA pixels, all zero at first. Row 0 is the top of the picture. Throws Error if memory is
-/// exhausted.
-class Canvas {
-public:
-    explicit Canvas(Size size);
-    operator GLuint() const { return framebuffer_; }
-
-    /// Copies the picture's pixels within `r`, and binds the canvas's texture. The unpack row length must be the
-    /// picture's width.
-    void put(const Picture& picture, const Rect& r);
-
-private:
-    Texture pixels_;
-    Object<GenFramebuffers, DeleteFramebuffers> framebuffer_;
-};
+using Framebuffer = Object<GenFramebuffers, DeleteFramebuffers>;
 
 /// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader beside it;
 /// compiled and linked.

@@ -49,6 +49,22 @@ Painter::Painter(Size size)
     TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     check_errors("the shaders and the buffers of their input");
+
+    const auto canvas = fmt::format("a picture of {} × {} px", size.width, size.height);
+    BindTexture(GL_TEXTURE_2D, pixels_);
+    TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, pixels_, 0);
+    check_errors(canvas);
+    if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw io_failed("OpenGL has no memory for {}", canvas);
+}
+
+void Painter::put(const Picture& picture, const Rect& r) {
+    BindTexture(GL_TEXTURE_2D, pixels_);
+    TexSubImage2D(GL_TEXTURE_2D, 0, r.left, r.top, r.right - r.left, r.bottom - r.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                  picture.at(r.left, r.top));
 }
 
 void Painter::paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas) {

@@ -3,17 +3,19 @@
 #include "render/gl_objects.hpp"
 #include "render/render_list.hpp"
 
-#include <cstdint>
-
 namespace doppel::gl {
 
-/// Draws render lists onto the bound canvas. A stroke takes two passes. The first writes 1 - opacity of each segment
-/// into the canvas's alpha, which is 1 otherwise. The minimum is kept, so that overlapping segments do not add up. The
-/// second blends the colour by alpha and restores alpha 1, so that drawing a pixel twice changes nothing.
+/// A canvas of RGBA pixels, all zero at first, and what draws render lists onto it. Row 0 is the top of the picture. A
+/// stroke takes two passes. The first writes 1 - opacity of each segment into the canvas's alpha, which is 1 otherwise.
+/// The minimum is kept, so that overlapping segments do not add up. The second blends the colour by alpha and restores
+/// alpha 1, so that drawing a pixel twice changes nothing.
 class Painter {
 public:
+    /// Binds the canvas. Throws Error if memory is exhausted.
     explicit Painter(Size size);
 
+    /// Copies the picture's pixels within `r` to the canvas. The unpack row length must be the picture's width.
+    void put(const Picture& picture, const Rect& r);
     /// Draws the render list inside `regions`, which must not overlap.
     void paint(const RenderList& items, const std::vector<Rect>& regions, const GlyphAtlas& atlas);
 
@@ -37,6 +39,8 @@ private:
     void upload(const GlyphAtlas& atlas);
     void draw(const Batch& batch);
 
+    Texture pixels_;  // of the canvas
+    Framebuffer framebuffer_;
     std::array<Program, 3> programs_;  // for each Kind
     Program cover_;
     VertexArray vertex_array_;

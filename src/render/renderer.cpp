@@ -38,7 +38,6 @@ Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::ato
         throw io_failed("OpenGL draws pictures of 1 to {} px a side; {} × {} px is none", maximum, size.width,
                         size.height);
     atlas_.emplace(maximum, typeface);
-    canvas_ = std::make_unique<gl::Canvas>(size);
     painter_ = std::make_unique<gl::Painter>(size);
     picture_ = Picture(size);
     throw_if_set(stop);
@@ -71,7 +70,7 @@ const Picture& Renderer::draw(const DisplayList& list, const std::atomic<bool>& 
     for (const auto& regions : bands(changed_)) {
         throw_if_set(stop);
         gl::PixelStorei(GL_UNPACK_ROW_LENGTH, size_.width);
-        for (const Rect& r : regions) canvas_->put(backdrop_, r);
+        for (const Rect& r : regions) painter_->put(backdrop_, r);
         paint(regions, picture_);
     }
     std::swap(last_, now_);

@@ -28,9 +28,8 @@ Gl gl_named(const std::string& name);
 
 class Context;
 namespace gl {
-class Canvas;
 class Painter;
-}  // namespace gl
+}
 
 /// Draws display lists into pictures of one size, without a display (OSMesa or EGL). A picture is a fixed backdrop with
 /// a list on top. Only the rectangles in which the list differs from the last one are drawn and read back. The pixels
@@ -62,7 +61,6 @@ private:
     Size size_;
     std::unique_ptr<Context> context_;
     std::optional<GlyphAtlas> atlas_;
-    std::unique_ptr<gl::Canvas> canvas_;
     std::unique_ptr<gl::Painter> painter_;
     Picture backdrop_, picture_;
     RenderList last_, now_;  // of the last picture; of the current one

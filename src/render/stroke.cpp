@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace doppel {
@@ -59,7 +58,6 @@ std::optional<float> bend_of(const std::vector<Stroke::Vertex>& path, std::size_
 }
 
 constexpr float tolerance = 0.2f;  // of a trace, px
-constexpr float any_slope = std::numeric_limits<float>::max();
 
 /// A joint, so that later points change nothing before it.
 Stroke::Vertex vertex(Point at) {
@@ -96,12 +94,7 @@ StrokePiece next_piece(const std::vector<Stroke::Vertex>& path, std::size_t firs
 }
 
 void Trace::add(Point point) {
-    if (kept_.empty()) {
-        kept_.push_back(vertex(point));
-        steepest_ = any_slope;
-        flattest_ = -any_slope;
-        return;
-    }
+    if (kept_.empty()) return kept_.push_back(vertex(point));
     const auto slope = [&](float dy) {
         const Point from = kept_.back().at;
         return (point.y + dy - from.y) / std::max(point.x - from.x, 1e-6f);

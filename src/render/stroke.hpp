@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -54,8 +55,10 @@ public:
 private:
     std::vector<Stroke::Vertex> kept_;
     Point newest_{};
-    bool pending_ = false;               // the newest point is not a kept point
-    float steepest_ = 0, flattest_ = 0;  // range of slopes from the last kept point that stay within tolerance
+    bool pending_ = false;  // the newest point is not a kept point
+    // range of slopes from the last kept point that stay within tolerance
+    static constexpr float any_slope = std::numeric_limits<float>::max();
+    float steepest_ = any_slope, flattest_ = -any_slope;
 };
 
 }  // namespace doppel
