@@ -10,8 +10,6 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 namespace doppel {
 namespace {
 

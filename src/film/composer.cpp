@@ -109,16 +109,14 @@ DisplayList Composer::card(const std::vector<Label>& above, const std::vector<La
         }
     };
     const float gap = 12 * state_.layout.text;
+    const float top = still_ ? still_panel_.area.top - gap - height(above)
+                             : (page.top + page.bottom - height(above) - height(below)) / 2;
+    write(above, top);
     if (still_) {
-        write(above, still_panel_.area.top - gap - height(above));
         still_->backdrop(list);
         still_->frame(list);
-        write(below, still_panel_.area.bottom + gap);
-    } else {
-        const float top = (page.top + page.bottom - height(above) - height(below)) / 2;
-        write(above, top);
-        write(below, top + height(above));
     }
+    write(below, still_ ? still_panel_.area.bottom + gap : top + height(above));
     return faded(std::move(list), static_cast<float>(opacity));
 }
 

@@ -98,7 +98,6 @@ Film::Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& opt
       composer_(scene, bounds) {
     const auto& video = scene.preset.video;
     record.shown = schedule_.range(first, last);
-    if (options.merge) joined_ = parts_in(scene, parts.folder());
     if (video.poster_s && !options.is_part()) poster_at_ = schedule_.at(*poster_frame(scene));
     if (!options.merge || video.poster_s) canvas_.emplace(scene, composer_, options.gl, stop);
     if (!options.merge) record.gl = canvas_->description();
@@ -182,7 +181,7 @@ void Film::finish(const std::vector<FilmEvent>& events) {
 
 void Film::join_parts() {
     std::set<std::string> libraries;
-    for (const auto& path : joined_) {
+    for (const auto& path : parts_in(scene_, parts_.folder())) {
         BlockFile part(path, film_part);
         libraries.insert(Json::parse(part.header()).value("gl", ""));
         sink_->add(part);

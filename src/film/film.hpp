@@ -129,7 +129,6 @@ private:
     long next_;
     long frame_, last_;  // of the motion
     long poster_at_ = -1;
-    std::vector<std::filesystem::path> joined_;  // parts, for a merge
     Composer composer_;
     std::string film_name_;         // name of the video, or of the folder of pictures
     std::filesystem::path folder_;  // of the pictures

@@ -6,8 +6,6 @@
 #include "plot/labels.hpp"
 #include "render/typeface.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,6 +1,5 @@
 #include "film/layer.hpp"
 #include "numeric/state.hpp"
-#include "render/typeface.hpp"
 #include "scene/captions.hpp"
 
 #include <fmt/format.h>

@@ -12,7 +12,6 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
