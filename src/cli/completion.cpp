@@ -3,7 +3,7 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
-#include "figure/preset.hpp"
+#include "embedded/cli.hpp"
 #include "film/pair_table.hpp"
 #include "scene/preset_fields.hpp"
 
@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 namespace doppel {
 namespace {
@@ -82,32 +83,19 @@ std::vector<std::string> kinds_of(const std::string& command, const std::vector<
     return {scene_kinds.begin() + 1, scene_kinds.end()};
 }
 
-/// "table.key=", or the values of the key if it is complete.
-void add_keys(const FieldTable& table, const std::string& above, const std::string& word, Candidates& all) {
-    const auto name = table.key().empty() ? "" : fmt::format("{}{}.", above, table.key());
-    for (const auto& inner : table.tables) add_keys(inner, name, word, all);
-    for (const auto& field : table.fields) {
-        const auto key = fmt::format("{}{}=", name, field.key);
-        if (!word.starts_with(key)) {
-            all.push_back(
-                {key, field.unit.empty() ? std::string(field.help) : fmt::format("{}, {}", field.help, field.unit)});
-            continue;
-        }
-        for (const auto name : field.names)
-            all.push_back({fmt::format("{}{}", key, name)});  // texts and lists of one text need no quotes
-        const auto example = field.example();
-        if (example == "true" || example == "false")
-            all.insert(all.end(), {{key + "true"}, {key + "false"}});
-        else if (field.names.empty())
-            all.push_back({key + example});
-    }
-}
-
+/// "table.key=", or the values of the key if it is complete. The list is made by tests/figure/starting_presets.cpp.
 void add_settings(const std::string& command, const std::vector<std::string>& words, const std::string& word,
                   Candidates& all) {
-    for (const auto& kind : kinds_of(command, words))
-        for (const auto& table : tables_of(kind))
-            if (!table.name.starts_with("[[")) add_keys(table, "", word, all);
+    const auto kinds = kinds_of(command, words);
+    std::istringstream lines{std::string(embedded_file(cli_files(), "settings.tsv"))};
+    for (std::string line; std::getline(lines, line);) {
+        const auto cells = CLI::detail::split(line, '\t');  // kind, key, help, values
+        const auto key = cells[1] + '=';
+        if (std::ranges::find(kinds, cells[0]) == kinds.end()) continue;
+        const bool is_complete = word.starts_with(key);
+        if (!is_complete) all.push_back({key, cells[2]});
+        for (std::size_t i = 3; i < cells.size() && is_complete; ++i) all.push_back({key + cells[i]});
+    }
 }
 
 /// The last name of --columns: those of the given preset, if they are known without computation.

@@ -446,6 +446,6 @@ double Grid::slope(std::span<const TrialNumbers> numbers, std::size_t group) con
     return std::log(coarse[1] / fine[1]) / std::log(coarse[0] / fine[0]);
 }
 
-const FigureKind grid_kind = kind_of<Grid>("grid", FigureKind::System::pair);
+const FigureKind grid_kind = kind_of<Grid>("grid");
 
 }  // namespace doppel

@@ -3,7 +3,6 @@
 #include "figure/experiment.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "scene/field_table.hpp"
 #include "scene/preset_fields.hpp"
 #include "scene/scene.hpp"
 
@@ -56,25 +55,23 @@ bool are_one(const Scene& scene);
 
 /// An entry of the list of kinds.
 struct FigureKind {
-    enum class System { none, release, pair };  // how the preset describes the system
-    std::string_view name;                      // in [scene]
-    System system;
+    std::string_view name;  // in [scene]
     std::shared_ptr<const Experiment> (*read)(FigureReader&);
-    std::vector<FieldTable> (*tables)();  // the kind's own, with their defaults
+    void (*list)(KeyVisitor&);  // visits the kind's own tables, with their defaults
 };
 
 /// A kind is a class constructed from a FigureReader; with only_keys, the constructor returns when it has read all keys.
 /// `table_key` is the name of the table with its own keys. fields(visit) visits each with its member, as in
-/// scene/preset_fields.hpp. other_table() lists further keys.
+/// scene/preset_fields.hpp; further_fields(visit), those that it has in [chart].
 template <class Kind>
-constexpr FigureKind kind_of(std::string_view name, FigureKind::System system) {
-    return {name, system,
+constexpr FigureKind kind_of(std::string_view name) {
+    return {name,
             [](FigureReader& reader) -> std::shared_ptr<const Experiment> { return std::make_shared<Kind>(reader); },
-            [] {
-                std::vector<FieldTable> tables;
-                Kind().fields(tables.emplace_back(FieldTable{fmt::format("[{}]", Kind::table_key)}));
-                if constexpr (requires { Kind::other_table(); }) tables.push_back(Kind::other_table());
-                return tables;
+            [](KeyVisitor& visit) {
+                Kind kind;
+                visit.table(Kind::table_key, [&](KeyVisitor& table) { kind.fields(table); });
+                if constexpr (requires { kind.further_fields(visit); })
+                    visit.table("chart", [&](KeyVisitor& table) { kind.further_fields(table); });
             }};
 }
 

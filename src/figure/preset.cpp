@@ -6,9 +6,7 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
 
-/// The keys outside of tables.
 void top_fields(KeyVisitor& visit, FigurePreset& figure) {
     visit(title_field, figure.title);
     visit({.key = "subtitle",
@@ -21,6 +19,8 @@ void top_fields(KeyVisitor& visit, FigurePreset& figure) {
         figure.erratum);
     visit({.key = "captions", .help = "below the picture", .is_drawn = true}, figure.captions);
 }
+
+namespace {
 
 /// With `errors`, reads each key by itself and throws all errors found. Otherwise reads the figure and checks keys
 /// together.
@@ -77,55 +77,6 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     KeyErrors errors(overrides);
     read_once(source, document, &errors, stop);
     return read_once(source, document, nullptr, stop);
-}
-
-std::vector<FieldTable> tables_of(std::string_view kind) {
-    using System = FigureKind::System;
-    const auto figure = std::ranges::find(figure_kinds(), kind, &FigureKind::name);
-    const bool is_film = kind == pair_kind, has_pair = is_film || figure->system == System::pair;
-    std::vector<FieldTable> all;
-    Preset preset;
-    FigurePreset none;
-    auto& top = all.emplace_back("[]");
-    if (is_film) {
-        top(title_field, preset.title);
-        top(subtitle_field, preset.subtitle);
-    } else {
-        top_fields(top, none);
-    }
-    auto& scene = all.emplace_back("[scene]");
-    scene(kind_field, std::string(pair_kind));
-    if (is_film)
-        film_fields(scene, preset);
-    else if (has_pair)
-        clock_fields(scene, preset);
-    for (const auto* name : {"[system]", "[a]", "[b]"}) {
-        if (!has_pair) break;
-        auto& side = all.emplace_back(name);
-        side.is_widest = true;
-        side_fields(side, preset.a);
-        if (is_film && side.key() != "system") side_text_fields(side, preset.a);
-    }
-    if (is_film) {
-        auto& video = all.emplace_back("[video]");
-        video.is_widest = true;
-        video(size_field, preset.video.size);
-        video(preview_field, false);
-        video_fields(video, preset.video);
-        return all;
-    }
-    if (figure->system == System::release) {
-        auto& chain = all.emplace_back("[system]");
-        chain_fields(chain, preset.a);
-        gravity_field(chain, preset.a);
-    }
-    chart_fields(all.emplace_back("[chart]"), none.chart);
-    for (auto& table : figure->tables())
-        if (table.key() == "chart")
-            all.back().fields.insert(all.back().fields.end(), table.fields.begin(), table.fields.end());
-        else
-            all.insert(all.end() - 1, std::move(table));
-    return all;
 }
 
 }  // namespace doppel

@@ -2,7 +2,6 @@
 
 #include "figure/chart.hpp"
 #include "figure/experiment.hpp"
-#include "scene/field_table.hpp"
 #include "scene/preset.hpp"
 
 #include <memory>
@@ -25,12 +24,11 @@ struct FigurePreset {
     std::string resolved() const;
 };
 
+/// The keys outside of tables.
+void top_fields(KeyVisitor& visit, FigurePreset& figure);
+
 /// Errors as read_preset(), and exit 130 soon after `stop` is set.
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides = {},
                          const std::atomic<bool>& stop = never_stopped);
-
-/// The tables that a preset of this kind may have, except those of particles, constraints and forces. "[]" contains the
-/// keys outside of tables; others are "[scene]", "[system]", "[a]" … and "[[curve]]".
-std::vector<FieldTable> tables_of(std::string_view kind);
 
 }  // namespace doppel

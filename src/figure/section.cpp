@@ -166,6 +166,6 @@ private:
 
 }  // namespace
 
-const FigureKind section_kind = kind_of<Section>("section", FigureKind::System::release);
+const FigureKind section_kind = kind_of<Section>("section");
 
 }  // namespace doppel

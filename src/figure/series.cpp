@@ -253,19 +253,11 @@ std::shared_ptr<const Experiment> read_series(FigureReader& reader) {
                                                    : make_spectrum(reader, table, keys);
 }
 
-std::vector<FieldTable> series_tables() {
-    FieldTable own{
-        fmt::format("[{}]", SeriesKeys::table_key),
-        "Of `kind = \"series\"`. What moves: of pairs `[system]`, `[a]` and `[b]`, with `duration_s` and "
-        "`sample_hz` of `[scene]`, as in a\nfilm; of one motion the chain of `[system]`, for `exponents` also "
-        "with mass, friction and drives.\n"},
-        curve{"[[curve]]",
-              "A curve each, of pairs; without any, the one of `[system]`, `[a]` and `[b]`. A curve may "
-              "have `[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n"};
-    SeriesKeys().fields(own);
-    PairCurve none;
-    curve_fields(curve, none);
-    return {own, curve};
+void list_tables(KeyVisitor& visit) {
+    SeriesKeys keys;
+    PairCurve curve;
+    visit.table(SeriesKeys::table_key, [&](KeyVisitor& table) { keys.fields(table); });
+    visit.table("curve", [&](KeyVisitor& table) { curve_fields(table, curve); });
 }
 
 }  // namespace
@@ -317,6 +309,6 @@ void SeriesKeys::fields(KeyVisitor& visit) {
           projected);
 }
 
-const FigureKind series_kind{"series", FigureKind::System::pair, read_series, series_tables};
+const FigureKind series_kind{"series", read_series, list_tables};
 
 }  // namespace doppel

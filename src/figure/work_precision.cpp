@@ -44,14 +44,15 @@ public:
           model_names_(names_of<Model>.begin(), names_of<Model>.end()),
           methods_(names_of_methods().begin(), names_of_methods().end()) {}
     explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
-        reader.chart(cost_field, cost);
-        reader.chart(names_field, names);
+        further_fields(reader.chart);
         auto table = reader.settings(*this);
         if (reader.only_keys) return;
         problems = scene_ ? problem_of(film_) : standard_problems(problem_names_, table);
         references_ = std::make_unique<SharedReference[]>(problems.all.size());
         settings_ = settings_text(*this) + problems.comment;
-        chart_settings_ = fmt::format("cost = {}\nnames = {}\n", toml_value(cost), toml_value(names));
+        TomlWriter chart;
+        further_fields(chart);
+        chart_settings_ = chart.text();
         const auto solvers = solvers_of(table);
         for (std::size_t p = 0; p < problems.all.size(); ++p)
             for (const auto& solver : solvers)
@@ -80,11 +81,9 @@ public:
         visit({.key = "models", .help = "the equations", .names = names_of<Model>}, model_names_);
         visit({.key = "methods", .help = "names of methods", .absent = "all", .names = names_of_methods()}, methods_);
     }
-    static FieldTable other_table() {
-        FieldTable chart{"[chart] kind = \"work-precision\"", "Besides those of all figures:\n"};
-        chart(cost_field, Cost::time);
-        chart(names_field, NamedCurves::best);
-        return chart;
+    void further_fields(KeyVisitor& visit) {
+        visit({"cost", "the cost axis"}, cost);
+        visit({"names", "which curves are labelled: the five best, or all"}, names);
     }
 
     std::size_t trials() const override { return problems.all.size() + studies_.size() * rounds(); }
@@ -242,8 +241,6 @@ private:
                            floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 
-    inline static const Field cost_field{.key = "cost", .help = "the cost axis"};
-    inline static const Field names_field{.key = "names", .help = "which curves are labelled: the five best, or all"};
     std::optional<std::string> scene_;
     Preset film_;  // of the key `scene`
     std::vector<std::string> problem_names_, model_names_, methods_;
@@ -265,6 +262,6 @@ std::string timing_caption(const WorkComparison::Studies& studies, int repeats) 
         repeats, 100 * typical, 100 * worst);
 }
 
-const FigureKind work_precision_kind = kind_of<WorkPrecision>("work-precision", FigureKind::System::none);
+const FigureKind work_precision_kind = kind_of<WorkPrecision>("work-precision");
 
 }  // namespace doppel

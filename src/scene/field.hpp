@@ -42,6 +42,9 @@ struct Condition {
     std::string_view beside = {};  // the key that decides, if it is one key
 };
 
+/// `absent` of a required key whose reader reports it.
+inline constexpr std::string_view must_be_given = "must be given";
+
 /// One key of a table. Lists of fields (preset_fields.cpp, and those of figure kinds) are used by the reader, the
 /// resolved preset, the JSON schema and docs/presets.md. Type and default are those of the member that a list pairs
 /// with the field.

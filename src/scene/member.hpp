@@ -25,7 +25,7 @@ template <class... T>
 using PointerToAny = std::variant<ChosenName, T*..., std::optional<T>*...>;
 
 /// A pointer to the member that belongs to a key. Its type decides how values are read (toml_values.cpp), written
-/// (resolved.cpp) and described (field_table.cpp).
+/// (resolved.cpp) and described (tests/figure/field_table.cpp).
 using KeyMember = PointerToAny<bool, int, double, Quad, Rational, std::string, std::vector<double>, std::vector<Quad>,
                                std::vector<std::string>, QuadPair, EndSpec, Size, std::array<int, 2>, Range, Panels,
                                Speed, Members, ChosenText, TomlValues, Color, std::array<Color, 2>>;

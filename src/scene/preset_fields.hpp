@@ -18,8 +18,8 @@ namespace doppel {
 inline constexpr std::string_view pair_kind = "pair";
 inline constexpr std::array<std::string_view, 5> scene_kinds{pair_kind, "grid", "series", "section", "work-precision"};
 
-// The keys of a film's tables, each with its member, in lists visited by TomlReader, TomlWriter and FieldTable. The
-// reader checks keys together.
+// The keys of a film's tables, each with its member, in lists visited by TomlReader and TomlWriter. The reader checks
+// keys together.
 
 extern const Field title_field, subtitle_field, kind_field, model_field, accuracy_field, size_field, preview_field,
     theme_field;

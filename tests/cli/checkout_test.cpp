@@ -12,7 +12,7 @@ fs::path checkout() {
     const auto top = fresh_folder();
     fs::copy_file(fs::path(DOPPEL_SOURCE_DIR) / "doppel", top / "doppel");
     for (const char* part : {"CMakeLists.txt", "CMakePresets.json", "debian-packages.txt"}) write_bytes(top / part, "");
-    for (const char* part : {"cmake", "src", "shaders", "fonts", "presets", "packaging"})
+    for (const char* part : {"cmake", "src", "shaders", "fonts", "presets", "templates", "packaging"})
         fs::create_directory(top / part);
     return top;
 }

@@ -1,5 +1,6 @@
 // The preset that "doppel init" writes. With the real program.
 #include "cli/sandbox.hpp"
+#include "figure/kind_tables.hpp"
 #include "figure/kinds.hpp"
 #include "figure/preset.hpp"
 #include "scene/resolved.hpp"

@@ -1,6 +1,6 @@
 #include "figure/film_tables.hpp"
 
-#include "figure/preset.hpp"
+#include "figure/kind_tables.hpp"
 #include "scene/preset_fields.hpp"
 
 namespace doppel::test {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/field_table.hpp"
+#include "figure/field_table.hpp"
 
 #include <string>
 #include <string_view>

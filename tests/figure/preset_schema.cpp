@@ -1,8 +1,8 @@
 #include "figure/preset_schema.hpp"
 
 #include "figure/film_tables.hpp"
-#include "figure/kinds.hpp"
-#include "figure/preset.hpp"
+#include "figure/kind_tables.hpp"
+#include "scene/preset_fields.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>
@@ -271,7 +271,7 @@ std::string preset_schema() {
     for (const auto kind : scene_kinds) {
         kinds.push_back(kind_schema(kind));
         for (const auto& table : tables_of(kind)) {
-            const auto schema = table.name.starts_with("[[") ? entries_schema(table) : table_schema(table);
+            const auto schema = table.is_entry() ? entries_schema(table) : table_schema(table);
             if (table.key().empty())
                 properties.update(schema["properties"]);
             else if (auto& known = properties[std::string(table.key())]; known.is_null())

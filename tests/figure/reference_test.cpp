@@ -1,6 +1,8 @@
 // docs/presets*.md list the same keys as the program.
 #include "figure/film_tables.hpp"
+#include "figure/kind_tables.hpp"
 #include "figure/kinds.hpp"
+#include "figure/starting_presets.hpp"
 #include "figure/support.hpp"
 
 #include <fmt/ranges.h>
@@ -15,11 +17,13 @@
 namespace doppel {
 namespace reference_test {
 
+using test::FieldTable;
+
 /// The tables of all figures, then those of each kind with what the kind is of.
 std::vector<FieldTable> figure_tables() {
-    using System = FigureKind::System;
+    using test::MotionOf;
     const auto table_of = [](const char* kind, const char* name) {
-        const auto all = tables_of(kind);
+        const auto all = test::tables_of(kind);
         return *std::find_if(all.begin(), all.end(), [&](const auto& table) { return table.name == name; });
     };
     std::vector<FieldTable> all{table_of("grid", "[]"), table_of("grid", "[chart]")};
@@ -28,14 +32,27 @@ std::vector<FieldTable> figure_tables() {
     for (const auto& field : table_of("section", "[system]").fields) keys.push_back(field.key);
     const auto of_release = fmt::format(" What moves: `[system]`, of which it takes\n`{}`.", fmt::join(keys, "`, `"));
     for (const auto& kind : figure_kinds())
-        for (auto& table : kind.tables()) {
-            if (table.text.empty())
-                table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name,
-                                         kind.system == System::none ? ""
-                                         : kind.system == System::pair
-                                             ? " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and "
-                                               "`sample_hz` of `[scene]`, as in a film."
-                                             : of_release);
+        for (auto& table : test::own_tables(kind.name)) {
+            const auto motion = test::motion_of(kind.name);
+            table.text = fmt::format("Of `kind = \"{}\"`.{}\n", kind.name,
+                                     motion == MotionOf::none ? ""
+                                     : motion == MotionOf::pair
+                                         ? " What moves: `[system]`, `[a]` and `[b]`, with `duration_s` and "
+                                           "`sample_hz` of `[scene]`, as in a film."
+                                         : of_release);
+            if (table.key() == "chart") {
+                table.name = fmt::format("[chart] kind = \"{}\"", kind.name);
+                table.text = "Besides those of all figures:\n";
+            } else if (table.key() == "series") {
+                table.text =
+                    "Of `kind = \"series\"`. What moves: of pairs `[system]`, `[a]` and `[b]`, with `duration_s` and "
+                    "`sample_hz` of `[scene]`, as in a\nfilm; of one motion the chain of `[system]`, for `exponents` "
+                    "also with mass, friction and drives.\n";
+            } else if (table.key() == "curve") {
+                table.text =
+                    "A curve each, of pairs; without any, the one of `[system]`, `[a]` and `[b]`. A curve may have "
+                    "`[curve.system]`, `[curve.a]` and\n`[curve.b]` on top of those.\n";
+            }
             all.push_back(std::move(table));
         }
     return all;
@@ -75,6 +92,16 @@ TEST(Reference, OfPresetsIsThatOfTheLists) {
         const auto text = test::bytes_of(path), introduction = text.substr(0, text.find("\n## "));
         if (std::getenv("DOPPEL_UPDATE_REFERENCE")) test::write_bytes(path, introduction + lists);
         EXPECT_EQ(test::bytes_of(path), introduction + lists) << "tests/update-reference writes " << page;
+    }
+}
+
+TEST(Reference, OfInitAndCompletionIsThatOfTheLists) {
+    std::map<std::string, std::string> files{{"settings.tsv", test::listed_settings()}};
+    for (const auto kind : scene_kinds) files[fmt::format("{}.toml.in", kind)] = test::starting_preset(kind);
+    for (const auto& [file, text] : files) {
+        const auto path = DOPPEL_SOURCE_DIR "/templates/" + file;
+        if (std::getenv("DOPPEL_UPDATE_REFERENCE")) test::write_bytes(path, text);
+        EXPECT_EQ(test::bytes_of(path), text) << "tests/update-reference makes it anew";
     }
 }
 

@@ -1,10 +1,10 @@
-#include "scene/field_table.hpp"
+#include "figure/field_table.hpp"
 
 #include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
 
-namespace doppel {
+namespace doppel::test {
 namespace {
 
 /// The description of each type of member; of those without one, a text.
@@ -65,7 +65,8 @@ void FieldTable::key(const Field& field, const KeyMember& by_default) {
 
 void FieldTable::table(std::string_view key, const std::function<void(KeyVisitor&)>& list) {
     // "[system], [a], [b]": the first one
-    list(tables.emplace_back(fmt::format("[{}.{}]", name.substr(1, name.find(']') - 1), key)));
+    list(tables.emplace_back(name.empty() ? fmt::format("[{}]", key)
+                                          : fmt::format("[{}.{}]", name.substr(1, name.find(']') - 1), key)));
 }
 
 std::string ListedField::range_text() const {
@@ -104,4 +105,4 @@ std::string_view FieldTable::key() const {
     return inside.substr(inside.find_last_of("[.") + 1);
 }
 
-}  // namespace doppel
+}  // namespace doppel::test

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace doppel {
+namespace doppel::test {
 
 /// The description of a key's type, that of its member.
 struct ValueType {
@@ -16,9 +16,6 @@ struct ValueType {
     std::string_view positive_example = example;  // for numbers > 0
     bool is_list = false;                         // a list of texts
 };
-
-/// Shown as the default of a required key.
-inline constexpr std::string_view must_be_given = "must be given";
 
 /// A key with all properties from its list of fields. `names` are also those of an enumeration, and known values. In
 /// "widest" tables its bounds are the widest ones.
@@ -49,8 +46,10 @@ struct FieldTable : KeyVisitor {
     void key(const Field& field, const KeyMember& by_default) override;
     void table(std::string_view key, const std::function<void(KeyVisitor&)>& list) override;
 
+    /// Whether a preset has a list of such tables, "[[curve]]".
+    bool is_entry() const { return name.starts_with("[["); }
     /// "system" for "[system]", "colors" for "[video.colors]".
     std::string_view key() const;
 };
 
-}  // namespace doppel
+}  // namespace doppel::test
