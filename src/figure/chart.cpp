@@ -41,7 +41,7 @@ void check_chart(const TomlReader& table, const ChartSpec& chart) {
 void chart_fields(KeyVisitor& visit, ChartSpec& chart) {
     const bool on_paper = chart.width_cm.has_value();
     const auto of_paper = [&](std::string_view what) {
-        return Condition{on_paper, fmt::format("{}; it needs width_cm", what), true, false, "width_cm"};
+        return Condition{on_paper, fmt::format("{}; it needs width_cm", what), true, "width_cm"};
     };
     visit({"format", "format of the picture: pixels, text and lines for a paper, or a page that tells the numbers"},
           chart.format);

@@ -25,10 +25,11 @@ void Grid::fields(KeyVisitor& visit) {
           right_);
     visit({"difference", "difference between the two pendulums of a pair in the key of x"}, difference_);
     const auto has = [&](Quantity quantity) { return quantity_ == quantity || right_ == name_of(quantity); };
-    const Condition of_exponents{.applies = has(Quantity::exponent), .hides = true},
+    const bool is_changed = visit.from_command_line("quantity") || visit.from_command_line("right");
+    const Condition of_exponents{has(Quantity::exponent), "is only for exponent", is_changed},
         of_flips{has(Quantity::flip_time), "is only for flip_time"},
-        strobed{.applies = quantity_ == Quantity::stroboscopic, .hides = true},
-        of_convergence{.applies = quantity_ == Quantity::convergence, .hides = true};
+        strobed{quantity_ == Quantity::stroboscopic, "is only for stroboscopic", is_changed},
+        of_convergence{quantity_ == Quantity::convergence, "is only for convergence", is_changed};
     constexpr Bounds of_series{.low = 1e-15, .is_positive = true};
     visit({"exponent_duration_s", "duration of the motion from which an exponent is computed", "s", positive, "",
            of_exponents},

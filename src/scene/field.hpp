@@ -38,7 +38,6 @@ struct Condition {
     bool applies = true;
     std::string error = {};  // error if the key does not apply; if empty, the key is read but not written
     bool drops = false;      // the command line excludes the key: then the preset's value is ignored without an error
-    bool hides = false;      // the table has no such key if it does not apply
     std::string_view beside = {};  // the key that decides, if it is one key
 };
 

@@ -35,7 +35,7 @@ void format_fields(KeyVisitor& visit, VideoSpec& video) {
           video.format);
     const auto only = [&](bool applies, const char* what) {
         return Condition{applies, fmt::format("is {}; the format is \"{}\"", what, name_of(video.format)),
-                         visit.from_command_line("format"), false, "format"};
+                         visit.from_command_line("format"), "format"};
     };
     const FormatRow& row = format_row(video.format, video.codec);
     const bool is_webm = video.format == FilmFormat::webm;
@@ -70,8 +70,7 @@ void time_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"speed", "seconds of motion a second of film; in a list, each speed is reached at its time", "", positive},
           video.speed);
     const Condition of_changes{video.speed.changes_over_time(),
-                               "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, false,
-                               "speed"};
+                               "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, "speed"};
     constexpr std::string_view ease =
         "time of motion before a change of speed, in which the speed changes by 3u² − 2u³";
     visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
@@ -89,7 +88,7 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     const auto only = [&](Arrangement layout) {
         return Condition{video.layout == layout,
                          fmt::format("is for the layout \"{}\"; it is \"{}\"", name_of(layout), name_of(video.layout)),
-                         false, false, "layout"};
+                         false, "layout"};
     };
     const auto of_ensemble = only(Arrangement::ensemble), of_phase = only(Arrangement::phase);
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
@@ -110,7 +109,7 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     visit.table("view", [&](KeyVisitor& table) {
         table({"follow", "the mass that stays in the middle, from 1; 0 = none", "", from_to(0, 10'000)},
               video.view.follow);
-        const Condition still{video.view.follow == 0, "is for a view that follows no mass", false, false, "follow"};
+        const Condition still{video.view.follow == 0, "is for a view that follows no mass", false, "follow"};
         table({.key = "center_m",
                .help = "the place in the middle of a panel, [x, y]",
                .unit = "m",
@@ -259,7 +258,7 @@ void method_fields(KeyVisitor& visit, SideSpec& side) {
     const auto only = [&](bool applies, const char* what) {
         return Condition{
             applies, fmt::format("is for {}; \"{}\" uses {}", what, side.integrator, adaptive ? "tolerance" : "step_s"),
-            side.integrator_from_command_line, false, "integrator"};
+            side.integrator_from_command_line, "integrator"};
     };
     visit({"step_s", "of methods with a fixed step", "s", positive, "1/30000",
            only(!adaptive, "methods with a fixed step")},

@@ -149,12 +149,10 @@ void TomlReader::finish() const {
     for (auto&& [name, node] : *table_) {
         if (known_.contains(name.str())) continue;
         const std::vector<std::string_view> keys(known_.begin(), known_.end());
-        const auto error =
+        refuse(
             error_at(name.str(),
                      fmt::format("{} no \"{}\"; {}", name_.empty() ? "a preset has" : name_ + " has", name.str(),
-                                 did_you_mean("", name.str(), keys, fmt::format("it has {}", fmt::join(keys, ", ")))));
-        const auto hidden = hidden_.find(name.str());
-        refuse(hidden == hidden_.end() ? error : error.with(beside(hidden->second)));
+                                 did_you_mean("", name.str(), keys, fmt::format("it has {}", fmt::join(keys, ", "))))));
     }
 }
 
@@ -174,22 +172,9 @@ void TomlReader::check_together(const std::function<void()>& check) const {
     }
 }
 
-/// Whether the file gives a key that is hidden because of a command line value: then it is no error.
-bool TomlReader::is_ruled_out(const Field& field) const {
-    const auto* node = table_ ? table_->get(field.key) : nullptr;
-    return node && !is_typed(*node) && std::any_of(table_->begin(), table_->end(), [&](const auto& entry) {
-               return (field.only.beside.empty() || entry.first.str() == field.only.beside) && is_typed(entry.second);
-           });
-}
-
 bool TomlReader::counts(const Field& field) {
     const auto& only = field.only;
     if (only.applies) return true;
-    if (only.hides) {
-        hidden_.emplace(field.key, only.beside);
-        if (is_ruled_out(field)) known_.emplace(field.key);
-        return false;
-    }
     if (only.error.empty()) return true;
     if (has(field.key) && (!only.drops || from_command_line(field.key)))
         throw error(field.key, "{}", only.error).with(beside(only.beside));

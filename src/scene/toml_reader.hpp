@@ -145,7 +145,6 @@ private:
     ErrorPlace error_place(std::string_view key) const;
     bool counts(const Field& field);
     void require(const Field& field, bool given) const;
-    bool is_ruled_out(const Field& field) const;
 
     const toml::table* table_;
     std::string name_, path_, group_;
@@ -153,7 +152,6 @@ private:
     const Typeface* typeface_;
     KeyErrors* errors_;
     std::set<std::string, std::less<>> known_;
-    std::map<std::string, std::string_view, std::less<>> hidden_;  // keys that do not apply, and the key that decides
 };
 
 /// A preset as TOML tables, with the command line's values applied.

@@ -90,7 +90,7 @@ TEST(Chart, AnotherQuantityFromTheCommandLineDropsTheKeysOfTheFiles) {
     const std::string text = "[scene]\nkind = \"grid\"\n[grid]\nquantity = \"exponent\"\nexponent_duration_s = 99\n";
     const PresetText preset{"x", "x.toml", text, "x.toml"};
     EXPECT_NO_THROW(read_figure(preset, {parse_set("grid.quantity=flip_time")}));
-    expect_error(ExitCode::bad_input, {"--set grid.exponent_duration_s", "has no \"exponent_duration_s\""}, [&] {
+    expect_error(ExitCode::bad_input, {"--set grid.exponent_duration_s", "is only for exponent"}, [&] {
         read_figure(preset, {parse_set("grid.quantity=flip_time"), parse_set("grid.exponent_duration_s=3")});
     });
 }
