@@ -267,13 +267,12 @@ void SeriesKeys::fields(KeyVisitor& visit) {
            "the distance of pairs in state space, or ln(d/d₀); all Lyapunov exponents of one motion, as their "
            "estimates settle; or the errors of its energy and rods by each method at the same cost"},
           quantity);
-
+    const Condition of_pairs{is_of_pairs(), "is only for pairs"};
     visit({.key = "film_column",
            .help = "in place of `quantity`: a column of the table that a film of the pair has",
-           .only = {is_of_pairs(), "is only for pairs"},
+           .only = of_pairs,
            .is_drawn = true},
           film_column);
-    const Condition of_pairs{is_of_pairs(), "is only for pairs"};
     const Condition of_exponents{quantity == SeriesQuantity::exponents, "is only for exponents"};
     const Condition of_errors{quantity == SeriesQuantity::errors, "is only for errors"};
     const Bounds of_motions = of_errors.applies ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;

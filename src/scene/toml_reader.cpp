@@ -174,8 +174,7 @@ void TomlReader::check_together(const std::function<void()>& check) const {
 
 bool TomlReader::counts(const Field& field) {
     const auto& only = field.only;
-    if (only.applies) return true;
-    if (only.error.empty()) return true;
+    if (only.applies || only.error.empty()) return true;
     if (has(field.key) && (!only.drops || from_command_line(field.key)))
         throw error(field.key, "{}", only.error).with(beside(only.beside));
     return false;
