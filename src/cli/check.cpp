@@ -184,7 +184,7 @@ struct SceneCheck {
 };
 
 SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
-    check_video(video_options(scene));
+    check_encoder(video_options(scene));
     reset_peak_memory();
     SceneCheck check{scene, estimated_simulation(scene, stop), {}, {}, {}};
     try {

@@ -173,7 +173,7 @@ void add_render(CLI::App& app) {
             throw bad_input("-o -: parts and their merge need a folder; give another --out");
         const auto scenes = read_scenes(*options, overrides(*options));
         // before the first one is rendered
-        for (const auto& scene : scenes) check_video(video_options(scene));
+        for (const auto& scene : scenes) check_encoder(video_options(scene));
         run_all(scenes, *options, run);
     });
 }

@@ -6,7 +6,7 @@ extern "C" {
 #include <libavutil/imgutils.h>
 }
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
@@ -38,24 +38,10 @@ Size largest_similar(Size size) {
     return {2, 2};
 }
 
-std::optional<FormatError> codec_error(const VideoOptions& options) {
-    const auto codecs = codecs_of(options.format);
-    if (options.codec.empty() || std::ranges::find(codecs, options.codec) != codecs.end()) return std::nullopt;
-    if (codecs.empty())
-        return FormatError{"codec", fmt::format("must not be given: {} has only one, and no name for it; it is \"{}\"",
-                                                name_of_format(options), options.codec)};
-    return FormatError{"codec", fmt::format("of {} must be {}; it is \"{}\"", name_of_format(options),
-                                            fmt::join(codecs, " or "), options.codec)};
-}
-
 std::optional<FormatError> size_error(const VideoOptions& options, const FormatRow& row) {
     const auto [width, height] = options.size;
     const auto given = words_of(options.size);
-    if (std::min(width, height) < 1 || std::max(width, height) > row.largest_side)
-        return FormatError{"size",
-                           fmt::format("must be from 1 to {} of {}; it is {}", row.largest_side, row.title, given)};
-    const bool is_by_libav = options.format != FilmFormat::png && options.format != FilmFormat::html;
-    if (is_by_libav && !libav_takes(options.size))
+    if (row.container && !libav_takes(options.size))
         return FormatError{"size", fmt::format("exceeds what libav encodes as {}; it is {}; {} is possible{}",
                                                row.title, given, words_of(largest_similar(options.size)),
                                                options.format == FilmFormat::mp4
@@ -86,13 +72,6 @@ std::optional<FormatError> alpha_error(const VideoOptions& options, const Format
 
 }  // namespace
 
-std::vector<std::string_view> codecs_of(FilmFormat format) {
-    std::vector<std::string_view> codecs;
-    for (const auto& row : film_formats)
-        if (row.format == format && !row.codec.empty()) codecs.push_back(row.codec);
-    return codecs;
-}
-
 const FormatRow& format_row(FilmFormat format, std::string_view codec) {
     const auto* found = std::ranges::find_if(
         film_formats, [&](const FormatRow& row) { return row.format == format && row.codec == codec; });
@@ -106,16 +85,8 @@ long VideoOptions::key_interval() const {
 
 std::optional<FormatError> format_error(const VideoOptions& options) {
     const auto& row = format_row(options.format, options.codec);
-    if (auto error = codec_error(options)) return error;
     if (auto error = alpha_error(options, row)) return error;
-    if (auto error = size_error(options, row)) return error;
-    if (!row.is_encoded()) return std::nullopt;
-    if (std::ranges::find(encoder_presets, options.preset) == encoder_presets.end())
-        return FormatError{"preset",
-                           fmt::format("must be {}; it is \"{}\"", fmt::join(encoder_presets, ", "), options.preset)};
-    if (options.crf < 0 || options.crf > row.largest_crf)
-        return FormatError{"crf", fmt::format("must be from 0 to {}; it is {}", row.largest_crf, options.crf)};
-    return std::nullopt;
+    return size_error(options, row);
 }
 
 std::optional<FormatError> rate_error(const VideoOptions& options) {
@@ -125,7 +96,6 @@ std::optional<FormatError> rate_error(const VideoOptions& options) {
     const auto error = [&](const std::string& limit) {
         return FormatError{"fps", fmt::format("must be {}; it is {}", limit, given)};
     };
-    if (numerator < 1 || denominator < 1) return error("> 0");
     if (row.max_fps > 0 && numerator > row.max_fps * denominator)
         return error(fmt::format("at most {}, as {}", row.max_fps, row.rate_words));
     if (row.longest_frame_s > 0 &&
@@ -134,9 +104,6 @@ std::optional<FormatError> rate_error(const VideoOptions& options) {
     const long largest = std::max(numerator, denominator) / std::gcd(numerator, denominator);
     if (row.max_terms > 0 && largest > row.max_terms)
         return error(fmt::format("a fraction of whole numbers up to {}, as {}", row.max_terms, row.rate_words));
-    constexpr long max_of_libav = 1'000'000'000;
-    if (std::max(numerator, denominator) > max_of_libav)
-        return error(fmt::format("a fraction of whole numbers up to {}", max_of_libav));
     return std::nullopt;
 }
 

@@ -28,12 +28,12 @@ inline constexpr std::array<std::string_view, 3> pixel_format_names{"yuv420p", "
 inline constexpr std::array<std::string_view, 10> encoder_presets{
     "doppel", "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"};
 
-/// The limits of a format with one of its codecs. They include all that libav would refuse when a file is opened.
+/// A format with one of its codecs, how libav writes it, and its limits. The limits include all that libav would refuse
+/// when a file is opened.
 struct FormatRow {
     FilmFormat format;
-    std::string_view codec;  // of VideoOptions; empty if the format has only one codec
-    std::string_view title;
-    int largest_side;                  // px
+    const char *codec, *title;         // the codec has libav's name
+    const char *container, *encoder;   // libav's names; null: written without libav
     int largest_crf = 0;               // 0: no quality or encoder preset
     bool has_alpha = false;            // for formats with a quality: only with yuv420p
     std::string_view rate_words = {};  // why the frame rate is limited as follows; limits of 0 mean none
@@ -50,29 +50,29 @@ struct FormatRow {
 };
 // most viewers show a GIF frame of 1/100 s for 1/10 s
 inline constexpr std::array film_formats{
-    FormatRow{FilmFormat::mp4, "h264", "H.264", 16384, 51},
-    FormatRow{FilmFormat::webm, "vp9", "VP9", 16384, 63, true, "WebM counts milliseconds", 1000},
-    FormatRow{FilmFormat::webm, "av1", "AV1", 16384, 63, false,
+    FormatRow{FilmFormat::mp4, "h264", "H.264", "mp4", "libx264", 51},
+    FormatRow{FilmFormat::webm, "vp9", "VP9", "webm", "libvpx-vp9", 63, true, "WebM counts milliseconds", 1000},
+    FormatRow{FilmFormat::webm, "av1", "AV1", "webm", "libaom-av1", 63, false,
               "WebM counts milliseconds, and encoders of AV1 seconds at most", 1000, 0, 1},
-    FormatRow{FilmFormat::gif, "", "GIF", 65535, 0, false, "a frame of a GIF takes 2 to 65535 hundredths of a second",
-              50, 0, 655.35},
-    FormatRow{FilmFormat::apng, "", "animated PNG", 65535, 0, true,
+    FormatRow{FilmFormat::gif, "gif", "GIF", "gif", "gif", 0, false,
+              "a frame of a GIF takes 2 to 65535 hundredths of a second", 50, 0, 655.35},
+    FormatRow{FilmFormat::apng, "apng", "animated PNG", "apng", "apng", 0, true,
               "an animated PNG has 16 bits for each number of a fraction", 0, 65535},
-    FormatRow{FilmFormat::png, "", "PNG sequence", 65535, 0, true},
-    FormatRow{FilmFormat::html, "", "HTML page", 65535, 0, true},
-    FormatRow{FilmFormat::y4m, "", "Y4M", 65535},
-    FormatRow{FilmFormat::rgb, "", "raw RGB", 65535, 0, true},
+    FormatRow{FilmFormat::png, "png", "PNG sequence", nullptr, nullptr, 0, true},
+    FormatRow{FilmFormat::html, "", "HTML page", nullptr, nullptr, 0, true},
+    FormatRow{FilmFormat::y4m, "wrapped_avframe", "Y4M", "yuv4mpegpipe", "wrapped_avframe"},
+    FormatRow{FilmFormat::rgb, "rawvideo", "raw RGB", "rawvideo", "rawvideo", 0, true},
 };
 
-/// The codecs to choose from; empty if the format has only one.
-std::vector<std::string_view> codecs_of(FilmFormat format);
+/// The codecs of webm; the other formats have one each.
+inline constexpr std::array<std::string_view, 2> webm_codecs{"vp9", "av1"};
 
 /// The row of this codec, or the first row of the format, which has its default codec.
 const FormatRow& format_row(FilmFormat format, std::string_view codec);
 
 struct VideoOptions {
     FilmFormat format = FilmFormat::mp4;
-    std::string codec = {};    // "h264" (mp4), "vp9" or "av1" (webm); empty = the default, h264 or vp9
+    std::string codec = {};    // of webm_codecs; empty = the default
     Size size;                 // px; even if chroma is subsampled
     long fps_numerator = 120;  // frames/s
     long fps_denominator = 1;

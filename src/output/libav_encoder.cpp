@@ -147,15 +147,15 @@ std::string take_libav_error() {
     return text.empty() ? text : text.substr(text.find_first_not_of(' ', text.rfind('\n') + 1));
 }
 
-const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec) {
+const AVCodec& find_encoder(const std::vector<const char*>& names, std::string_view codec) {
     for (const char* name : names)
         if (const AVCodec* encoder = avcodec_find_encoder_by_name(name)) return *encoder;
     std::vector<std::string_view> others;
     void* position = nullptr;
     while (const AVCodec* other = av_codec_iterate(&position))
-        if (other->id == codec && av_codec_is_encoder(other)) others.emplace_back(other->name);
+        if (avcodec_get_name(other->id) == codec && av_codec_is_encoder(other)) others.emplace_back(other->name);
     throw io_failed("libav was built here without {}, which Doppel encodes with; its encoders of {}: {}",
-                    fmt::join(names, " and "), avcodec_get_name(codec),
+                    fmt::join(names, " and "), codec,
                     others.empty() ? "none" : fmt::format("{}", fmt::join(others, ", ")));
 }
 

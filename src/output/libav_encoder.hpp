@@ -39,7 +39,7 @@ template <class T>
 using Libav = std::unique_ptr<T, LibavFree>;
 
 /// The first of these encoders that libav contains. Throws Error (exit 4) that lists libav's encoders for the codec.
-const AVCodec& find_encoder(const std::vector<const char*>& names, AVCodecID codec);
+const AVCodec& find_encoder(const std::vector<const char*>& names, std::string_view codec);
 
 struct Encoding {
     VideoOptions options;
@@ -53,10 +53,7 @@ struct Encoding {
     std::string png_chunks = {};                            // inserted after the header of an APNG
 };
 
-/// Throws as check_video(), except for a missing encoder.
-void check_options(const VideoOptions& options);
-
-/// For checked options. Throws Error (exit 4) if libav lacks the encoder.
+/// For checked options of a format with an encoder. Throws Error (exit 4) if libav lacks the encoder.
 Encoding encoding_of(const VideoOptions& options);
 
 /// Opens an encoder with these parameters. `name` is named in errors. Throws Error (exit 4).

@@ -48,14 +48,14 @@ inline constexpr std::size_t encoder_threads = 8;
 /// mp4 and webm are BT.709 (limited range), converted and tagged, at a constant rate. Alpha is not premultiplied.
 /// The same pictures and options give the same bytes.
 /// take() converts what changed; a thread of the sink encodes, fed through a queue of a few frames.
-/// Throws Error: exit 2 for options that the format cannot have, exit 4 where libav has no encoder for it (those
+/// For options without format_error() and rate_error(). Throws Error: exit 4 where libav has no encoder for it (those
 /// present are listed) or writing fails, exit 130 soon after `stop` is set.
 /// With options.part_header, the file is a part for Sink::add(); the frames counted from options.first_frame.
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop = never_stopped);
 
-/// Checks as make_video_sink() does, without opening a file. For a sequence of PNGs nothing can be missing.
-void check_video(const VideoOptions& options);
+/// Throws Error (exit 4) where libav has no encoder for the format, as make_video_sink() does.
+void check_encoder(const VideoOptions& options);
 
 /// Versions of the video libraries for the manifest: "libavcodec 59.37.100, libavformat …".
 std::string libav_description();

@@ -49,15 +49,12 @@ private:
 
 std::unique_ptr<Sink> make_video_sink(const std::filesystem::path& place, const VideoOptions& options,
                                       const std::atomic<bool>& stop) {
-    check_options(options);
     if (options.format == FilmFormat::gif) return make_gif_sink(place, options, stop);
     return std::make_unique<VideoSink>(place, options, stop);
 }
 
-void check_video(const VideoOptions& options) {
-    check_options(options);
-    if (options.format == FilmFormat::png || options.format == FilmFormat::html) return;
-    encoding_of(options);
+void check_encoder(const VideoOptions& options) {
+    if (format_row(options.format, options.codec).encoder) encoding_of(options);
     if (options.format == FilmFormat::gif) check_gif_filters();
 }
 

@@ -1,4 +1,3 @@
-#include "base/error.hpp"
 #include "output/libav_encoder.hpp"
 #include "output/png.hpp"
 
@@ -6,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <string_view>
+#include <vector>
 
 namespace doppel {
 namespace {
@@ -85,21 +84,6 @@ long mp4_timescale(const VideoOptions& options) {
     return ticks;
 }
 
-/// How libav writes a format; WebM may also be AV1.
-struct LibavRow {
-    FilmFormat format;
-    const char *container, *encoder;
-    AVCodecID codec;
-};
-constexpr std::array libav_rows{
-    LibavRow{FilmFormat::mp4, "mp4", "libx264", AV_CODEC_ID_H264},
-    LibavRow{FilmFormat::webm, "webm", "libvpx-vp9", AV_CODEC_ID_VP9},
-    LibavRow{FilmFormat::gif, "gif", "gif", AV_CODEC_ID_GIF},
-    LibavRow{FilmFormat::apng, "apng", "apng", AV_CODEC_ID_APNG},
-    LibavRow{FilmFormat::y4m, "yuv4mpegpipe", "wrapped_avframe", AV_CODEC_ID_WRAPPED_AVFRAME},
-    LibavRow{FilmFormat::rgb, "rawvideo", "rawvideo", AV_CODEC_ID_RAWVIDEO},
-};
-
 AVPixelFormat pixels_of(const VideoOptions& options) {
     if (options.format == FilmFormat::gif) return AV_PIX_FMT_PAL8;
     if (options.format == FilmFormat::apng || options.format == FilmFormat::rgb)
@@ -111,24 +95,16 @@ AVPixelFormat pixels_of(const VideoOptions& options) {
 
 }  // namespace
 
-void check_options(const VideoOptions& options) {
-    for (const auto& error : {format_error(options), rate_error(options)})
-        if (error) throw bad_input("{} {}", error->key, error->words);
-}
-
 Encoding encoding_of(const VideoOptions& options) {
-    const auto* row = std::ranges::find(libav_rows, options.format, &LibavRow::format);
-    if (row == libav_rows.end()) throw std::logic_error("no encoder writes this format");
-    const bool is_av1 = options.codec == "av1";
-    const auto& encoder =
-        is_av1 ? find_encoder(av1_encoders(options), AV_CODEC_ID_AV1) : find_encoder({row->encoder}, row->codec);
+    const FormatRow& row = format_row(options.format, options.codec);
+    const bool is_av1 = row.codec == std::string_view("av1");
+    const auto& encoder = find_encoder(is_av1 ? av1_encoders(options) : std::vector{row.encoder}, row.codec);
     Encoding encoding{.options = options,
-                      .container = row->container,
+                      .container = row.container,
                       .encoder = &encoder,
                       .pixels = pixels_of(options),
                       .tick = {static_cast<int>(options.fps_denominator), static_cast<int>(options.fps_numerator)}};
-    if (format_row(options.format, options.codec).has_parts())
-        encoding.segment = options.segment(), encoding.segments = options.segments();
+    if (row.has_parts()) encoding.segment = options.segment(), encoding.segments = options.segments();
     if (options.format == FilmFormat::mp4) {
         encoding.encoder_options = x264_options(options);
         if (options.preset == "doppel") encoding.threads = slice_threads;

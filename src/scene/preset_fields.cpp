@@ -30,7 +30,6 @@ Field of_links(std::string_view key, std::string_view help, std::string_view uni
 }
 
 void format_fields(KeyVisitor& visit, VideoSpec& video) {
-    static const auto codecs = codecs_of(FilmFormat::webm);
     visit({"format", "file format; png: one picture a frame; html: a page to use in a browser; y4m, rgb: uncompressed"},
           video.format);
     const auto only = [&](bool applies, const char* what) {
@@ -40,7 +39,7 @@ void format_fields(KeyVisitor& visit, VideoSpec& video) {
     const FormatRow& row = format_row(video.format, video.codec);
     const bool is_webm = video.format == FilmFormat::webm;
     const auto encoded = only(row.is_encoded(), "of mp4 and webm");
-    visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", codecs}, video.codec);
+    visit({"codec", "of webm", "", {}, "vp9", only(is_webm, "a choice of webm"), "", webm_codecs}, video.codec);
     visit({"pixel_format", "of mp4, webm and y4m", "", {}, "", only(row.is_yuv(), "of mp4, webm and y4m")},
           video.pixel_format);
     visit({.key = "transparent",

@@ -217,7 +217,6 @@ std::size_t bytes_of(const AVPacket& packet) {
 
 Encoded encoded(const RecordedFrames& recorded, const VideoOptions& options, const Metadata& replaced,
                 const std::atomic<bool>& stop) {
-    check_options(options);
     auto encoding = encoding_of(options);
     replace(encoding.encoder_options, replaced);
     capture_libav_log();
