@@ -10,27 +10,34 @@ namespace doppel {
 namespace {
 
 // The golden policy: identical pictures pass; otherwise all of these limits must hold.
-constexpr int strong_difference = 3;      // /255
-constexpr long max_strong = 4;            // pixels
-constexpr int largest_allowed = 80;       // /255
-constexpr double max_differing = 0.08;    // of all pixels
-constexpr int tile = 32;                  // px
-constexpr double max_tile_mean = 0.25;    // /255
-constexpr double max_signed_mean = 0.03;  // /255
-constexpr int colours = 3, channels = 4;  // the fourth channel is opacity
+constexpr int strong_difference = 3;              // /255
+constexpr long max_strong = 4;                    // pixels
+constexpr int largest_allowed = 80;               // /255
+constexpr double max_differing = 0.08;            // of all pixels
+constexpr int tile = 32;                          // px
+constexpr double max_tile_mean = 0.25;            // /255
+constexpr double max_signed_mean = 0.03;          // /255
+constexpr std::size_t colours = 3, channels = 4;  // the fourth channel is opacity
 
-/// Mean absolute difference over the tile with corner (left, top): the larger of that of the colours and that of the
-/// opacity.
-double tile_mean(const Picture& expected, const Picture& actual, int left, int top) {
-    const int right = std::min(left + tile, expected.size.width), bottom = std::min(top + tile, expected.size.height);
-    std::array<long, channels> sums{};
-    for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; ++x)
-            for (int c = 0; c < channels; ++c)
-                sums[static_cast<std::size_t>(c)] += std::abs(expected.at(x, y)[c] - actual.at(x, y)[c]);
-    const double pixels = (right - left) * (bottom - top);
-    return std::max(static_cast<double>(sums[0] + sums[1] + sums[2]) / (colours * pixels),
-                    static_cast<double>(sums[3]) / pixels);
+/// Adds the differences of the pixels in a tile to the verdict; `mean` receives their sums.
+void add_tile(const Picture& expected, const Picture& actual, const Rect& area, GoldenVerdict& verdict) {
+    std::array<double, channels> distances{};
+    for (int y = area.top; y < area.bottom; ++y)
+        for (int x = area.left; x < area.right; ++x) {
+            int maximum = 0;
+            for (std::size_t c = 0; c < channels; ++c) {
+                const int difference = actual.at(x, y)[c] - expected.at(x, y)[c];
+                verdict.mean[c] += difference;
+                distances[c] += std::abs(difference);
+                maximum = std::max(maximum, std::abs(difference));
+            }
+            verdict.differing += maximum > 0;
+            verdict.strong += maximum > strong_difference;
+            verdict.largest = std::max(verdict.largest, maximum);
+        }
+    const double pixels = (area.right - area.left) * (area.bottom - area.top);
+    verdict.worst_tile = std::max(
+        {verdict.worst_tile, distances[3] / pixels, (distances[0] + distances[1] + distances[2]) / (colours * pixels)});
 }
 
 }  // namespace
@@ -41,24 +48,12 @@ GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
         throw Error(ExitCode::differs, fmt::format("the pictures differ in size: {}×{} expected, {}×{} found", width,
                                                    height, actual.size.width, actual.size.height));
     GoldenVerdict verdict;
-    std::array<long, channels> sums{};
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            int maximum = 0;
-            for (int c = 0; c < channels; ++c) {
-                const int difference = actual.at(x, y)[c] - expected.at(x, y)[c];
-                sums[static_cast<std::size_t>(c)] += difference;
-                maximum = std::max(maximum, std::abs(difference));
-            }
-            verdict.differing += maximum > 0;
-            verdict.strong += maximum > strong_difference;
-            verdict.largest = std::max(verdict.largest, maximum);
-        }
     for (int top = 0; top < height; top += tile)
         for (int left = 0; left < width; left += tile)
-            verdict.worst_tile = std::max(verdict.worst_tile, tile_mean(expected, actual, left, top));
+            add_tile(expected, actual, intersection({left, top, left + tile, top + tile}, all_of(expected.size)),
+                     verdict);
     const double pixels = static_cast<double>(width) * height;
-    for (std::size_t c = 0; c < channels; ++c) verdict.mean[c] = static_cast<double>(sums[c]) / pixels;
+    for (double& mean : verdict.mean) mean /= pixels;
 
     const auto rule = [&](bool passes, const std::string& broken) {
         if (passes) return;
