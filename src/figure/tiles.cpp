@@ -28,11 +28,8 @@ Picture part_of(const Picture& picture, int left, int top, Size size) {
 /// The first level fits into one tile; each further level has twice as many pixels per side.
 std::vector<Picture> levels_of(Picture cells) {
     std::vector<Picture> levels{std::move(cells)};
-    while (std::max(levels[0].size.width, levels[0].size.height) > tile) {
-        const auto [width, height] = levels[0].size;
-        const Size half{(width + 1) / 2, (height + 1) / 2};
-        levels.insert(levels.begin(), downscaled(part_of(levels[0], 0, 0, {2 * half.width, 2 * half.height}), half));
-    }
+    while (std::max(levels[0].size.width, levels[0].size.height) > tile)
+        levels.insert(levels.begin(), halved(levels[0]));
     return levels;
 }
 

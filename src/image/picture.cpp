@@ -1,7 +1,8 @@
 #include "image/picture.hpp"
 
-#include "base/error.hpp"
 #include "image/color.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -65,57 +66,33 @@ const std::array<double, 256>& linear_of_bytes() {
     return table;
 }
 
-/// Calls visit(i, share) for each old pixel that the new pixel k covers along one axis. The shares add up to 1.
-template <class Visit>
-void for_each_covered(int k, int new_length, int old_length, Visit&& visit) {
-    // in units of 1 / new_length of an old pixel all edges are integers
-    const long begin = long{k} * old_length, end = begin + old_length;
-    for (long i = begin / new_length; i * new_length < end; ++i) {
-        const long covered = std::min(end, (i + 1) * new_length) - std::max(begin, i * new_length);
-        visit(static_cast<int>(i), static_cast<double>(covered) / old_length);
-    }
-}
-
-/// Adds a row of pixels, weighted by `share`: premultiplied linear colours, and opacity.
-void add_row(const Picture& picture, int row, double share, std::vector<double>& sums) {
-    const auto& linear = linear_of_bytes();
-    const std::uint8_t* pixel = picture.at(0, row);
-    for (std::size_t i = 0; i < sums.size(); i += 4, pixel += 4) {
-        const double weight = share * pixel[3] / 255;
-        for (std::size_t c = 0; c < 3; ++c) sums[i + c] += weight * linear[pixel[c]];
-        sums[i + 3] += weight;
-    }
-}
-
 }  // namespace
 
-Picture downscaled(const Picture& picture, Size size) {
+Picture halved(const Picture& picture) {
     const auto [width, height] = picture.size;
-    if (size.width < 1 || size.height < 1 || size.width > width || size.height > height)
-        throw bad_input("a picture of {}x{} px cannot be reduced to {}x{}; 1x1 … {}x{} is possible", width, height,
-                        size.width, size.height, width, height);
-    Picture small(size);
-    std::vector<double> sums(std::size_t{4} * width);
-    for (int y = 0; y < size.height; ++y) {
-        std::ranges::fill(sums, 0.0);
-        for_each_covered(y, size.height, height, [&](int row, double share) { add_row(picture, row, share, sums); });
-        for (int x = 0; x < size.width; ++x) {
-            std::array<double, 4> mean{};
-            for_each_covered(x, size.width, width, [&](int column, double share) {
-                for (std::size_t c = 0; c < 4; ++c) mean[c] += share * sums[std::size_t{4} * column + c];
-            });
+    const auto& linear = linear_of_bytes();
+    Picture small({(width + 1) / 2, (height + 1) / 2});
+    for (int y = 0; y < small.size.height; ++y)
+        for (int x = 0; x < small.size.width; ++x) {
+            std::array<double, 4> mean{};  // premultiplied linear colours, and opacity
+            for (int column = 2 * x; column < std::min(2 * x + 2, width); ++column) {
+                std::array<double, 4> sum{};
+                for (int row = 2 * y; row < std::min(2 * y + 2, height); ++row) {
+                    const std::uint8_t* pixel = picture.at(column, row);
+                    const double weight = 0.25 * pixel[3] / 255;
+                    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * linear[pixel[c]];
+                    sum[3] += weight;
+                }
+                for (std::size_t c = 0; c < 4; ++c) mean[c] += sum[c];
+            }
             std::uint8_t* pixel = small.at(x, y);
             for (std::size_t c = 0; c < 3; ++c) pixel[c] = mean[3] > 0 ? byte_of(to_srgb(mean[c] / mean[3])) : 0;
             pixel[3] = byte_of(mean[3]);
         }
-    }
     return small;
 }
 
 Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px, Color background) {
-    if (pictures.empty()) throw bad_input("a contact sheet needs pictures; there is none");
-    if (columns < 1 || gap_px < 0)
-        throw bad_input("a contact sheet needs columns ≥ 1 and a gap ≥ 0 px; they are {} and {}", columns, gap_px);
     const auto [width, height] = pictures.front().size;
     const int count = static_cast<int>(pictures.size()), across = std::min(columns, count);
     const int rows = (count + columns - 1) / columns;
@@ -124,9 +101,6 @@ Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px
     for (std::size_t i = 0; i < sheet.rgba.size(); ++i) sheet.rgba[i] = fill[i % 4];
     for (int k = 0; k < count; ++k) {
         const Picture& picture = pictures[static_cast<std::size_t>(k)];
-        if (picture.size != pictures.front().size)
-            throw bad_input("a contact sheet needs pictures of one size; number {} is {}x{}, the first {}x{}", k,
-                            picture.size.width, picture.size.height, width, height);
         const int left = gap_px + k % columns * (width + gap_px), top = gap_px + k / columns * (height + gap_px);
         for (int row = 0; row < height; ++row)
             std::copy_n(picture.at(0, row), std::size_t{4} * width, sheet.at(left, top + row));

@@ -56,12 +56,12 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// opacity. Edges that were blended in linear light become slightly darker there. All pictures have one size.
 void matte(const Picture& black, const Picture& white, const Rect& within, Picture& into);
 
-/// The picture made smaller. Each new pixel is the mean of the old pixels it covers, in linear light, weighted by area
-/// and opacity. Throws Error (exit 2) if a side would grow or be empty.
-Picture downscaled(const Picture& picture, Size size);
+/// The picture at half the size. Each new pixel is the mean of the four that it covers, in linear light, weighted by
+/// opacity; beyond an odd side they are transparent.
+Picture halved(const Picture& picture);
 
-/// Pictures of one size in rows of `columns`, with `gap_px` of background between and around them. The last row may be
-/// incomplete. Throws Error (exit 2) without pictures, for different sizes, columns < 1 or gap_px < 0.
+/// Pictures of one size, at least one, in rows of `columns`, with `gap_px` of background between and around them. The
+/// last row may be incomplete.
 Picture contact_sheet(std::span<const Picture> pictures, int columns, int gap_px, Color background);
 
 }  // namespace doppel
