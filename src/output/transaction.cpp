@@ -158,7 +158,7 @@ void Transaction::recover() {
         return name == lock_name || name == backup_name || is_older;
     });
     std::stable_partition(names.begin(), names.end(), [](const auto& name) { return !name.ends_with(".json"); });
-    for (const auto& name : names) refuse_foreign_files(name, fs::is_directory(hidden(name)));
+    for (const auto& name : names) require(fs::is_directory(hidden(name)) ? name + "/" : name);
     for (const auto& name : names) move_in(name);
     sync_folder(folder_);
     written_ = written_files(folder_);
@@ -180,17 +180,17 @@ void Transaction::begin() {
     append(lock_, fmt::format("{}\n", getpid()), hidden(lock_name));
 }
 
-/// Throws if the name exists and may not be replaced by a file or a folder.
-void Transaction::refuse_foreign_files(const std::string& name, bool is_folder) const {
-    const auto path = folder_ / name;
+void Transaction::require(const std::string& name) const {
+    const bool is_folder = name.ends_with('/');
+    const auto path = folder_ / (is_folder ? name.substr(0, name.size() - 1) : name);
     require_type(path, is_folder);
     if (type_of(path) == Type::not_found) return;
     if (!is_folder) return refuse_foreign_file(name);
     for (const auto& file : names_in(path)) {
         const bool is_numbered = file.ends_with(".png") && file.find_first_not_of("0123456789") == file.size() - 4;
-        if (type_of(path / file) != Type::regular || (!is_numbered && !written_.contains(name + "/" + file)))
+        if (type_of(path / file) != Type::regular || (!is_numbered && !written_.contains(name + file)))
             throw not_ours(path / file);
-        refuse_foreign_file(name + "/" + file);
+        refuse_foreign_file(name + file);
     }
 }
 
@@ -218,20 +218,15 @@ void Transaction::refuse_foreign_file(const std::string& name) const {
 }
 
 fs::path Transaction::file(const std::string& name) {
-    refuse_foreign_files(name, false);
+    require(name);
     return hidden(parts_.emplace_back(Part{name}).name);
 }
 
 fs::path Transaction::directory(const std::string& name) {
-    refuse_foreign_files(name, true);
+    require(name + "/");
     const auto path = hidden(parts_.emplace_back(Part{name}).name);
     if (mkdir(path.c_str(), 0777) != 0) throw cannot(path, "made");
     return path;
-}
-
-void Transaction::require(const std::string& name) const {
-    const bool is_folder = name.ends_with('/');
-    refuse_foreign_files(is_folder ? name.substr(0, name.size() - 1) : name, is_folder);
 }
 
 void Transaction::remove(const std::string& name) {
@@ -261,7 +256,7 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
 }
 
 void Transaction::keep_only(const std::string& name, const std::string& new_name) {
-    refuse_foreign_files(new_name, false);
+    require(new_name);
     for (const Part& part : parts_)
         if (part.name != name) fs::remove_all(hidden(part.name));
     rename_file(hidden(name), hidden(new_name));
@@ -299,7 +294,7 @@ std::vector<fs::path> Transaction::publish() {
     for (Part& part : parts_) {
         const auto path = hidden(part.name);
         if (type_of(path) == Type::not_found) throw cannot(path, "published", ENOENT);
-        refuse_foreign_files(part.name, fs::is_directory(path));
+        require(fs::is_directory(path) ? part.name + "/" : part.name);
         part.finished = true;
         files.push_back(folder_ / part.name);
     }

@@ -77,7 +77,6 @@ private:
     void recover();
     void clear() const;
     void begin();
-    void refuse_foreign_files(const std::string& name, bool is_folder) const;
     void refuse_foreign_file(const std::string& name) const;
     void commit();
     void move_in(const std::string& name) const;
