@@ -138,7 +138,7 @@ public:
     }
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
-        SampledAreas changes = spare_.take();
+        SampledAreas changes = counting_.spare();
         convert(picture, changed, AV_PIX_FMT_RGBA, changes);
         counting_.give(std::move(changes));
     }
@@ -160,7 +160,6 @@ private:
             libdeflate_deflate_compress(compressor_.get(), changes.bytes.data(), size, packed_.data(), packed_.size()));
         written_(changes.areas, packed_);
         written_.end_block();
-        spare_.give_back(std::move(changes));
     }
 
     /// Applies the changes to the previous frame and passes it to the filters.
@@ -183,7 +182,7 @@ private:
         indices.give("buffer@palette", nullptr);
         BlockFile frames(waiting_, waiting_frames);
         std::filesystem::remove(waiting_);
-        SampledAreas changes = spare_.take();
+        SampledAreas changes = counting_.spare();
         for (long k = 0; frames.next(); ++k) {
             frames(changes.areas, packed_);
             const auto size = byte_count(AV_PIX_FMT_RGBA, changes.areas);
@@ -213,7 +212,6 @@ private:
         checked(libdeflate_alloc_decompressor())};
     Libav<AVFrame> frame_;
     Filters colours_;
-    Pool<SampledAreas> spare_;
     Workers<SampledAreas> counting_;
 };
 

@@ -12,10 +12,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,28 +27,23 @@ namespace {
 /// malloc would return them to the system each time; the page faults would cost a third of the time.
 class Arena {
 public:
-    /// The first free block, enlarged if it is too small. Null when memory is exhausted.
-    void* take(std::size_t size) {
-        const auto block = std::ranges::find(blocks_, false, &Block::taken);
+    /// Null if none of the blocks is free.
+    std::uint8_t* take(std::size_t size) {
+        const auto block = std::ranges::find(blocks_, false, &Block::is_taken);
         if (block == blocks_.end()) return nullptr;
-        if (block->size < size) {
-            block->bytes.reset(static_cast<std::byte*>(std::malloc(size)));
-            block->size = block->bytes ? size : 0;
-        }
-        block->taken = block->bytes != nullptr;
-        return block->bytes.get();
+        block->is_taken = true;
+        return block->bytes.make_room(size);
     }
 
     void give_back(const void* bytes) {
         for (Block& block : blocks_)
-            if (block.bytes.get() == bytes) block.taken = false;
+            if (block.bytes.data() == bytes) block.is_taken = false;
     }
 
 private:
     struct Block {
-        Owned<std::byte, std::free> bytes;
-        std::size_t size = 0;
-        bool taken = false;
+        Buffer bytes;
+        bool is_taken = false;
     };
     std::array<Block, 4> blocks_;  // filtered rows, one row, the compressed rows, the file
 };
@@ -64,7 +59,7 @@ unsigned char* compress(unsigned char* data, int length, int* compressed_length,
         libdeflate_alloc_compressor(level));
     if (!compressor) return nullptr;
     const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), std::size_t(length));
-    auto* compressed = static_cast<unsigned char*>(arena.take(bound));
+    auto* const compressed = arena.take(bound);
     if (!compressed) return nullptr;
     *compressed_length =
         static_cast<int>(libdeflate_zlib_compress(compressor.get(), data, std::size_t(length), compressed, bound));
@@ -133,18 +128,33 @@ AVPixelFormat pixels_of(const PngOptions& options) {
 /// The text chunks are inserted after signature and header.
 constexpr std::size_t header_bytes = 8 + 25;
 
-/// The bytes of the file. `samples` are those of the picture in the format pixels_of(); `path` is used in messages.
-std::string encoded(const std::filesystem::path& path, Size size, const std::uint8_t* samples,
-                    const PngOptions& options, const std::string& text_chunks) {
+/// The samples of the picture in the format pixels_of(); reuses the memory of `samples`.
+Buffer samples_of(const Picture& picture, const PngOptions& options, Buffer samples = {}) {
+    const Rect all = all_of(picture.size);
+    convert(picture, all, pixels_of(options), samples.make_room(byte_count(pixels_of(options), all)));
+    return samples;
+}
+
+/// The text chunks and, 11.3.5.3, the size of a pixel.
+std::string chunks_of(const PngOptions& options) {
+    auto chunks = png_text_chunks(options.metadata);
+    if (options.dpi > 0) {
+        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
+        chunks += chunk("pHYs", per_m + per_m + '\1');  // the unit is the metre
+    }
+    return chunks;
+}
+
+/// The bytes of the file.
+std::string encoded(Size size, const Buffer& samples, const PngOptions& options) {
     const int channels = options.with_alpha ? 4 : 3;
     int count = 0;
     auto* const bytes =
-        stbi_write_png_to_mem(samples, channels * size.width, size.width, size.height, channels, &count);
-    if (!bytes)
-        throw io_failed("{}: a picture of {}x{} px cannot be compressed", path.string(), size.width, size.height);
+        stbi_write_png_to_mem(samples.data(), channels * size.width, size.width, size.height, channels, &count);
+    if (!bytes) throw std::bad_alloc();
     std::string png(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
     arena.give_back(bytes);
-    return png.insert(header_bytes, text_chunks);
+    return png.insert(header_bytes, chunks_of(options));
 }
 
 class PngSink final : public Sink {
@@ -154,15 +164,10 @@ public:
         : place_of_(std::move(place_of)),
           options_(std::move(options)),
           stop_(stop),
-          text_chunks_(png_text_chunks(options_.metadata)),
           writers_(threads, threads, [this](Job& job) { write(job); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& /*changed*/) override {
-        Job job{place_of_(taken_++), picture.size, spare_.take()};
-        const Rect all = all_of(picture.size);
-        const AVPixelFormat format = pixels_of(options_);
-        convert(picture, all, format, job.bytes.make_room(byte_count(format, all)));
-        writers_.give(std::move(job));
+        writers_.give({place_of_(taken_++), picture.size, samples_of(picture, options_, writers_.spare().samples)});
     }
 
     void add(BlockFile& part) override {
@@ -179,21 +184,18 @@ private:
     struct Job {
         std::filesystem::path place;
         Size size;
-        Buffer bytes;
+        Buffer samples;
     };
 
-    void write(Job& job) {
+    void write(const Job& job) {
         throw_if_set(stop_);
-        write_file(job.place, encoded(job.place, job.size, job.bytes.data(), options_, text_chunks_));
-        spare_.give_back(std::move(job.bytes));
+        write_file(job.place, encoded(job.size, job.samples, options_));
     }
 
     const std::function<std::filesystem::path(long)> place_of_;
     const PngOptions options_;
     const std::atomic<bool>& stop_;
-    const std::string text_chunks_;
     long taken_ = 0;
-    Pool<Buffer> spare_;
     Workers<Job> writers_;
 };
 
@@ -211,33 +213,14 @@ std::string png_text_chunks(const Metadata& metadata) {
     return chunks;
 }
 
-/// The text chunks and, 11.3.5.3, the size of a pixel.
-static std::string chunks_of(const PngOptions& options) {
-    auto chunks = png_text_chunks(options.metadata);
-    if (options.dpi > 0) {
-        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
-        chunks += chunk("pHYs", per_m + per_m + '\1');  // the unit is the metre
-    }
-    return chunks;
-}
-
-/// The samples before compression.
-static Buffer samples_of(const Picture& picture, const PngOptions& options) {
-    const Rect all = all_of(picture.size);
-    Buffer samples;
-    convert(picture, all, pixels_of(options), samples.make_room(byte_count(pixels_of(options), all)));
-    return samples;
+std::string png_bytes(const Picture& picture, const PngOptions& options) {
+    return encoded(picture.size, samples_of(picture, options), options);
 }
 
 void write_png(const std::filesystem::path& place, const Picture& picture, const PngOptions& options,
                const std::atomic<bool>& stop) {
-    const auto samples = samples_of(picture, options);
     throw_if_set(stop);
-    write_file(place, encoded(place, picture.size, samples.data(), options, chunks_of(options)));
-}
-
-std::string png_bytes(const Picture& picture, const PngOptions& options) {
-    return encoded("a PNG", picture.size, samples_of(picture, options).data(), options, chunks_of(options));
+    write_file(place, png_bytes(picture, options));
 }
 
 std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,

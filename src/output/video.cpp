@@ -18,7 +18,7 @@ public:
                     [this](SampledAreas& changes) { encode(changes); }) {}
 
     void take(const Picture& picture, const std::vector<Rect>& changed) override {
-        SampledAreas changes = spare_.take();
+        SampledAreas changes = encoding_.spare();
         convert(picture, changed, pixels_, changes);
         encoding_.give(std::move(changes));
     }
@@ -32,16 +32,14 @@ public:
     }
 
 private:
-    void encode(SampledAreas& changes) {
+    void encode(const SampledAreas& changes) {
         put(changes, encoder_.frame());
-        spare_.give_back(std::move(changes));
         encoder_.send_frame(sent_++, 1);
     }
 
     Encoder encoder_;
     const AVPixelFormat pixels_ = encoder_.pixels();
     std::int64_t sent_;
-    Pool<SampledAreas> spare_;
     Workers<SampledAreas> encoding_;
 };
 

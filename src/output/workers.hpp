@@ -65,29 +65,6 @@ private:
     bool closed_ = false;
 };
 
-/// Objects that are reused together with their memory; thread-safe.
-template <class T>
-class Pool {
-public:
-    /// A returned object, or a new one.
-    T take() {
-        const std::lock_guard lock(mutex_);
-        if (free_.empty()) return {};
-        T thing = std::move(free_.back());
-        free_.pop_back();
-        return thing;
-    }
-
-    void give_back(T thing) {
-        const std::lock_guard lock(mutex_);
-        free_.push_back(std::move(thing));
-    }
-
-private:
-    std::mutex mutex_;
-    std::vector<T> free_;
-};
-
 /// A thread pool that calls work() for each object given, in order of arrival. The first exception stops all threads
 /// and is rethrown by give() or finish(). Destroyed unfinished, it discards what is queued.
 template <class T>
@@ -107,6 +84,15 @@ public:
         if (!queue_.push(std::move(thing))) std::rethrow_exception(error_);
     }
 
+    /// An object whose work is done, to reuse its memory, or a new one.
+    T spare() {
+        const std::lock_guard lock(done_mutex_);
+        if (done_.empty()) return {};
+        T thing = std::move(done_.back());
+        done_.pop_back();
+        return thing;
+    }
+
     /// Waits until all work is done.
     void finish() {
         queue_.close();
@@ -117,7 +103,11 @@ public:
 private:
     void run() {
         try {
-            while (std::optional<T> thing = queue_.pop()) work_(*thing);
+            while (std::optional<T> thing = queue_.pop()) {
+                work_(*thing);
+                const std::lock_guard lock(done_mutex_);
+                done_.push_back(std::move(*thing));
+            }
         } catch (...) {
             std::call_once(failed_, [this] {
                 error_ = std::current_exception();
@@ -128,6 +118,8 @@ private:
 
     Queue<T> queue_;
     std::function<void(T&)> work_;
+    std::mutex done_mutex_;
+    std::vector<T> done_;
     std::once_flag failed_;
     std::exception_ptr error_;
     std::vector<std::jthread> threads_;  // declared last: joined before the other members are destroyed
