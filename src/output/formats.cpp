@@ -14,10 +14,6 @@ extern "C" {
 namespace doppel {
 namespace {
 
-std::string_view name_of_format(const VideoOptions& options) {
-    return format_names[static_cast<std::size_t>(options.format)];
-}
-
 std::string words_of(Size size) {
     return fmt::format("[{}, {}]", size.width, size.height);
 }
@@ -64,7 +60,7 @@ std::optional<FormatError> alpha_error(const VideoOptions& options, const Format
     };
     if (!options.transparent) return std::nullopt;
     if (!row.has_alpha && format_row(options.format, "").has_alpha) return error("codec", row.codec);
-    if (!row.has_alpha) return error("format", name_of_format(options));
+    if (!row.has_alpha) return error("format", format_names[static_cast<std::size_t>(options.format)]);
     if (row.is_encoded() && options.pixel_format != PixelFormat::yuv420)
         return error("pixel_format", pixel_format_names[static_cast<std::size_t>(options.pixel_format)]);
     return std::nullopt;

@@ -59,10 +59,9 @@ Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, con
     const auto address =
         fmt::format("{}{}", encoding.options.is_stream ? "pipe:" : "file:/proc/self/fd/", fileno(file));
     AVFormatContext* format = nullptr;
-    avformat_alloc_output_context2(&format, nullptr, encoding.container, address.c_str());
+    avformat_alloc_output_context2(&format, nullptr, encoding.row.container, address.c_str());
     auto muxer = owned(format);
-    if (encoding.container == std::string_view("yuv4mpegpipe"))
-        muxer->strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;  // ten bits
+    if (encoding.row.format == FilmFormat::y4m) muxer->strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;  // ten bits
     check_libav(avio_open(&muxer->pb, address.c_str(), AVIO_FLAG_WRITE), path, "cannot be written");
     return muxer;
 }
@@ -72,11 +71,6 @@ Stream output_file(const std::filesystem::path& place) {
     Stream file(fdopen(dup(STDOUT_FILENO), "wb"));
     if (!file) throw cannot("standard output", "written");
     return file;
-}
-
-bool has_chroma(AVPixelFormat pixels) {
-    const AVPixFmtDescriptor& about = *av_pix_fmt_desc_get(pixels);
-    return !(about.flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL));
 }
 
 void set_side_data(AVPacket& packet, AVPacketSideDataType type, std::string_view bytes) {
@@ -138,12 +132,9 @@ void capture_libav_log() {
     setenv("SVT_LOG", "0", 0);
 }
 
-// removes control characters and final full stops
 std::string take_libav_error() {
     auto text = std::exchange(messages, {});
-    for (char& c : text)
-        if ((c >= 0 && c < ' ' && c != '\n') || c == 127) c = ' ';
-    text.resize(text.find_last_not_of(" \n.") + 1);
+    text.resize(text.find_last_not_of(" \n\r.") + 1);  // without final full stops
     return text.empty() ? text : text.substr(text.find_first_not_of(' ', text.rfind('\n') + 1));
 }
 
@@ -196,7 +187,7 @@ void put(const SampledAreas& changes, AVFrame& frame) {
 Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& name) {
     const std::string_view encoder = encoding.encoder->name;
     // if threads cannot be started, SVT-AV1 (some 110 threads) hangs and libaom aborts
-    if (has_chroma(encoding.pixels)) need_threads(encoder == "libsvtav1" ? 200 : 3 * encoding.threads);
+    if (encoding.row.is_yuv()) need_threads(encoder == "libsvtav1" ? 200 : 3 * encoding.threads);
     auto codec = owned(avcodec_alloc_context3(encoding.encoder));
     codec->width = encoding.options.size.width;
     codec->height = encoding.options.size.height;
@@ -205,7 +196,7 @@ Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& 
                         static_cast<int>(encoding.options.fps_denominator)};
     codec->time_base = encoding.tick;
     codec->pix_fmt = encoding.pixels;
-    if (has_chroma(encoding.pixels)) tag_bt709(*codec);
+    if (encoding.row.is_yuv()) tag_bt709(*codec);
     codec->thread_count = static_cast<int>(encoding.threads);
     codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     for (const auto& [key, value] : encoding.encoder_options)

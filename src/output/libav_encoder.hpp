@@ -43,7 +43,7 @@ const AVCodec& find_encoder(const std::vector<const char*>& names, std::string_v
 
 struct Encoding {
     VideoOptions options;
-    const char* container;           // libav's name
+    const FormatRow& row;
     const AVCodec* encoder;          // from find_encoder()
     AVPixelFormat pixels;            // Y, Cb and Cr are tagged BT.709, limited range, chroma in the centre
     AVRational tick;                 // time base, s

@@ -100,7 +100,7 @@ Encoding encoding_of(const VideoOptions& options) {
     const bool is_av1 = row.codec == std::string_view("av1");
     const auto& encoder = find_encoder(is_av1 ? av1_encoders(options) : std::vector{row.encoder}, row.codec);
     Encoding encoding{.options = options,
-                      .container = row.container,
+                      .row = row,
                       .encoder = &encoder,
                       .pixels = pixels_of(options),
                       .tick = {static_cast<int>(options.fps_denominator), static_cast<int>(options.fps_numerator)}};
