@@ -16,7 +16,7 @@ Color axis_color(const Plot& plot, bool right, const PlotStyle& style) {
     std::optional<Color> color;
     for (const Curve& curve : plot.curves) {
         if (curve.right != right || curve.quiet) continue;
-        const Color own = curve_color(curve, style, false);
+        const Color own = curve_color(curve, style.theme);
         if (color && !(*color == own)) return style.theme.text;
         color = own;
     }
@@ -39,24 +39,16 @@ std::vector<Heading> headings(const Plot& plot, const AxisWords& words, const Pl
     return all;
 }
 
-/// Whether all fit on one line: at most one at the left and one at the right.
+/// Whether all fit on one line, one at the left and one at the right.
 bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle& style) {
     float need = 1.5f * style.axis * static_cast<float>(all.size() - 1);
     for (const Heading& heading : all) need += text_width(heading.text, style.axis);
-    const auto from_right =
-        std::count_if(all.begin(), all.end(), [](const Heading& h) { return h.align == Align::right; });
-    return all.size() == 1 || (need <= width && from_right <= 1);
+    return all.size() == 1 || need <= width;
 }
 
-/// An axis at an edge of the area. The numbers below it stay inside `held`.
-void draw_axis(const Axis& axis, const PlotAxis& requested, const AxisStyle& style, const Area& area, const Area& held,
-               PageList& list) {
-    const auto ticks = spaced_ticks(axis, style.edge == AxisStyle::Edge::bottom, style.em, requested.every);
-    for (const auto& item : page_list(axis_items(axis, ticks, area, held, style))) list.push_back(item);
-}
-
-void draw_x_label(const std::string& text, const Area& area, const Area& held, const PlotStyle& style, PageList& list) {
+void draw_x_label(const std::string& text, const Panel& panel) {
     if (text.empty()) return;
+    const auto& [plot, axes, area, held, words, style, list] = panel;
     const float half = text_width(text, style.axis) / 2, baseline = area.bottom + 1.45f * style.tick;
     const float middle =
         std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
@@ -69,19 +61,24 @@ std::vector<Tick> ticks_of(const Axis& axis, const PlotAxis& requested, bool acr
     return spaced_ticks(axis, across, style.tick, requested.every);
 }
 
-void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
-               const AxisWords& words, const PlotStyle& style, PageList& list) {
+void draw_axes(const Panel& panel) {
     using Edge = AxisStyle::Edge;
+    const Plot& plot = panel.plot;
+    const Area& area = panel.area;
+    const PlotStyle& style = panel.style;
     const Theme& theme = style.theme;
-    const auto styled = [&](Edge edge, bool has_grid, bool has_numbers, Color text) {
-        return AxisStyle{edge, style.tick, style.line, theme.grid, theme.frame, text, has_grid, has_numbers};
+    PageList& list = panel.list;
+    const auto draw = [&](const Axis& axis, const PlotAxis& requested, Edge edge, bool has_numbers, Color text) {
+        const bool has_grid = !plot.map && edge != Edge::right;
+        const AxisStyle own{edge, style.tick, style.line, theme.grid, theme.frame, text, has_grid, has_numbers};
+        const auto ticks = ticks_of(axis, requested, edge == Edge::bottom, style);
+        for (const auto& item : page_list(axis_items(axis, ticks, area, panel.held, own))) list.push_back(item);
     };
-    draw_axis(x, plot.x, styled(Edge::bottom, !plot.map, words.x, theme.quiet_text), area, held, list);
-    if (words.x) draw_x_label(plot.x.label, area, held, style, list);
-    draw_axis(y, plot.y, styled(Edge::left, !plot.map, words.y, theme.quiet_text), area, held, list);
-    if (right) {
-        draw_axis(*right, *plot.right, styled(Edge::right, false, true, axis_color(plot, true, style)), area, held,
-                  list);
+    draw(panel.axes.x, plot.x, Edge::bottom, panel.words.x, theme.quiet_text);
+    if (panel.words.x) draw_x_label(plot.x.label, panel);
+    draw(panel.axes.y, plot.y, Edge::left, panel.words.y, theme.quiet_text);
+    if (plot.right) {
+        draw(*panel.axes.right, *plot.right, Edge::right, true, axis_color(plot, true, style));
         list.push_back(vertical_line(area.right, area.top, area.bottom, style.line, theme.frame));
     }
     list.push_back(vertical_line(area.left, area.top, area.bottom, style.line, theme.frame));
@@ -111,15 +108,15 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
     fitted.has_notes = fitted.has_notes && has_note;
 }
 
-void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
-                   const AxisWords& words, const PlotStyle& style, PageList& list) {
+void draw_headings(const Panel& panel, float title, float labels) {
+    const auto& [plot, axes, area, held, words, style, list] = panel;
     // above the panel, and above the panel's own axis labels
     const bool own_words = plot.right || (plot.map && !plot.map->shares_bar);
     const float left = words.y ? held.left : area.left;
     const float right = own_words ? held.right : area.right;
-    const auto write = [&](const Heading& heading, float baseline, float em, Weight weight) {
+    const auto write = [&, &into = list](const Heading& heading, float baseline, float em, Weight weight) {
         const float x = heading.align == Align::left ? left : right;
-        list.push_back(Label{heading.text, {x, baseline}, em, heading.align, weight, heading.color});
+        into.push_back(Label{heading.text, {x, baseline}, em, heading.align, weight, heading.color});
     };
     const float first = held.top + 0.95f * style.heading;
     if (!plot.title.empty()) write({plot.title, Align::left, style.theme.text}, first, style.heading, Weight::bold);

@@ -44,9 +44,21 @@ struct AxisWords {
     bool x = true, y = true, y_name = true;
 };
 
-/// Grid, axes, ticks with labels, and the label of the x axis. All text stays inside `held`; `right` may be null.
-void draw_axes(const Plot& plot, const Axis& x, const Axis& y, const Axis* right, const Area& area, const Area& held,
-               const AxisWords& words, const PlotStyle& style, PageList& list);
+/// A panel that is being drawn.
+struct Panel {
+    const Plot& plot;
+    const PlotRanges& axes;  // with their pixels
+    Area area, held;         // inside the axes, and with all texts around them
+    const AxisWords& words;
+    const PlotStyle& style;
+    PageList& list;
+
+    bool is_map() const { return plot.map.has_value(); }
+    const Axis& y_of(const Curve& curve) const { return curve.right && axes.right ? *axes.right : axes.y; }
+};
+
+/// Grid, axes, ticks with labels, and the label of the x axis.
+void draw_axes(const Panel& panel);
 
 /// Height of the labels above a panel of this width, px: one line if all fit side by side, otherwise one each.
 float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style);
@@ -55,10 +67,9 @@ float axis_labels_height(const Plot& plot, float width, const AxisWords& words, 
 /// fit.
 void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle& fitted);
 
-/// The panel's title in the uppermost `title` px of `held`. The labels of the vertical axes and of the map's bar are in
-/// the `labels` px below.
-void draw_headings(const Plot& plot, const Area& area, const Area& held, float title, float labels,
-                   const AxisWords& words, const PlotStyle& style, PageList& list);
+/// The panel's title in the uppermost `title` px. The labels of the vertical axes and of the map's bar are in the
+/// `labels` px below.
+void draw_headings(const Panel& panel, float title, float labels);
 
 CellImage map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
 
@@ -112,19 +123,16 @@ struct DrawnCurve {
 DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& area);
 
 /// The colour of a curve; over a map (dark to bright) it is bright, with a dark edge.
-Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map);
+Color curve_color(const Curve& curve, const Theme& theme, bool over_map = false);
 
 /// The uncertainty band, if there is one.
-void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-               PageList& list);
+void draw_band(const Curve& curve, const Panel& panel);
 
 /// Lines and marks.
-void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
-                PageList& list);
+void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Panel& panel);
 
 /// Polylines, dashed if the curve is.
-void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
-               const PlotStyle& style, PageList& list);
+void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color, const Panel& panel);
 
 /// Discs at many points as an image with `scale` pixels per px: cheaper than paths. Discs of less than full opacity add
 /// up where they overlap. They are clipped to `area`.

@@ -87,17 +87,18 @@ DrawnCurve drawn(const Curve& curve, const Axis& x, const Axis& y, const Area& a
     return made;
 }
 
-Color curve_color(const Curve& curve, const PlotStyle& style, bool over_map) {
+Color curve_color(const Curve& curve, const Theme& of_page, bool over_map) {
     if (over_map && curve.quiet) return rgb(0xffffff);
-    const Theme& theme = over_map ? themes.front() : style.theme;
+    const Theme& theme = over_map ? themes.front() : of_page;
     if (curve.quiet) return curve.mark == Mark::points ? theme.quiet_text : theme.cursor;
     return theme.palette[static_cast<std::size_t>(curve.hue) % theme.palette.size()];
 }
 
-void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& area, const PlotStyle& style,
-               PageList& list) {
+void draw_band(const Curve& curve, const Panel& panel) {
     if (curve.uncertainty.empty()) return;
-    Polylines band{.lines = {}, .color = curve_color(curve, style, false).with_alpha(0.2f), .within = area};
+    const Axis &x = panel.axes.x, &y = panel.y_of(curve);
+    const Color color = curve_color(curve, panel.style.theme).with_alpha(0.2f);
+    Polylines band{.lines = {}, .color = color, .within = panel.area};
     const auto place = [](double at_x, double at_y) {
         constexpr double far = 1e5;  // px: outside any panel, and inside the range of Cairo's numbers
         return Point{static_cast<float>(std::clamp(at_x, -far, far)), static_cast<float>(std::clamp(at_y, -far, far))};
@@ -122,37 +123,40 @@ void draw_band(const Curve& curve, const Axis& x, const Axis& y, const Area& are
         below.push_back(place(at, lower));
     }
     end();
-    list.push_back(std::move(band));
+    panel.list.push_back(std::move(band));
 }
 
 void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color,
-               const PlotStyle& style, PageList& list) {
+               const Panel& panel) {
     if (lines.empty()) return;
-    const float dash = dashed ? std::max(9 * style.unit, 5.0f) + width : 0;
-    list.push_back(Polylines{lines, width, color, dash, std::max(7 * style.unit, 4.0f) + width});
+    const float unit = panel.style.unit, dash = dashed ? std::max(9 * unit, 5.0f) + width : 0;
+    panel.list.push_back(Polylines{lines, width, color, dash, std::max(7 * unit, 4.0f) + width});
 }
 
-void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Area& area, const PlotStyle& style, bool over_map,
-                PageList& list) {
-    const Color background = style.theme.background;
+void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Panel& panel) {
+    const PlotStyle& style = panel.style;
+    const Theme& theme = style.theme;
+    PageList& list = panel.list;
+    const bool over_map = panel.is_map();
     if (curve.background == Background::band)
-        return draw_line(drawn.lines, 6 * style.curve, false, mixed(background, style.theme.open, 0.22f), style, list);
+        return draw_line(drawn.lines, 6 * style.curve, false, mixed(theme.background, theme.open, 0.22f), panel);
     if (curve.background == Background::line)
         return draw_line(drawn.lines, style.thin, curve.dashed,
-                         mixed(background, curve_color(curve, style, false), 0.3f), style, list);
-    const Color color = curve_color(curve, style, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
+                         mixed(theme.background, curve_color(curve, theme), 0.3f), panel);
+    const Color color = curve_color(curve, theme, over_map), edge = rgb(0x0b0e13).with_alpha(0.75f);
     const bool thin = (curve.quiet && !over_map) || curve.x.size() > many;
     const float width = thin ? style.thin : style.curve;
     const float casing = std::max(1.6f * style.unit, 1.0f);
-    if (over_map) draw_line(drawn.lines, width + 2 * casing, false, edge, style, list);
-    draw_line(drawn.lines, width, curve.dashed, color, style, list);
+    if (over_map) draw_line(drawn.lines, width + 2 * casing, false, edge, panel);
+    draw_line(drawn.lines, width, curve.dashed, color, panel);
 
     float radius = curve.quiet ? 0.75f * style.marker : style.marker;
     if (curve.mark == Mark::line) radius = 0.8f * width;
     if (drawn.marks_in_panel > many) {
         // px for unit 1: the width of a panel to which `many` refers, and the smallest marks that give no moiré pattern
         constexpr float wide = 450, minimum = 1;
-        const float side = std::sqrt(std::max(area.width(), 0.0f) * std::max(area.height(), 0.0f)) / style.unit;
+        const Area& area = panel.area;
+        const float side = std::sqrt(area.width() * area.height()) / style.unit;
         const float share = static_cast<float>(many) / static_cast<float>(drawn.marks_in_panel);
         radius = std::max(radius * std::sqrt(share) * std::min(side / wide, 1.0f), minimum * style.unit);
         const float opacity = curve.mark == Mark::density ? 0.4f : 1;

@@ -29,13 +29,11 @@ struct Found {
 };
 
 /// Draws a label; over a map, on a dark box.
-void write(const Label& label, bool over_map, PageList& list) {
-    if (over_map) {
-        const Area box = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
-        list.push_back(
-            Box{box.left, box.top, box.right, box.bottom, 0.25f * label.size, rgb(0x0b0e13).with_alpha(0.62f)});
-    }
-    list.push_back(label);
+void write(const Label& label, const Panel& panel) {
+    const auto [left, top, right, bottom] = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
+    if (panel.is_map())
+        panel.list.push_back(Box{left, top, right, bottom, 0.25f * label.size, rgb(0x0b0e13).with_alpha(0.62f)});
+    panel.list.push_back(label);
 }
 
 /// Candidate points of the curve, from its right end on, each with its distance from that end, 0…1.
@@ -132,10 +130,10 @@ std::optional<Found> with_leader(Point mark, const LabelText& text, const LabelP
     return {};
 }
 
-LabelText text_for(const Curve& curve, float size, const PlotStyle& style, bool over_map) {
-    const bool plain = curve.quiet && !over_map;
-    return {curve.label, plain ? 0.9f * size : size, plain ? Weight::regular : Weight::bold,
-            plain ? style.theme.quiet_text : curve_color(curve, style, over_map)};
+LabelText text_for(const Curve& curve, float size, const Panel& panel) {
+    const Theme& theme = panel.style.theme;
+    if (curve.quiet && !panel.is_map()) return {curve.label, 0.9f * size, Weight::regular, theme.quiet_text};
+    return {curve.label, size, Weight::bold, curve_color(curve, theme, panel.is_map())};
 }
 
 /// The labels placed beside or on the curves, and the curves without space for one.
@@ -147,16 +145,17 @@ struct PlacedLabels {
 };
 
 /// Places labels of `size` at all curves except those named elsewhere.
-PlacedLabels place_labels(const std::vector<Curve>& curves, const std::vector<DrawnCurve>& drawn, float size,
-                          bool dense, const std::vector<std::size_t>& elsewhere, const PlotStyle& style, bool over_map,
-                          LabelPlacer placer) {
+PlacedLabels place_labels(const std::vector<DrawnCurve>& drawn, float size, bool dense,
+                          const std::vector<std::size_t>& elsewhere, const Panel& panel, LabelPlacer placer) {
     constexpr std::size_t max_marks = 60;  // beside more marks no label has space
+    const auto& curves = panel.plot.curves;
+    const PlotStyle& style = panel.style;
     PlacedLabels made;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& curve = curves[i];
         const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
         if (curve.label.empty() || empty || std::count(elsewhere.begin(), elsewhere.end(), i) > 0) continue;
-        const LabelText text = text_for(curve, size, style, over_map);
+        const LabelText text = text_for(curve, size, panel);
         const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
         std::optional<Found> found;
         if (curve.mark != Mark::points || drawn[i].points.size() <= max_marks)
@@ -183,17 +182,18 @@ PlacedLabels place_labels(const std::vector<Curve>& curves, const std::vector<Dr
 
 }  // namespace
 
-LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const LabelNeeds& given,
-                        const Area& label_beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list) {
+LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& given, const LabelPlacer& placer,
+                        const Panel& panel) {
     constexpr int many = 10;  // so many curves leave little space beside each
-    const auto& curves = plot.curves;
-    const bool over_map = plot.map.has_value();
+    const auto& curves = panel.plot.curves;
+    const PlotStyle& style = panel.style;
+    PageList& list = panel.list;
     const float small = style.on_paper ? style.text : 0.8f * style.text;  // on paper, the size that is asked for
     bool dense = given.small ||
                  std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
     const auto tried = [&](float size, const LabelPlacer& left) {
-        return place_labels(curves, drawn, size, dense, others, style, over_map, left);
+        return place_labels(drawn, size, dense, others, panel, left);
     };
     bool is_small = dense;
     float size = is_small ? small : style.text;
@@ -202,7 +202,7 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
     if (!dense && !made.left_out.empty()) {
         PlacedLabels fine = tried(small, placer);
         const auto legend = fitted_legend(curves, made.left_out, size, placer);
-        dense = !fine.left_out.empty() && (plot.needs_no_legend || !legend);
+        dense = !fine.left_out.empty() && (panel.plot.needs_no_legend || !legend);
         if (dense) fine = tried(small, placer);
         if (dense || fine.left_out.empty()) made = std::move(fine), size = small, is_small = true;
     }
@@ -217,29 +217,29 @@ LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, 
     }
     const LabelNeeds needs{given.small || is_small,
                            others.empty() || legend ? given.legend : legend_gutter(curves, size)};
-    if (!others.empty() && !legend && given.legend > 0) {
-        const bool covers_map = false;
-        draw_legend(legend_in(label_beside, curves, others, size), curves, style, covers_map, list);
-    }
-    if (legend) draw_legend(*legend, curves, style, over_map, list);
-    const Color background = (over_map ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
+    const Area& held = panel.held;
+    if (!others.empty() && !legend && given.legend > 0)
+        legend =
+            legend_in({held.right - given.legend, panel.area.top, held.right, panel.area.bottom}, curves, others, size);
+    if (legend) draw_legend(*legend, panel);
+    const Color background = (panel.is_map() ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
     for (const Area& g : made.backgrounds)
         list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
     for (const Capsule& leader : made.leaders) list.push_back(leader);
-    for (const Label& label : made.labels) write(label, over_map, list);
+    for (const Label& label : made.labels) write(label, panel);
     return needs;
 }
 
-void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
-                 LabelPlacer& placer, PageList& list) {
-    const Area& area = placer.area();
-    for (const Rule& rule : rules) {
+void label_rules(const Panel& panel, LabelPlacer& placer) {
+    const Area& area = panel.area;
+    for (const Rule& rule : panel.plot.rules) {
         if (rule.label.empty()) continue;
         const bool level = rule.orientation == Rule::Orientation::horizontal;
-        const double share = (level ? y : x).share(rule.at);
-        if (!(share >= 0 && share <= 1)) continue;
-        const float size = 0.9f * style.text, at = (level ? y : x).at(rule.at), gap = 0.35f * size;
-        LabelText text{rule.label, size, Weight::regular, over_map ? rgb(0xffffff) : style.theme.quiet_text};
+        const Axis& axis = level ? panel.axes.y : panel.axes.x;
+        if (const double share = axis.share(rule.at); !(share >= 0 && share <= 1)) continue;
+        const float size = 0.9f * panel.style.text, at = axis.at(rule.at), gap = 0.35f * size;
+        const Color color = panel.is_map() ? rgb(0xffffff) : panel.style.theme.quiet_text;
+        LabelText text{rule.label, size, Weight::regular, color};
         text.size = fitting_size(text.text, size, text.weight, 0.94f * area.width());
         const float w = text.width(), h = text.height();
         std::optional<Found> best;
@@ -261,7 +261,7 @@ void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, c
         }
         if (!best) continue;
         placer.add_text(text_area(best->label).grown(0.3f * size, 0.1f * size));
-        write(best->label, over_map, list);
+        write(best->label, panel);
     }
 }
 

@@ -56,19 +56,17 @@ float legend_gutter(const std::vector<Curve>& curves, float size);
 /// In the upper left corner of `area`, with text of at most `size` px per em.
 Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float maximum);
 
-void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
-                 PageList& list);
+void draw_legend(const Legend& legend, const Panel& panel);
 
 /// Writes the labels of rules beside them, where they hide the least.
-void label_rules(const std::vector<Rule>& rules, const Axis& x, const Axis& y, const PlotStyle& style, bool over_map,
-                 LabelPlacer& placer, PageList& list);
+void label_rules(const Panel& panel, LabelPlacer& placer);
 
 /// Labels the curves: beside each curve where the label touches nothing, smaller if necessary, otherwise in a legend
 /// that covers nothing. If there are many curves or no place for a legend, labels are on the curves. The rest is in a
-/// legend in `beside`, the space at the right of the panel that is `given`. Curve i has number i in `placer`. Returns
+/// legend in the space at the right of the panel that is `given`. Curve i has number i in `placer`. Returns
 /// the space that the labels need.
-LabelNeeds label_curves(const Plot& plot, const std::vector<DrawnCurve>& drawn, const LabelNeeds& given,
-                        const Area& beside, const PlotStyle& style, const LabelPlacer& placer, PageList& list);
+LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& given, const LabelPlacer& placer,
+                        const Panel& panel);
 
 /// The area that the ink of a line of text may cover, with the tallest accents and deepest descenders of the font.
 Area text_area(const Label& label);

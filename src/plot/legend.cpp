@@ -31,13 +31,12 @@ std::optional<Point> empty_place(float width, float height, float margin, const 
     return best;
 }
 
-void draw_sample(const Curve& curve, float left, float right, float y, const PlotStyle& style, bool over_map,
-                 PageList& list) {
+void draw_sample(const Curve& curve, float left, float right, float y, const Panel& panel) {
     DrawnCurve sample;
     const float middle = (left + right) / 2;
     if (curve.mark != Mark::points) sample.lines.push_back({{left, y}, {right, y}});
     if (curve.mark != Mark::line) sample.points.push_back({middle, y});
-    draw_curve(curve, sample, {}, style, over_map, list);
+    draw_curve(curve, sample, panel);
 }
 
 // dimensions of a legend, em
@@ -76,17 +75,19 @@ Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector
     return {std::move(which), {area.left, area.top, area.left + width * size, area.top + height * size}, size};
 }
 
-void draw_legend(const Legend& legend, const std::vector<Curve>& curves, const PlotStyle& style, bool over_map,
-                 PageList& list) {
+void draw_legend(const Legend& legend, const Panel& panel) {
     const auto& [which, box, size] = legend;
-    const Color background = over_map ? rgb(0x0b0e13).with_alpha(0.7f) : style.theme.background.with_alpha(0.88f);
-    list.push_back(Box{box.left, box.top, box.right, box.bottom, 0.3f * size, background});
+    const Theme& theme = panel.style.theme;
+    const bool over_map = panel.is_map();
+    const Color background = over_map ? rgb(0x0b0e13).with_alpha(0.7f) : theme.background.with_alpha(0.88f);
+    panel.list.push_back(Box{box.left, box.top, box.right, box.bottom, 0.3f * size, background});
     const float left = box.left + pad * size, right = left + sample * size;
     float baseline = box.top + (pad + 0.8f) * size;
     for (const std::size_t i : which) {
-        draw_sample(curves[i], left, right, baseline - 0.3f * size, style, over_map, list);
-        list.push_back(
-            label(curves[i].label, {right + gap * size, baseline}, size, over_map ? rgb(0xffffff) : style.theme.text));
+        const Curve& curve = panel.plot.curves[i];
+        draw_sample(curve, left, right, baseline - 0.3f * size, panel);
+        panel.list.push_back(
+            label(curve.label, {right + gap * size, baseline}, size, over_map ? rgb(0xffffff) : theme.text));
         baseline += row * size;
     }
 }

@@ -15,52 +15,40 @@ Axis placed(Axis axis, float from, float to) {
     return axis;
 }
 
-/// The data that all drawing in a panel needs.
-struct Panel {
-    const Plot& plot;
-    const PlotRanges& ranges;
-    Area area;
-    const Axis &x = ranges.x, &y = ranges.y;
-
-    const Axis& y_of(const Curve& curve) const { return curve.right && ranges.right ? *ranges.right : y; }
-};
-
 /// Dashed lines.
-void draw_rules(const Panel& panel, const PlotStyle& style, LabelPlacer& placer, PageList& list) {
+void draw_rules(const Panel& panel, LabelPlacer& placer) {
+    const auto& [left, top, right, bottom] = panel.area;
     for (const Rule& rule : panel.plot.rules) {
         const bool level = rule.orientation == Rule::Orientation::horizontal;
-        const double share = (level ? panel.y : panel.x).share(rule.at);
-        if (!(share >= 0 && share <= 1)) continue;
-        const float at = std::floor((level ? panel.y : panel.x).at(rule.at)) + 0.5f;
-        const Point from = level ? Point{panel.area.left, at} : Point{at, panel.area.bottom};
-        const Point to = level ? Point{panel.area.right, at} : Point{at, panel.area.top};
-        const float width = std::max(std::round(1.3f * style.unit), 1.0f);
-        const Color color = panel.plot.map ? rgb(0xffffff) : style.theme.quiet_text;
-        if (panel.plot.map) draw_line({{from, to}}, width + 2, false, rgb(0x0b0e13).with_alpha(0.75f), style, list);
-        draw_line({{from, to}}, width, true, color, style, list);
+        const Axis& axis = level ? panel.axes.y : panel.axes.x;
+        if (const double share = axis.share(rule.at); !(share >= 0 && share <= 1)) continue;
+        const float at = std::floor(axis.at(rule.at)) + 0.5f;
+        const Point from = level ? Point{left, at} : Point{at, bottom}, to = level ? Point{right, at} : Point{at, top};
+        const float width = std::max(std::round(1.3f * panel.style.unit), 1.0f);
+        const Color color = panel.is_map() ? rgb(0xffffff) : panel.style.theme.quiet_text;
+        if (panel.is_map()) draw_line({{from, to}}, width + 2, false, rgb(0x0b0e13).with_alpha(0.75f), panel);
+        draw_line({{from, to}}, width, true, color, panel);
         placer.add_line(from, to, LabelPlacer::no_owner - 1);
     }
 }
 
-LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& beside, const PlotStyle& style,
-                       LabelPlacer& placer, PageList& list) {
+LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, LabelPlacer& placer) {
     const auto& curves = panel.plot.curves;
-    const bool over_map = panel.plot.map.has_value();
     std::vector<DrawnCurve> all;
     for (std::size_t i = 0; i < curves.size(); ++i) {
-        all.push_back(drawn(curves[i], panel.x, panel.y_of(curves[i]), panel.area));
+        all.push_back(drawn(curves[i], panel.axes.x, panel.y_of(curves[i]), panel.area));
         const std::size_t owner = i % (LabelPlacer::no_owner - 1);
         if (curves[i].background != Background::none) {
-            draw_curve(curves[i], all.back(), panel.area, style, over_map, list);
+            draw_curve(curves[i], all.back(), panel);
             all.back() = {};  // labels may cover it
         }
         for (const auto& line : all.back().lines)
             for (std::size_t k = 1; k < line.size(); ++k) placer.add_line(line[k - 1], line[k], owner);
-        const float r = style.marker;
+        const float r = panel.style.marker;
         for (const Point& at : all.back().points)
             for (const float up : {-0.7f * r, 0.7f * r})
                 placer.add_line({at.x - r, at.y + up}, {at.x + r, at.y + up}, owner);
-        draw_band(curves[i], panel.x, panel.y_of(curves[i]), panel.area, style, list);
+        draw_band(curves[i], panel);
     }
     std::array<std::size_t, 2> marks{};  // normal and quiet marks
     for (std::size_t i = 0; i < curves.size(); ++i) marks[curves[i].quiet] += all[i].points.size();
@@ -68,9 +56,9 @@ LabelNeeds draw_curves(const Panel& panel, const LabelNeeds& given, const Area& 
     // quiet curves are drawn first, below the others
     for (const bool quiet : {true, false})
         for (std::size_t i = 0; i < curves.size(); ++i)
-            if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel.area, style, over_map, list);
-    label_rules(panel.plot.rules, panel.x, panel.y, style, over_map, placer, list);
-    return label_curves(panel.plot, all, given, beside, style, placer, list);
+            if (curves[i].quiet == quiet) draw_curve(curves[i], all[i], panel);
+    label_rules(panel, placer);
+    return label_curves(all, given, placer, panel);
 }
 
 }  // namespace
@@ -114,20 +102,14 @@ LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, co
     ranges.y = placed(ranges.y, area.bottom, area.top);
     if (area.width() < drawn_side || area.height() < drawn_side) return given;
     if (ranges.right) ranges.right = placed(*ranges.right, area.bottom, area.top);
-    const Panel panel{plot, ranges, area};
-    if (plot.map) {
-        list.push_back(map_cells(*plot.map, panel.x, panel.y, area, style.theme));
-        const float after =
-            plot.right ? 0.55f * style.tick + widest(ticks_of(*ranges.right, *plot.right, false, style), style.tick)
-                       : 0;
-        if (!plot.map->shares_bar) draw_bar(*plot.map, area, area.right + after, style, list);
-    }
-    draw_axes(plot, panel.x, panel.y, plot.right ? &*ranges.right : nullptr, area, held, words, style, list);
-    draw_headings(plot, area, held, around.title, around.labels, words, style, list);
+    if (plot.map) list.push_back(map_cells(*plot.map, ranges.x, ranges.y, area, style.theme));
+    if (plot.map && !plot.map->shares_bar) draw_bar(*plot.map, area, area.right, style, list);
+    const Panel panel{plot, ranges, area, held, words, style, list};
+    draw_axes(panel);
+    draw_headings(panel, around.title, around.labels);
     LabelPlacer placer(area);
-    draw_rules(panel, style, placer, list);
-    const Area beside{held.right - given.legend, area.top, held.right, area.bottom};
-    return draw_curves(panel, given, beside, style, placer, list);
+    draw_rules(panel, placer);
+    return draw_curves(panel, given, placer);
 }
 
 }  // namespace doppel
