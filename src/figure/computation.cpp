@@ -25,12 +25,14 @@ double cpu_now() {
 }  // namespace
 
 Computation::Computation(const FigurePreset& figure, const PartHeader& header,
-                         std::optional<std::filesystem::path> folder, int threads, ComputationReport report)
+                         std::optional<std::filesystem::path> folder, int threads, FigureReport report,
+                         std::size_t number)
     : figure_(figure),
       header_(header),
       folder_(std::move(folder)),
       threads_(threads),
       report_(std::move(report)),
+      number_(number),
       known_(header.trials) {
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
         total_units_ += figure_.experiment->units(trial);
@@ -54,7 +56,8 @@ bool Computation::take(const std::filesystem::path& path, bool must_be) {
     is_whole_ = !part.is_damaged;
     for (std::size_t trial = 0; trial < known_.size(); ++trial)
         if (!known_[trial].empty()) done_units_ += figure_.experiment->units(trial);
-    report_.note(fmt::format("resuming from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
+    report_.note(number_,
+                 fmt::format("resuming from {}: {:.0f} % is done{}", path.string(), percent(done_units_),
                              part.is_damaged ? "; the rest is damaged or incomplete, and computed again" : ""));
     return true;
 }
@@ -140,13 +143,14 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
     computed_units_ += units;
     done_units_ += units;
     if (groups_done_ == groups_ahead && groups_.size() >= many_groups) report_estimate(time);
-    report_.progress({done_units_, total_units_});
+    report_.progress(number_, {done_units_, total_units_});
     return is_last;
 }
 
 void Computation::report_estimate(double time) {
     const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
-    report_.note(fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
+    report_.note(number_,
+                 fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
                              figure_.experiment->unit(), two_digits(rate), threads_, duration_text(left / rate)));
 }
 
@@ -192,9 +196,10 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
         // a group that takes longer than all others before counts as done
         const double cut_s = cpu_now() - from;
         estimate.at_least = cut_s > seconds;
-        for (std::size_t k = first; estimate.at_least && k < std::min(first + together, trials); ++k)
-            done += experiment.units(k);
-        if (estimate.at_least) seconds += cut_s;
+        if (estimate.at_least) {
+            seconds += cut_s;
+            for (std::size_t k = first; k < std::min(first + together, trials); ++k) done += experiment.units(k);
+        }
     }
     const auto groups = static_cast<double>((counted + together - 1) / together);
     estimate.cpu_s = needed_s + (done > 0 ? seconds * total / done : 0);

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "figure/part_file.hpp"
+#include "film/run.hpp"
 
 #include <atomic>
 #include <functional>
@@ -15,10 +16,12 @@ struct FigureProgress {
     double done = 0, total = 0;
 };
 
-/// Reports progress of a figure. Called by any thread, by one at a time for one figure.
-struct ComputationReport {
-    std::function<void(const FigureProgress&)> progress;
-    std::function<void(const std::string& sentence)> note;  // the estimated time; the record that it resumes from
+/// Reports progress of the figures, numbered as given, and notes: the estimated time, the record that one resumes from.
+/// Called by any thread, by one at a time for one figure.
+struct FigureReport {
+    std::function<void(std::size_t figure, const FigureProgress&)> progress = [](auto, const auto&) {};
+    std::function<void(std::size_t figure, const std::string& sentence)> note = [](auto, const auto&) {};
+    std::function<void(std::size_t figure, const RunResult&)> done = [](auto, const auto&) {};
 };
 
 /// Computes the unknown trials of a part of a figure, in groups that threads take. After some seconds it records
@@ -26,10 +29,10 @@ struct ComputationReport {
 class Computation {
 public:
     /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to a damaged
-    /// one. `threads` is only used in messages. Throws Error (exit 4) if the record is something else; it is then left
-    /// unchanged.
+    /// one. `threads` and the figure's `number` are only used in messages. Throws Error (exit 4) if the record is
+    /// something else; it is then left unchanged.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
-                int threads, ComputationReport report);
+                int threads, FigureReport report, std::size_t number = 0);
 
     std::size_t groups() const { return groups_.size(); }
     /// Computes a group on the calling thread; each group must be computed once. Returns true for the last one: then
@@ -62,7 +65,8 @@ private:
     std::optional<std::filesystem::path> folder_;
     std::filesystem::path record_;
     int threads_;
-    ComputationReport report_;
+    FigureReport report_;
+    std::size_t number_;
     std::vector<Group> groups_;
     std::mutex mutex_;  // guards all members below
     KnownTrials known_;

@@ -56,19 +56,19 @@ public:
         check_distinct(table, "methods", methods);
         check_distinct(table, "projected", projected);
         settings_ = resolved_release(release_) + settings_text(keys);
+        unit_ = "motions";
+        columns_ = {"method", "model", "setting", "time_s", "energy_error", "length_error_m"};
+        subtitle_ = fmt::format("a {} {}, {}; every method at some {:g} evaluations a second of motion",
+                                chain_words(release_.links()), released_words(release_), links_words(release_),
+                                evaluations_per_s_);
     }
 
     std::size_t trials() const override { return runs_.size(); }
-    std::string unit() const override { return "motions"; }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
         constexpr std::size_t finite = 3;  // all members of DriftCost except the last
         return numbers.size() == numbers_in<DriftCost> + 2 * times_s_.size() && all_finite(numbers.first(finite)) &&
                finite_or_none(numbers.subspan(finite));
-    }
-
-    std::vector<std::string> columns() const override {
-        return {"method", "model", "setting", "time_s", "energy_error", "length_error_m"};
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -98,12 +98,6 @@ public:
         figure.captions.push_back(error_caption(numbers));
     }
 
-    std::string subtitle() const override {
-        return fmt::format("a {} {}, {}; every method at some {:g} evaluations a second of motion",
-                           chain_words(release_.links()), released_words(release_), links_words(release_),
-                           evaluations_per_s_);
-    }
-
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         for (const auto& trial : numbers)
             if (std::any_of(trial.begin() + numbers_in<DriftCost>, trial.end(), [](double x) { return x > 0; }))
@@ -117,7 +111,7 @@ public:
         for (std::size_t r = 0; r < runs_.size(); ++r) {
             const auto run = run_of(numbers[r]);
             auto name = fmt::format("{}_{}", runs_[r].method, model_words(runs_[r]));
-            std::replace(name.begin(), name.end(), ' ', '_');
+            std::ranges::replace(name, ' ', '_');
             all[name + "_setting"] = run.setting;
             all[name + "_evaluations_per_s"] = run.evaluations_per_s;
             all[name + "_cpu_s"] = run.cpu_s;

@@ -23,12 +23,12 @@ namespace doppel {
 using TrialNumbers = std::vector<double>;
 
 inline bool all_finite(std::span<const double> numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+    return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
 }
 
 /// Whether each is finite or NaN (missing).
 inline bool finite_or_none(std::span<const double> numbers) {
-    return std::none_of(numbers.begin(), numbers.end(), [](double x) { return std::isinf(x); });
+    return std::ranges::none_of(numbers, [](double x) { return std::isinf(x); });
 }
 
 /// Whether it is an integer ≥ 0 that is exact in a double.
@@ -103,7 +103,7 @@ public:
     /// Whether trials measure time. They are then computed one after the other, without other work.
     virtual bool measures_time() const { return false; }
     /// The unit of progress, "pairs", and how many of them a trial counts; 0 for trials that others require first.
-    virtual std::string unit() const { return "trials"; }
+    const std::string& unit() const { return unit_; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 
     /// Computes trials first, first + 1 …, one for each of `numbers`. Throws Error: exit 3 if a method fails and
@@ -117,22 +117,22 @@ public:
     virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
 
     /// The columns of the table, and its rows from the numbers of all trials.
-    virtual std::vector<std::string> columns() const = 0;
+    const std::vector<std::string>& columns() const { return columns_; }
     virtual void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const = 0;
 
     /// Why nothing can be drawn, for example because every trial failed; otherwise nothing.
     virtual std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> /*numbers*/) const { return {}; }
 
-    /// Adds the panels (or the page), and captions with results. Titles are already set.
+    /// Adds the panels, and captions with results. Titles are already set.
     virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
     /// Results outside the table, for the manifest.
     virtual Json findings(std::span<const TrialNumbers> numbers) const = 0;
 
     /// The subtitle if the preset has none: the system and the integrator.
-    virtual std::string subtitle() const { return {}; }
+    const std::string& subtitle() const { return subtitle_; }
 
     /// For map figures, in which each panel shows one map; otherwise nothing.
-    virtual std::optional<MapCells> map() const { return std::nullopt; }
+    const std::optional<MapCells>& map() const { return map_; }
 
     /// For a map or a sweep over release angles of chains of one to three ideal links: the keys of the axes, x first, and one
     /// pair of the figure.
@@ -148,7 +148,10 @@ public:
     const std::string& resolved_chart() const { return chart_settings_; }
 
 protected:
-    std::string settings_, chart_settings_;
+    // set by constructors
+    std::string unit_ = "trials", subtitle_, settings_, chart_settings_;
+    std::vector<std::string> columns_;
+    std::optional<MapCells> map_;
 
     /// Computes one trial, for kinds that do not compute several together.
     virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }

@@ -10,14 +10,6 @@
 #include <utility>
 
 namespace doppel {
-namespace {
-
-constexpr std::string_view key_help =
-    "key that is varied: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
-    "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an adaptive "
-    "method";
-
-}  // namespace
 
 void Grid::fields(KeyVisitor& visit) {
     visit({"quantity", quantity_help}, quantity_);
@@ -55,10 +47,8 @@ void Grid::fields(KeyVisitor& visit) {
            .only = of_this},
           range_);
     visit({"threshold", "of a map: two colours, up to it and above it", "", {}, "colours for all numbers"}, threshold_);
-    visit.table("x", [&](KeyVisitor& table) { x_.fields(table, key_help); });
-    visit.table("y", [&](KeyVisitor& table) { y_.fields(table, "the vertical axis of a map"); });
-    visit.table("color", [&](KeyVisitor& table) { color_.fields(table, "a curve for each value"); });
-    visit.table("panel", [&](KeyVisitor& table) { panel_.fields(table, "a panel for each value"); });
+    for (auto* axis : {&x_, &y_, &color_, &panel_})
+        visit.table(axis->role, [&](KeyVisitor& table) { axis->fields(table); });
 }
 
 Grid::Grid(FigureReader& reader) : Grid() {
@@ -76,28 +66,30 @@ Grid::Grid(FigureReader& reader) : Grid() {
     std::size_t first = 0;
     for (auto& group : groups_) group.first = std::exchange(first, first + trials_of(group));
     make_subtitle();
+    name_columns();
+    unit_ = "pairs";
 }
 
 void Grid::find_axes(FigureReader& reader) {
     x_.are_cells = y_.are_cells = is_map();
     auto table = reader.document.table(reader.top, table_key);
-    for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}, {"color", &color_}, {"panel", &panel_}})
-        axis->find(reader, table.inner(table.read_table(role), fmt::format("[{}.{}]", table_key, role)), pair_);
+    for (auto* axis : {&x_, &y_, &color_, &panel_}) axis->find(reader, table.inner(axis->role), pair_);
 }
 
 /// Checks the axes together with the other keys.
 void Grid::check(const TomlReader& table) const {
     std::vector<std::string_view> names;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
-        if (axis->exists() && std::find(names.begin(), names.end(), axis->key) != names.end())
+        if (axis->exists() && std::ranges::find(names, axis->key) != names.end())
             throw table.error("x", "and the other axes must have different keys; \"{}\" is there twice", axis->key);
         names.push_back(axis->key);
     }
-    for (const auto& [role, axis] : {std::pair("x", &x_), {"y", &y_}, {"color", &color_}, {"panel", &panel_}}) {
+    for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
         const bool is_curves = axis == &color_ || axis == &panel_;
         if (!axis->levels.empty() && !is_curves)
-            throw table.error(role, "takes numbers; \"{}\" is for panel or color", axis->key);
-        if (axis->is_setting() && axis != &x_) throw table.error(role, "cannot be \"setting\", which is only for x");
+            throw table.error(axis->role, "takes numbers; \"{}\" is for panel or color", axis->key);
+        if (axis->is_setting() && axis != &x_)
+            throw table.error(axis->role, "cannot be \"setting\", which is only for x");
     }
     if (x_.is_of_one_side && difference_ != 0)
         throw table.error("difference", "must be 0 for {}, in which the sides do not differ", x_.key);
@@ -141,13 +133,13 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     std::vector<TomlReader*> more;
     for (auto& level : levels) more.push_back(&level);
     auto& group = groups_.emplace_back(Group{levels.empty() ? pair_ : reader.pair(more), x_, 0, {}});
-    panel_.require_in(table, "panel", group.pair);
+    panel_.require_in(table, panel_.role, group.pair);
     panel_.put(group.pair, p);
-    color_.require_in(table, "color", group.pair);
+    color_.require_in(table, color_.role, group.pair);
     color_.put(group.pair, c);
     group.x.settle(group.pair);
-    x_.require_in(table, "x", group.pair);
-    y_.require_in(table, "y", group.pair);
+    x_.require_in(table, x_.role, group.pair);
+    y_.require_in(table, y_.role, group.pair);
     const auto number = groups_.size() - 1;
     if (!x_.is_of_method && !y_.is_of_method) use_common_method(group.pair, pair_at({number, 0, 0}), reader.stop);
     const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
@@ -170,9 +162,8 @@ void Grid::check_range(const TomlReader& table) const {
 }
 
 void Grid::make_map() {
+    map_ = MapCells{static_cast<int>(groups_[0].x.count), static_cast<int>(y_.count), groups_.size(), cell_numbers_};
     map_style_ = {.rows = y_.count,
-                  .y_low = static_cast<double>(y_.from),
-                  .y_high = static_cast<double>(y_.to),
                   .label = words().label,
                   .none_label = words().none,
                   .none_is_bad = words().none_is_bad,
@@ -195,7 +186,7 @@ void Grid::make_map() {
 void Grid::make_subtitle() {
     SweptKeys swept{.method = words().method};
     auto pair = groups_.front().pair;
-    if (words().is_of_side_a) pair.b = pair.a;
+    if (!is_of_distance(quantity_)) pair.b = pair.a;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
         axis->put_both(pair);  // the difference is stated separately
         if (axis->angle) swept.angles.push_back(*axis->angle);
@@ -207,7 +198,8 @@ void Grid::make_subtitle() {
                 if (axis->key == "system" && level.table(top, "a").has(key)) swept.keys.push_back("." + key);
             }
     }
-    subtitle_ = pair_subtitle(make_scene(pair), swept, words().is_of_side_a ? "" : x_.difference_words(difference_));
+    subtitle_ =
+        pair_subtitle(make_scene(pair), swept, is_of_distance(quantity_) ? x_.difference_words(difference_) : "");
 }
 
 std::size_t Grid::together() const {
@@ -218,11 +210,6 @@ std::size_t Grid::together() const {
 double Grid::units(std::size_t trial) const {
     const auto row = place_of(trial).row;
     return static_cast<double>(cells_of(trial) * (is_mirrored_ && row != y_.count - 1 - row ? 2 : 1));
-}
-
-std::optional<MapCells> Grid::map() const {
-    if (!is_map()) return std::nullopt;
-    return MapCells{static_cast<int>(groups_[0].x.count), static_cast<int>(y_.count), groups_.size(), cell_numbers_};
 }
 
 std::optional<Experiment::Releases> Grid::releases() const {
@@ -261,19 +248,18 @@ bool Grid::fits(std::size_t trial, std::span<const double> numbers) const {
     return true;
 }
 
-std::vector<std::string> Grid::columns() const {
-    std::vector<std::string> names, last;
+void Grid::name_columns() {
+    std::vector<std::string> last;
     for (const auto* axis : {&color_, &panel_, &x_, &y_})
         if (axis != &x_ || words().drawn == 0)
-            for (const auto& name : axis->columns()) names.push_back(name);
-    if (!words().counted.empty()) names.push_back(words().counted);
+            for (const auto& name : axis->columns()) columns_.push_back(name);
+    if (!words().counted.empty()) columns_.push_back(words().counted);
     for (const auto& measurement : measurements()) {
         const auto& of = measurement.words();
-        names.insert(names.end(), of.columns.begin(), of.columns.end());
+        columns_.insert(columns_.end(), of.columns.begin(), of.columns.end());
         if (!of.last_column.empty()) last.push_back(of.last_column);
     }
-    names.insert(names.end(), last.begin(), last.end());
-    return names;
+    columns_.insert(columns_.end(), last.begin(), last.end());
 }
 
 void Grid::write_rows(std::span<const TrialNumbers> numbers, Csv& table) const {
@@ -326,6 +312,10 @@ Json Grid::findings(std::span<const TrialNumbers> numbers) const {
     double minimum = NAN, maximum = NAN, regular = 0, missing = 0, forbidden = 0;
     const bool is_bounded = overlay_ == Overlay::energy_bound;
     double cells = 0;
+    // where the exponent stands among the numbers of a curve's point
+    std::optional<std::size_t> exponent;
+    if (!is_map() && quantity_ == Quantity::exponent) exponent = 0;
+    if (right_ == name_of(Quantity::exponent)) exponent = measurements().front().numbers();
     auto released = is_bounded ? chain_of(pair_.a).cast<double>() : Pendulum<double>();
     for_each_cell([&](const Cell& cell) {
         const auto of_cell = at(numbers, cell);
@@ -333,7 +323,7 @@ Json Grid::findings(std::span<const TrialNumbers> numbers) const {
         if (std::isfinite(value)) minimum = std::fmin(minimum, value), maximum = std::fmax(maximum, value);
         missing += is_missing(cell, value);
         ++cells;
-        if (const auto place = exponent_place()) regular += is_regular({of_cell[*place], of_cell[*place + 1]});
+        if (exponent) regular += is_regular({of_cell[*exponent], of_cell[*exponent + 1]});
         if (!is_bounded) return;
         released.angle = {radians(static_cast<double>(x_.value(cell.column))),
                           radians(static_cast<double>(y_.value(cell.row)))};
@@ -343,7 +333,7 @@ Json Grid::findings(std::span<const TrialNumbers> numbers) const {
     if (is_map()) all["share_without"] = missing / cells;
     if (!is_map() && missing > 0) all[words().none_is_bad ? "trials_broken_down" : "trials_without"] = missing;
     if (is_bounded) all["share_forbidden_by_energy"] = forbidden / cells;
-    if (exponent_place()) all["regular_trials"] = regular;
+    if (exponent) all["regular_trials"] = regular;
     for (std::size_t group = 0; group < groups_.size() && quantity_ == Quantity::convergence; ++group)
         all["slope_" + joined_words(group, "_")] = slope(numbers, group);
     return all;
@@ -352,11 +342,6 @@ Json Grid::findings(std::span<const TrialNumbers> numbers) const {
 bool Grid::is_of_releases() const {
     return x_.key == "theta1_deg" && y_.key == "theta2_deg" && !pair_.a.is_mechanism() && pair_.a.physical.is_none() &&
            pair_.a.links() == 2;
-}
-
-std::optional<std::size_t> Grid::exponent_place() const {
-    if (!is_map() && quantity_ == Quantity::exponent) return 0;
-    return right_ == name_of(Quantity::exponent) ? std::optional(measurements().front().numbers()) : std::nullopt;
 }
 
 Preset Grid::pair_at(const Cell& cell) const {
@@ -368,7 +353,7 @@ Preset Grid::pair_at(const Cell& cell) const {
 
 /// The first cell of a trial, and the number of its cells.
 Grid::Cell Grid::place_of(std::size_t trial) const {
-    const auto next = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.first > trial; });
+    const auto next = std::ranges::find_if(groups_, [&](const Group& g) { return g.first > trial; });
     const auto& group = *std::prev(next);
     const auto number = static_cast<std::size_t>(&group - groups_.data()), trials = trials_of_line(group);
     const auto line = (trial - group.first) / trials, along = (trial - group.first) % trials * piece_;
@@ -389,7 +374,7 @@ void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atom
     for (; !cells.empty(); cells = cells.subspan(std::min(maximum, cells.size())), along += maximum) {
         const auto at = [&](std::size_t i) -> const Preset& {
             pair.a = group.pair.a;
-            if (right_ || !words().is_of_side_a) pair.b = group.pair.b;  // otherwise side b is not used
+            if (right_ || is_of_distance(quantity_)) pair.b = group.pair.b;  // otherwise side b is not used
             y_.put(pair, first.row + (are_columns_ ? i : 0));
             group.x.put(pair, first.column + (are_columns_ ? 0 : i), difference_);
             return pair;
@@ -418,9 +403,9 @@ bool Grid::is_at_rest(const Cell& cell) const {
     static constexpr int half_turn = 180;
     const auto rests = [](const SideSpec& side) {
         return side.particles.empty() && !side.is_mechanism() && side.physical.is_none() &&
-               is_zero(side.omega_deg_per_s) &&
-               std::all_of(side.angle_deg.begin(), side.angle_deg.end(),
-                           [](const Quad& angle) { return angle == round(angle / half_turn) * half_turn; });
+               is_zero(side.omega_deg_per_s) && std::ranges::all_of(side.angle_deg, [](const Quad& angle) {
+                   return angle == round(angle / half_turn) * half_turn;
+               });
     };
     return rests(pair.a) && rests(pair.b);
 }

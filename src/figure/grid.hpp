@@ -16,21 +16,17 @@ namespace doppel {
 class Grid final : public Experiment {
 public:
     static constexpr std::string_view table_key = "grid";
-    Grid() { x_.key = "theta1_deg"; }
+    Grid() = default;
     explicit Grid(FigureReader& reader);
 
     void fields(KeyVisitor& visit);
 
     std::size_t trials() const override { return groups_.back().first + trials_of(groups_.back()); }
     std::size_t together() const override;
-    std::string unit() const override { return "pairs"; }
     double units(std::size_t trial) const override;
-    std::string subtitle() const override { return subtitle_; }
-    std::optional<MapCells> map() const override;
     std::optional<Releases> releases() const override;
     void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override;
     bool fits(std::size_t trial, std::span<const double> numbers) const override;
-    std::vector<std::string> columns() const override;
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override;
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override;
     Json findings(std::span<const TrialNumbers> numbers) const override;
@@ -55,13 +51,12 @@ private:
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();
     void make_subtitle();
+    void name_columns();
 
     bool is_map() const { return y_.exists(); }
     bool is_of_releases() const;
     const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
     const QuantityWords& words() const { return measurements().front().words(); }
-    /// The position of an exponent's first number among the numbers of a curve's point.
-    std::optional<std::size_t> exponent_place() const;
     Preset pair_at(const Cell& cell) const;
 
     std::size_t lines_computed(const Group& group) const;
@@ -95,12 +90,13 @@ private:
     void draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const;
     std::string rest_words() const;
     void finish_convergence(std::span<const TrialNumbers> numbers, Figure& figure) const;
-    void add_limit(std::size_t p, Plot& plot) const;
+    void draw_linear_limit(std::size_t p, Plot& plot) const;
     HeatMap heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const;
     void finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) const;
 
     Preset pair_;
-    GridAxis x_, y_, color_, panel_;
+    GridAxis x_{"x", GridAxis::key_help, "theta1_deg"}, y_{"y", "the vertical axis of a map"},
+        color_{"color", "a curve for each value"}, panel_{"panel", "a panel for each value"};
     Quantity quantity_ = Quantity::divergence;
     std::optional<std::string> right_;
     Quad difference_ = 0;
@@ -114,7 +110,6 @@ private:
     HeatMap map_style_;                         // the map without its values
     bool is_mirrored_ = false;                  // the cell at (−x, −y) has the same numbers
     bool are_columns_ = false;                  // the cells of a trial form a column: they share one setting
-    std::string subtitle_;
 };
 
 }  // namespace doppel

@@ -43,7 +43,7 @@ const std::array<GridAxis::ReleaseParameter, 4> GridAxis::releases{
      {"length_ratio", "length ratio l₁/l₂", 2, [](SideSpec& s, const Quad& x) { s.length_m[0] = x * s.length_m[1]; },
       true}}};
 
-void GridAxis::fields(KeyVisitor& visit, std::string_view help) {
+void GridAxis::fields(KeyVisitor& visit) {
     constexpr int max_points = 1'048'576;
     constexpr std::size_t max_values = 1000;
     visit({.key = "key",
@@ -93,7 +93,7 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
         for (auto text = values->texts.begin(); text != values->texts.end(); ++text)
             if (std::find(values->texts.begin(), text, *text) != text)
                 throw table.error("values", "must differ; {} is there twice", *text);
-    if (values && !std::all_of(values->texts.begin(), values->texts.end(), is_number)) return find_texts(reader, table);
+    if (values && !std::ranges::all_of(values->texts, is_number)) return find_texts(reader, table);
     if (is_setting()) return find_settings(table, pair);
     find_number(reader, table, pair);
     find_values(table, pair);
@@ -174,7 +174,7 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
 }
 
 void GridAxis::find_number(FigureReader& reader, const TomlReader& table, const Preset& pair) {
-    release_ = std::find_if(releases.begin(), releases.end(), [&](const auto& release) { return release.name == key; });
+    release_ = std::ranges::find_if(releases, [&](const auto& release) { return release.name == key; });
     if (release_ == releases.end()) {
         release_ = nullptr;
         const auto& number = number_.emplace(table, "key", key == "links" ? "system.links" : key, pair);
@@ -273,8 +273,7 @@ std::string GridAxis::words(std::size_t i) const {
     auto [what, unit] = name_and_unit(label);
     // the symbol stands for the words before it: "θ₁" for "release angle θ₁"
     const auto last = what.substr(what.rfind(' ') + 1);
-    if (std::any_of(last.begin(), last.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
-        what = last;
+    if (std::ranges::any_of(last, [](char c) { return static_cast<unsigned char>(c) >= 0x80; })) what = last;
     return fmt::format("{} = {:.6g}{}{}", what, static_cast<double>(value(i)), unit.empty() || unit == "°" ? "" : " ",
                        unit);
 }

@@ -18,6 +18,14 @@ inline constexpr auto names_of<Spacing> = std::to_array<std::string_view>({"line
 /// An axis of a grid: [grid.x], [grid.y], [grid.color] or [grid.panel]. Without a key the axis does not exist; its
 /// single value changes nothing.
 struct GridAxis {
+    static constexpr std::string_view key_help =
+        "key that is varied: a key (system.gravity_m_per_s2, b.mass_kg[1], system.force.NAME.stiffness_N_per_m), or "
+        "theta1_deg, theta2_deg, mass_ratio, length_ratio, links; or setting: the step, or the tolerance of an "
+        "adaptive method";
+    GridAxis(std::string_view of_role, std::string_view of_help, std::string_view of_key = "")
+        : role(of_role), help(of_help), key(of_key) {}
+
+    std::string_view role, help;       // the name of its table, and what the key of it does
     std::string key;                   // varied along this axis
     std::optional<TomlValues> values;  // listed values; otherwise a range, as follows
     std::vector<std::string> labels;   // for the values, in their order
@@ -40,7 +48,7 @@ struct GridAxis {
     bool exists() const { return !key.empty(); }
     /// The accuracy setting of the method: its step size, or the tolerance of an adaptive method.
     bool is_setting() const { return key == "setting"; }
-    void fields(KeyVisitor& visit, std::string_view help);
+    void fields(KeyVisitor& visit);
 
     /// `table` = that of the axis. Throws Error (exit 2) if the pair has no such key, or cannot take a value.
     void find(FigureReader& reader, const TomlReader& table, const Preset& pair);

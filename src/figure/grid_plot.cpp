@@ -60,7 +60,7 @@ void Grid::draw(std::span<const TrialNumbers> numbers, Figure& figure) const {
             plot.square = x_.angle && y_.angle;
             plot.map = heat_map(numbers, p);
             plot.curves = overlay_curves(overlay_, groups_[p].pair.a);
-            if (overlay_ == Overlay::linear_limit) add_limit(p, plot);
+            if (overlay_ == Overlay::linear_limit) draw_linear_limit(p, plot);
         }
         for (std::size_t c = 0; c < color_.count && !is_map(); ++c)
             draw_curves(numbers, p * color_.count + c, plot, figure);
@@ -160,23 +160,33 @@ void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& fig
     }
 }
 
-/// The limit of linear theory in the map of panel p.
-void Grid::add_limit(std::size_t p, Plot& plot) const {
-    std::vector<Preset> pairs;
-    std::vector<double> y;
+/// Draws the step size limit, s, over y in the map of panel p, if the method has one. If all are equal, it is a rule.
+void Grid::draw_linear_limit(std::size_t p, Plot& plot) const {
+    const auto* method = find_method(groups_[p].pair.a.integrator);
+    if (!method || method->adaptive) return;
+    Curve curve{.dashed = true, .quiet = true};
     for (std::size_t row = 0; row < y_.count; ++row) {
-        pairs.push_back(pair_at({p, row, 0}));
-        y.push_back(static_cast<double>(y_.value(row)));
+        const auto pair = pair_at({p, row, 0});
+        const auto modes = small_oscillations(chain_of(pair.a).cast<double>());
+        const auto limit = step_limit(method->name, modes, pair.duration_s.value(), failure_error);
+        add_point(curve, limit.value_or(NAN), static_cast<double>(y_.value(row)));
     }
-    draw_linear_limit(pairs, y, plot);
+    const auto [minimum, maximum] = std::minmax_element(curve.x.begin(), curve.x.end());
+    constexpr double tolerance = 1e-4;
+    if (std::isnan(*minimum)) return;
+    if (*maximum < *minimum * (1 + tolerance)) {
+        plot.rules.push_back({Rule::Orientation::vertical, *minimum, ""});
+        plot.note = fmt::format("limit {:.3g} s", *minimum);
+        return;
+    }
+    curve.y.front() = *plot.y.low;
+    curve.y.back() = *plot.y.high;
+    plot.curves.push_back(std::move(curve));
 }
 
 HeatMap Grid::heat_map(std::span<const TrialNumbers> numbers, std::size_t group) const {
     HeatMap map = map_style_;
-    const auto axis = groups_[group].x.plot_axis();
     map.columns = groups_[group].x.count;
-    map.x_low = *axis.low;
-    map.x_high = *axis.high;
     map.values.reserve(map.columns * map.rows);
     for (std::size_t row = 0; row < map.rows; ++row)
         for (std::size_t column = 0; column < map.columns; ++column) {
@@ -192,8 +202,7 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
     HeatMap all = map_style_;
     for (const auto& plot : figure.panels)
         all.values.insert(all.values.end(), plot.map->values.begin(), plot.map->values.end());
-    if (std::none_of(all.values.begin(), all.values.end(), [](float cell) { return std::isnan(cell); }))
-        all.none_label = "";
+    if (std::ranges::none_of(all.values, [](float cell) { return std::isnan(cell); })) all.none_label = "";
     const auto spec = measurements().front().flips_in_lanes();
     long broken = 0;  // flips: infinite if there is none
     if (spec) for_each_cell([&](const Cell& cell) { broken += std::isnan(at(numbers, cell)[0]); });
@@ -218,7 +227,7 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
     if (quantity_ != Quantity::stability) return;
     // a number of columns that gives each type of method its own rows
     constexpr std::size_t many = 6, few = 3;
-    const auto stepped = std::count_if(groups_.begin(), groups_.end(), [](const Group& group) {
+    const auto stepped = std::ranges::count_if(groups_, [](const Group& group) {
         return group.x.is_setting() && !find_method(group.pair.a.integrator)->adaptive;
     });
     if (groups_.size() > many) figure.columns = stepped % few == 0 ? few : few + 1;

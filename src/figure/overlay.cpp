@@ -1,6 +1,5 @@
 #include "figure/overlay.hpp"
 
-#include "analysis/stability.hpp"
 #include "figure/experiment.hpp"
 #include "scene/scene.hpp"
 
@@ -59,27 +58,6 @@ std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side) {
     if (overlay == Overlay::none || overlay == Overlay::linear_limit) return {};
     if (overlay == Overlay::energy_bound) return {energy_bound(chain_of(side).cast<double>())};
     return stability_curves(overlay, physical_of(side).cast<double>());
-}
-
-void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<double>& y, Plot& plot) {
-    Curve curve{.y = y, .dashed = true, .quiet = true};
-    const auto* method = find_method(pairs.front().a.integrator);
-    if (!method || method->adaptive) return;
-    for (const auto& pair : pairs) {
-        const auto modes = small_oscillations(chain_of(pair.a).cast<double>());
-        curve.x.push_back(step_limit(method->name, modes, pair.duration_s.value(), failure_error).value_or(NAN));
-    }
-    const auto [minimum, maximum] = std::minmax_element(curve.x.begin(), curve.x.end());
-    constexpr double tolerance = 1e-4;
-    if (std::isnan(*minimum)) return;
-    if (*maximum < *minimum * (1 + tolerance)) {
-        plot.rules.push_back({Rule::Orientation::vertical, *minimum, ""});
-        plot.note = fmt::format("limit {:.3g} s", *minimum);
-        return;
-    }
-    curve.y.front() = *plot.y.low;
-    curve.y.back() = *plot.y.high;
-    plot.curves.push_back(std::move(curve));
 }
 
 }  // namespace doppel

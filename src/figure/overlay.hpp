@@ -25,12 +25,8 @@ inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none
 /// with
 ///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
 /// `linear_limit`: for each panel, the step size at which small oscillations diverge in linear theory
-/// (analysis/stability.hpp).
+/// (analysis/stability.hpp); it depends on the grid, which draws it.
 /// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
 std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side);
-
-/// The step size limit, s, for each pair, over `y`; nothing if the method of side a has none. If all are equal, a rule
-/// is drawn.
-void draw_linear_limit(const std::vector<Preset>& pairs, const std::vector<double>& y, Plot& plot);
 
 }  // namespace doppel

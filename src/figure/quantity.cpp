@@ -25,7 +25,6 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
             return {.label = "largest Lyapunov exponent, 1/s",
                     .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
                     .none = "",
-                    .is_of_side_a = true,
                     .method = "tangent equations by Dormand–Prince 8",
                     .short_label = "Lyapunov exponent",
                     .last_column = "exponent_unsettled"};
@@ -33,8 +32,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
             return {.label = "time to the first flip, s",
                     .columns = {"flip_time_s"},
                     .logarithmic = true,
-                    .none = fmt::format("no flip within {} s", seconds),
-                    .is_of_side_a = true};
+                    .none = fmt::format("no flip within {} s", seconds)};
         case Quantity::distance_at_end:
             return {.label = fmt::format("distance after {} s", seconds),
                     .columns = {"distance_at_end"},
@@ -46,22 +44,18 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
         case Quantity::energy_error:
             return {.label = "largest energy error, of the potential range",
                     .columns = {"energy_error"},
-                    .logarithmic = true,
-                    .is_of_side_a = true};
+                    .logarithmic = true};
         case Quantity::deviation:
             return {.label = fmt::format("maximum deviation of an angle within {} s, °", seconds),
-                    .columns = {"deviation_deg"},
-                    .is_of_side_a = true};
+                    .columns = {"deviation_deg"}};
         case Quantity::period:
             return {.label = "period, s",
                     .columns = {"period_s"},
-                    .none = fmt::format("no whole period within {} s", seconds),
-                    .is_of_side_a = true};
+                    .none = fmt::format("no whole period within {} s", seconds)};
         case Quantity::stroboscopic:
             return {.label = fmt::format("rate ω{} at each drive period, rad/s",
                                          subscript(static_cast<std::size_t>(stroboscope.link))),
                     .columns = {"theta_rad", "omega_rad_per_s"},
-                    .is_of_side_a = true,
                     .rows = static_cast<std::size_t>(stroboscope.periods),
                     .counted = "period",
                     .first_row = stroboscope.transient_periods};
@@ -69,7 +63,6 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
             return {.label = "CPU time of an Euler step, ns",
                     .columns = {"angles_step_ns", "constraints_step_ns"},
                     .curves = {"in angles", "with constraints"},
-                    .is_of_side_a = true,
                     .method = "explicit Euler"};
         case Quantity::stability:
             return {.label = fmt::format("greatest energy error in {} s, of the energy released", seconds),
@@ -77,7 +70,6 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
                     .logarithmic = true,
                     .none = "failed run",
                     .none_is_bad = true,
-                    .is_of_side_a = true,
                     .range = Range{1e-12, failure_error}};
         case Quantity::convergence:
             return {.label = fmt::format("greatest distance within {} s", seconds),
@@ -205,7 +197,7 @@ void require_difference(const TomlReader& table, Quantity quantity, bool is_of_o
                         const std::array<Scene, 2>& ends) {
     if (!is_of_distance(quantity)) return;
     const auto name = name_of(quantity);
-    const auto same = std::count_if(ends.begin(), ends.end(), are_one);
+    const auto same = std::ranges::count_if(ends, are_one);
     const bool are_all = same == std::ssize(ends);
     if (are_all && is_of_one_side)
         throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
@@ -225,7 +217,7 @@ void require_difference(const TomlReader& table, Quantity quantity, bool is_of_o
         }
     };
     if (quantity == Quantity::divergence &&
-        std::all_of(ends.begin(), ends.end(), [&](const Scene& scene) { return start(scene) == 0; }))
+        std::ranges::all_of(ends, [&](const Scene& scene) { return start(scene) == 0; }))
         throw table.error(
             "quantity",
             "\"divergence\" needs sides that are released differently: there is no ratio to a distance of "

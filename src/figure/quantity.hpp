@@ -39,7 +39,7 @@ inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>(
      "deviation", "period", "stroboscopic", "step_cost", "stability", "convergence"});
 inline constexpr std::string_view quantity_help = "what is computed for each pair; docs/figures.md explains each";
 
-/// Whether it compares the two pendulums by their distance.
+/// Whether it compares the two pendulums by their distance; otherwise it depends on side a alone.
 constexpr bool is_of_distance(Quantity quantity) {
     return quantity == Quantity::divergence || quantity == Quantity::distance_at_end ||
            quantity == Quantity::greatest_distance || quantity == Quantity::parting_time ||
@@ -54,7 +54,6 @@ struct QuantityWords {
     bool logarithmic = false;
     std::string none = "run failed";  // label of cells without a number
     bool none_is_bad = none == "run failed";
-    bool is_of_side_a = false;     // depends on side a alone; the difference of the pair does not matter
     std::string method = {};       // by which it is found, if not by the preset's
     std::string short_label = {};  // beside a curve of another quantity
     std::string last_column = {};  // of one more number, after those of all quantities

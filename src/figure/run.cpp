@@ -44,7 +44,7 @@ Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
 }
 
 const Theme& theme_named(const std::string& name) {
-    return *std::find_if(themes.begin(), themes.end(), [&](const auto& theme) { return theme.name == name; });
+    return *std::ranges::find_if(themes, [&](const auto& theme) { return theme.name == name; });
 }
 
 /// Throws Error if the map cells of the trials in `header` exceed the memory or what a page holds (exit 2), or the disk
@@ -178,9 +178,7 @@ public:
                 !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
                 report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
                                            others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-            const ComputationReport own{[&report, k](const auto& progress) { report.progress(k, progress); },
-                                        [&report, k](const auto& sentence) { report.note(k, sentence); }};
-            computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, own));
+            computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report, k));
             auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
             for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
             if (computations_[k]->groups() == 0) finished_.push(k);

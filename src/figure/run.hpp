@@ -1,9 +1,7 @@
 #pragma once
 
 #include "figure/computation.hpp"
-#include "film/run.hpp"
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,13 +15,6 @@ struct FigureOptions {
     bool merge = false;                 // compute nothing: merge the shards
     bool tiles = false;                 // for maps: a pyramid of tiles instead of picture and table (figure/tiles.hpp)
     Replacing replacing = {};
-};
-
-/// Reports progress of the figures, numbered as given. Called by any thread, by one at a time for one figure.
-struct FigureReport {
-    std::function<void(std::size_t figure, const FigureProgress&)> progress;
-    std::function<void(std::size_t figure, const std::string& sentence)> note = [](auto, const auto&) {};
-    std::function<void(std::size_t figure, const RunResult&)> done = [](auto, const auto&) {};
 };
 
 /// Makes figures. Threads compute the trials, figure after figure, while the calling thread draws and writes complete

@@ -44,6 +44,11 @@ public:
                 throw system.error(key, "is not for a section, whose orbits start at all states of an energy");
         if (release_.links() != 2) throw table.error("energy_J", "is for two links; there are {}", release_.links());
         settings_ = resolved_chain(release_) + settings_text(*this);
+        unit_ = "orbits";
+        columns_ = {"energy_J", "orbit", "exponent_per_s", "regular", "time_s", "theta2_rad", "p2_N_m_s"};
+        subtitle_ =
+            fmt::format("Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, {}; energies above hanging at rest",
+                        links_words(release_));
         const auto pendulum = chain_of(release_).cast<double>();
         for (const double energy : energies_) releases_.push_back(releases_of_energy(pendulum, energy, orbits_));
     }
@@ -64,17 +69,12 @@ public:
     }
 
     std::size_t trials() const override { return energies_.size() * orbits(); }
-    std::string unit() const override { return "orbits"; }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
         if (numbers.size() < numbers_in<OrbitRow> || !all_finite(numbers)) return false;
         const double crossings = row_of<OrbitRow>(numbers).crossings;
         return is_count(crossings) && crossings <= spec_.crossings &&
                numbers.size() == numbers_in<OrbitRow> + numbers_in<CrossingRow> * static_cast<std::size_t>(crossings);
-    }
-
-    std::vector<std::string> columns() const override {
-        return {"energy_J", "orbit", "exponent_per_s", "regular", "time_s", "theta2_rad", "p2_N_m_s"};
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -104,11 +104,6 @@ public:
         for (const auto& orbit : numbers)
             if (orbit_of(orbit).crossings > 0) return std::nullopt;
         return fmt::format("no orbit comes back to θ₁ = 0 within {:g} s; take a higher energy_J", spec_.longest_s);
-    }
-
-    std::string subtitle() const override {
-        return fmt::format("Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, {}; energies above hanging at rest",
-                           links_words(release_));
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
@@ -151,7 +146,7 @@ private:
         return plot;
     }
     static long regular_ones(std::span<const TrialNumbers> orbits) {
-        return std::count_if(orbits.begin(), orbits.end(), [](const auto& orbit) { return orbit_of(orbit).regular(); });
+        return std::ranges::count_if(orbits, [](const auto& orbit) { return orbit_of(orbit).regular(); });
     }
 
     std::size_t orbits() const { return static_cast<std::size_t>(orbits_); }

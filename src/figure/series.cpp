@@ -66,6 +66,7 @@ class PairSeries final : public Experiment {
 public:
     PairSeries(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
         : logarithmic_(keys.logarithmic), check_tolerance_(keys.check_tolerance) {
+        columns_ = {"sample", "time_s"};
         const auto shown = keys.film_column.value_or(std::string(name_of(keys.quantity)));
         auto entries = reader.entries("curve");
         if (entries.empty() || reader.only_keys) curves_.push_back({shown, "", shown, reader.pair()});
@@ -73,11 +74,14 @@ public:
             auto& curve = curves_.emplace_back();
             curve_fields(entry, curve);
             if (!reader.only_keys) check_column(entry, curve);
+            columns_.push_back(curve.column);
             if (!curve.film_column) curve.film_column = shown;
             curve.pair = reader.pair({&entry});
             entry.finish();
         }
         if (reader.only_keys) return;
+        if (entries.empty()) columns_.push_back(shown);
+        unit_ = "pairs";
         bool differ = false;
         for (auto& curve : curves_) {
             curve.pair.energy_columns = true;
@@ -105,18 +109,11 @@ public:
     }
 
     std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
-    std::string unit() const override { return "pairs"; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
         const bool is_distance = curves_[trial % curves_.size()].film_column == "distance";
         return numbers.size() == static_cast<std::size_t>(samples_) + 1 &&
                (is_distance ? all_finite(numbers) : finite_or_none(numbers));
-    }
-
-    std::vector<std::string> columns() const override {
-        std::vector<std::string> names{"sample", "time_s"};
-        for (const auto& curve : curves_) names.push_back(curve.column);
-        return names;
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -150,15 +147,15 @@ public:
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         if (!logarithmic_) return std::nullopt;
         for (const auto& trial : numbers.first(curves_.size()))
-            if (std::any_of(trial.begin(), trial.end(), [](double x) { return x > 0; })) return std::nullopt;
+            if (std::ranges::any_of(trial, [](double x) { return x > 0; })) return std::nullopt;
         return "nothing is greater than 0, which a logarithmic axis cannot show; set series.logarithmic = false";
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
         Json all;
         for (std::size_t i = 0; i < curves_.size(); ++i) {
-            const auto maximum = std::max_element(numbers[i].begin(), numbers[i].end(),
-                                                  [](double a, double b) { return std::isnan(a) || a < b; });
+            const auto maximum =
+                std::ranges::max_element(numbers[i], [](double a, double b) { return std::isnan(a) || a < b; });
             all["greatest_" + curves_[i].column] = *maximum;
             all["greatest_at_sample_" + curves_[i].column] = static_cast<double>(maximum - numbers[i].begin());
             if (check_tolerance_) all["agrees_until_s_" + curves_[i].column] = agree_until(numbers, i);
@@ -170,7 +167,7 @@ private:
     void check_column(TomlReader& entry, const PairCurve& curve) const {
         if (curve.column.empty()) throw entry.error("column", "is missing; it names the curve in the table");
         if (!entry.has("label")) entry.require_drawable("column", curve.column);  // the column is used as label
-        if (const auto names = columns(); std::count(names.begin(), names.end(), curve.column) != 1)
+        if (std::ranges::count(columns_, curve.column) > 0)
             throw entry.error("column", "must differ from the other columns; it is \"{}\"", curve.column);
     }
 

@@ -23,20 +23,21 @@ public:
             throw table.error("quantity", "= \"exponents\" is for 1 to {} links; there are {}", max_links,
                               release_.links());
         settings_ = resolved_release(release_) + settings_text(keys);
+        unit_ = "spectra";
+        columns_ = {"time_s"};
+        for (std::size_t i = 1; i <= exponents(); ++i) columns_.push_back(fmt::format("exponent{}_per_s", i));
+        columns_.emplace_back("sum_per_s");
+        const auto physical = physical_words(release_.physical);
+        subtitle_ =
+            fmt::format("a {}{} {}, {}; tangent equations in canonical variables, dop853",
+                        chain_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
+                        released_words(release_), links_words(release_));
     }
 
     std::size_t trials() const override { return 1; }
-    std::string unit() const override { return "spectra"; }
 
     bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
         return numbers.size() == static_cast<std::size_t>(spec_.samples) * (exponents() + 1) && all_finite(numbers);
-    }
-
-    std::vector<std::string> columns() const override {
-        std::vector<std::string> names{"time_s"};
-        for (std::size_t i = 1; i <= exponents(); ++i) names.push_back(fmt::format("exponent{}_per_s", i));
-        names.emplace_back("sum_per_s");
-        return names;
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -70,13 +71,6 @@ public:
                 : fmt::format("Their sum is −{:.4f} 1/s, the mean rate at which friction contracts phase-space volume.",
                               std::abs(sum(last)));
         figure.captions.push_back(fmt::format("After {} s: {} 1/s. {}", spec_.duration_s, words, of_them));
-    }
-
-    std::string subtitle() const override {
-        const auto physical = physical_words(release_.physical);
-        return fmt::format("a {}{} {}, {}; tangent equations in canonical variables, dop853",
-                           chain_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
-                           released_words(release_), links_words(release_));
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {

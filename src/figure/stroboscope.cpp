@@ -15,7 +15,7 @@ std::size_t distinct_rates(const TrialNumbers& motion) {
     std::vector<double> rates;
     for (std::size_t n = 1; n < motion.size(); n += 2)
         if (std::isfinite(motion[n])) rates.push_back(motion[n]);
-    std::sort(rates.begin(), rates.end());
+    std::ranges::sort(rates);
     std::size_t count = rates.empty() ? 0 : 1;
     for (std::size_t i = 1; i < rates.size(); ++i) count += rates[i] - rates[i - 1] > min_difference;
     return count;
@@ -26,7 +26,7 @@ std::optional<Rational> drive_of(const SideSpec& side) {
     std::vector<Quad> all;
     if (side.physical.pivot.amplitude_m != 0) all.push_back(side.physical.pivot.frequency_hz);
     for (const auto& torque : side.physical.torques) all.push_back(torque.frequency_hz);
-    if (all.empty() || std::any_of(all.begin(), all.end(), [&](const Quad& f) { return f != all[0]; })) return {};
+    if (all.empty() || std::ranges::any_of(all, [&](const Quad& f) { return f != all[0]; })) return {};
     const auto frequency = parse_rational(text_of(all[0]));
     return frequency && frequency->numerator > 0 ? frequency : std::nullopt;
 }
@@ -62,7 +62,7 @@ TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const 
     } catch (const Error& error) {
         if (error.code() != ExitCode::method_failed) throw;
     }
-    numbers.resize(spec.numbers(), NAN);
+    numbers.resize(2 * static_cast<std::size_t>(spec.periods), NAN);
     return numbers;
 }
 

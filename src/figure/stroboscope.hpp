@@ -13,8 +13,6 @@ namespace doppel {
 struct StroboscopeSpec {
     int link = 1;  // from 1
     int transient_periods = 200, periods = 100;
-
-    std::size_t numbers() const { return 2 * static_cast<std::size_t>(periods); }
 };
 
 /// Throws Error (exit 2) at the table's `key` or `link` without exactly one drive frequency of at most 18 digits, or

@@ -44,7 +44,7 @@ std::string degrees(const Quad& angle) {
 }
 
 bool is_swept(const SweptKeys& swept, std::string_view key) {
-    return std::any_of(swept.keys.begin(), swept.keys.end(), [&](const auto& path) { return path.ends_with(key); });
+    return std::ranges::any_of(swept.keys, [&](const auto& path) { return path.ends_with(key); });
 }
 
 std::string model_words(const Scene& scene, const SweptKeys& swept) {
@@ -67,9 +67,7 @@ std::string release_words(const Scene& scene, const SweptKeys& swept) {
     const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
     if (!scene.preset.a.particles.empty() || angles.size() > maximum || is_swept(swept, ".angle_deg")) return "";
     if (is_swept(swept, "links")) return fmt::format("released from {}", degrees(angles.front()));
-    const auto is_swept_link = [&](std::size_t i) {
-        return std::find(swept.angles.begin(), swept.angles.end(), i) != swept.angles.end();
-    };
+    const auto is_swept_link = [&](std::size_t i) { return std::ranges::find(swept.angles, i) != swept.angles.end(); };
     if (swept.angles.empty() && angles == others) return slashed(angles, "°");
     std::string named;
     for (std::size_t i = 0; i < angles.size(); ++i) {

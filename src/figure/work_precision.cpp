@@ -50,6 +50,11 @@ public:
         problems = scene_ ? problem_of(film_) : standard_problems(problem_names_, table);
         references_ = std::make_unique<SharedReference[]>(problems.all.size());
         settings_ = settings_text(*this) + problems.comment;
+        subtitle_ = problems.subtitle;
+        unit_ = "step-size studies";
+        const auto* error = has_angles() ? "angle_error_rad" : "place_error";
+        columns_ = {"problem",      "model",          "method",      "setting",     error,
+                    "energy_error", "length_error_m", "cpu_seconds", "evaluations", "steps"};
         TomlWriter chart;
         further_fields(chart);
         chart_settings_ = chart.text();
@@ -88,7 +93,6 @@ public:
 
     std::size_t trials() const override { return problems.all.size() + studies_.size() * rounds(); }
     bool measures_time() const override { return cost == Cost::time; }
-    std::string unit() const override { return "step-size studies"; }
     double units(std::size_t trial) const override { return trial < problems.all.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
@@ -96,15 +100,9 @@ public:
         if (numbers.empty() || numbers.size() % numbers_in<StepResult> != 0) return false;
         const auto is_count_or_none = [](double x) { return std::isnan(x) || is_count(x); };
         const auto outcomes = rows_of<StepResult>(numbers);
-        return std::all_of(outcomes.begin(), outcomes.end(), [&](const StepResult& outcome) {
+        return std::ranges::all_of(outcomes, [&](const StepResult& outcome) {
             return is_count_or_none(outcome.evaluations) && is_count_or_none(outcome.steps);
         });
-    }
-
-    std::vector<std::string> columns() const override {
-        const auto* error = has_angles() ? "angle_error_rad" : "place_error";
-        return {"problem",      "model",          "method",      "setting",     error,
-                "energy_error", "length_error_m", "cpu_seconds", "evaluations", "steps"};
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -151,12 +149,10 @@ public:
                     : fmt::format("In colour the five best, by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}, each in "
                                   "its best model; the pale band is the Pareto front of all.",
                                   has_angles() ? " rad" : ""));
-        figure.captions.push_back(error_words(std::any_of(figure.panels.begin(), figure.panels.end(),
-                                                          [](const Plot& plot) { return !plot.rules.empty(); })));
+        figure.captions.push_back(
+            error_words(std::ranges::any_of(figure.panels, [](const Plot& plot) { return !plot.rules.empty(); })));
         if (cost == Cost::time) figure.captions.push_back(timing_caption(all, repeats));
     }
-
-    std::string subtitle() const override { return problems.subtitle; }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
         Json found;

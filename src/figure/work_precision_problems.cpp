@@ -86,8 +86,8 @@ std::string commented(std::string_view text) {
 /// The systems of the standard problems: "double and triple pendulums".
 std::string pendulums_words(const std::vector<WorkProblem>& problems) {
     const auto of = [&](std::size_t links) {
-        return std::count_if(problems.begin(), problems.end(),
-                             [&](const auto& problem) { return problem.motion.chain->links() == links; });
+        return std::ranges::count_if(problems,
+                                     [&](const auto& problem) { return problem.motion.chain->links() == links; });
     };
     const auto doubles = of(2), triples = of(3);
     if (doubles > 0 && triples > 0) return "double and triple pendulums";
@@ -102,11 +102,10 @@ std::span<const std::string_view> standard_problem_names() {
 
 WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table) {
     if (names.empty()) throw table.error("problems", "must name at least one of {}", fmt::join(names_of_all, ", "));
+    check_distinct(table, "problems", names);
     WorkProblems problems;
     for (const auto& name : names) {
-        if (std::count(names.begin(), names.end(), name) > 1)
-            throw table.error("problems", "must differ; \"{}\" is there twice", name);
-        const auto number = std::find(names_of_all.begin(), names_of_all.end(), name) - names_of_all.begin();
+        const auto number = std::ranges::find(names_of_all, name) - names_of_all.begin();
         const auto& standard = all_standard.at(static_cast<std::size_t>(number));
         problems.all.push_back(make_problem(name, side_of(standard), {standard.seconds, 1}));
     }

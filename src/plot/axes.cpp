@@ -46,15 +46,6 @@ bool side_by_side(const std::vector<Heading>& all, float width, const PlotStyle&
     return all.size() == 1 || need <= width;
 }
 
-void draw_x_label(const std::string& text, const Panel& panel) {
-    if (text.empty()) return;
-    const auto& [plot, axes, area, held, words, style, list] = panel;
-    const float half = text_width(text, style.axis) / 2, baseline = area.bottom + 1.45f * style.tick;
-    const float middle =
-        std::clamp((area.left + area.right) / 2, held.left + half, std::max(held.left + half, held.right - half));
-    list.push_back(label(text, {middle, baseline + 1.5f * style.axis}, style.axis, style.theme.text, Align::center));
-}
-
 }  // namespace
 
 std::vector<Tick> ticks_of(const Axis& axis, const PlotAxis& requested, bool across, const PlotStyle& style) {
@@ -75,7 +66,12 @@ void draw_axes(const Panel& panel) {
         for (const auto& item : page_list(axis_items(axis, ticks, area, panel.held, own))) list.push_back(item);
     };
     draw(panel.axes.x, plot.x, Edge::bottom, panel.words.x, theme.quiet_text);
-    if (panel.words.x) draw_x_label(plot.x.label, panel);
+    if (const std::string& text = plot.x.label; panel.words.x && !text.empty()) {
+        const float half = text_width(text, style.axis) / 2, baseline = area.bottom + 1.45f * style.tick;
+        const float leftmost = panel.held.left + half, rightmost = std::max(leftmost, panel.held.right - half);
+        const float middle = std::clamp((area.left + area.right) / 2, leftmost, rightmost);
+        list.push_back(label(text, {middle, baseline + 1.5f * style.axis}, style.axis, theme.text, Align::center));
+    }
     draw(panel.axes.y, plot.y, Edge::left, panel.words.y, theme.quiet_text);
     if (plot.right) {
         draw(*panel.axes.right, *plot.right, Edge::right, true, axis_color(plot, true, style));

@@ -166,14 +166,12 @@ std::vector<Tick> decades(const Axis& axis, double low, double high, int every) 
 }
 
 std::size_t named(const std::vector<Tick>& ticks) {
-    return static_cast<std::size_t>(
-        std::count_if(ticks.begin(), ticks.end(), [](const Tick& tick) { return !tick.text.empty(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(ticks, [](const Tick& tick) { return !tick.text.empty(); }));
 }
 
-std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
+std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels) {
     const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
     if (!(low > 0 && low < high)) return {};
-    if (every) return decades(axis, low, high, static_cast<int>(*every));
     const double span = std::log10(high) - std::log10(low);
     std::vector<std::vector<Tick>> all;  // in the order of preference
     if (span < 2) all.push_back(subdivided(low, high, {1, 2, 5}));
@@ -193,7 +191,7 @@ float TickLabels::length(const std::string& text) const {
 
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high)) return {};
-    if (axis.logarithmic) return logarithmic_ticks(axis, labels, every);
+    if (axis.logarithmic) return logarithmic_ticks(axis, labels);
     if (every) {
         auto ticks = requested_ticks(axis, labels, *every);
         if (!ticks.empty()) return ticks;

@@ -76,10 +76,6 @@ PlotRanges fitted_ranges(const Plot& plot) {
             values.add(curve.y[i] + std::abs(curve.uncertainty[i]));
         }
     }
-    if (const auto& map = plot.map) {
-        for (const double edge : {map->x_low, map->x_high}) x.add(edge);
-        for (const double edge : {map->y_low, map->y_high}) y.add(edge);
-    }
     for (const Rule& rule : plot.rules) (rule.orientation == Rule::Orientation::vertical ? x : y).add(rule.at);
     PlotRanges ranges{x.range(plot.x, spread ? 0.015 : 0), y.range(plot.y, spread ? 0.05 : 0), {}};
     if (plot.right) ranges.right = right.range(*plot.right, 0.05);

@@ -8,8 +8,8 @@ namespace {
 
 /// The map whose colour bar is shared by all panels; null if each has its own.
 const HeatMap* shared_map(const Figure& figure) {
-    const auto found = std::find_if(figure.panels.begin(), figure.panels.end(),
-                                    [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
+    const auto found =
+        std::ranges::find_if(figure.panels, [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
     return found == figure.panels.end() ? nullptr : &*found->map;
 }
 
@@ -65,8 +65,8 @@ Cells cells_of(const std::vector<Gutters>& own, const PanelGrid& grid, float wid
     Gutters largest;
     for (const Gutters& each : own) largest = united(largest, each);
     if (!shares_axes) {
-        std::fill(cells.columns.begin(), cells.columns.end(), largest);
-        std::fill(cells.rows.begin(), cells.rows.end(), largest);
+        std::ranges::fill(cells.columns, largest);
+        std::ranges::fill(cells.rows, largest);
         cells.width = std::floor(width / static_cast<float>(columns)) - largest.left - largest.right;
         cells.height = std::floor(height / static_cast<float>(rows)) - largest.top(style) - largest.bottom;
         return cells;

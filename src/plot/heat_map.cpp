@@ -80,13 +80,13 @@ Picture cell_picture(const HeatMap& map, const Theme& theme) {
     return picture;
 }
 
-CellImage map_cells(const HeatMap& map, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
-    const auto place = [](const Axis& axis, double value) {
-        return static_cast<float>(axis.from + (axis.to - axis.from) * axis.share(value));
+CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
+    const auto place = [](const Axis& axis, const std::optional<double>& edge) {
+        return static_cast<float>(axis.from + (axis.to - axis.from) * axis.share(edge.value()));
     };
-    return {{place(x, map.x_low), place(y, map.y_high), place(x, map.x_high), place(y, map.y_low)},
+    return {{place(x, plot.x.low), place(y, plot.y.high), place(x, plot.x.high), place(y, plot.y.low)},
             area,
-            std::make_shared<Picture>(cell_picture(map, theme))};
+            std::make_shared<Picture>(cell_picture(*plot.map, theme))};
 }
 
 Color none_color(const HeatMap& map, const Theme& theme) {

@@ -32,29 +32,23 @@ void LabelPlacer::add_line(Point from, Point to, std::size_t owner) {
     }
 }
 
-LabelPlacer::Squares LabelPlacer::squares(const Area& box) const {
+int LabelPlacer::ink(const Area& box, std::size_t except) const {
+    const std::uint64_t others = except == no_owner ? ~std::uint64_t{0} : ~bit(except);
     const auto within = [](float v, int maximum) {
         return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(maximum)));
     };
-    return {within(std::floor((box.left - area_.left) / square), columns_),
-            within(std::floor((box.top - area_.top) / square), rows_),
-            within(std::ceil((box.right - area_.left) / square), columns_),
-            within(std::ceil((box.bottom - area_.top) / square), rows_)};
-}
-
-int LabelPlacer::ink(const Area& box, std::size_t except) const {
-    const std::uint64_t others = except == no_owner ? ~std::uint64_t{0} : ~bit(except);
-    const Squares part = squares(box);
+    const int left = within(std::floor((box.left - area_.left) / square), columns_);
+    const int right = within(std::ceil((box.right - area_.left) / square), columns_);
+    const int bottom = within(std::ceil((box.bottom - area_.top) / square), rows_);
     int count = 0;
-    for (int row = part.top; row < part.bottom; ++row)
-        for (int column = part.left; column < part.right; ++column)
+    for (int row = within(std::floor((box.top - area_.top) / square), rows_); row < bottom; ++row)
+        for (int column = left; column < right; ++column)
             count += (drawn_[static_cast<std::size_t>(row) * columns_ + column] & others) != 0;
     return count;
 }
 
 bool LabelPlacer::is_free(const Area& box) const {
-    return area_.contains(box) &&
-           std::none_of(texts_.begin(), texts_.end(), [&](const Area& text) { return text.overlaps(box); });
+    return area_.contains(box) && std::ranges::none_of(texts_, [&](const Area& text) { return text.overlaps(box); });
 }
 
 }  // namespace doppel

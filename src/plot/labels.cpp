@@ -62,7 +62,7 @@ std::vector<Point> places(const DrawnCurve& curve) {
     const std::size_t step = all.size() / maximum + 1;
     for (std::size_t i = 0; i < all.size(); i += step) few.push_back(all[i]);
     few.push_back(all.back());
-    std::stable_sort(few.begin(), few.end(), [](const Point& a, const Point& b) { return a.x > b.x; });
+    std::ranges::stable_sort(few, [](const Point& a, const Point& b) { return a.x > b.x; });
     return few;
 }
 
@@ -154,7 +154,7 @@ PlacedLabels place_labels(const std::vector<DrawnCurve>& drawn, float size, bool
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& curve = curves[i];
         const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
-        if (curve.label.empty() || empty || std::count(elsewhere.begin(), elsewhere.end(), i) > 0) continue;
+        if (curve.label.empty() || empty || std::ranges::count(elsewhere, i) > 0) continue;
         const LabelText text = text_for(curve, size, panel);
         const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
         std::optional<Found> found;
@@ -189,8 +189,7 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
     const PlotStyle& style = panel.style;
     PageList& list = panel.list;
     const float small = style.on_paper ? style.text : 0.8f * style.text;  // on paper, the size that is asked for
-    bool dense = given.small ||
-                 std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return !c.label.empty(); }) > many;
+    bool dense = given.small || std::ranges::count_if(curves, [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
     const auto tried = [&](float size, const LabelPlacer& left) {
         return place_labels(drawn, size, dense, others, panel, left);

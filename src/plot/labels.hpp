@@ -29,11 +29,6 @@ public:
     static constexpr std::size_t no_owner = 63;
 
 private:
-    struct Squares {
-        int left, top, right, bottom;
-    };
-    Squares squares(const Area& box) const;
-
     Area area_;
     int columns_, rows_;
     std::vector<std::uint64_t> drawn_;  // for each square, one bit per curve number

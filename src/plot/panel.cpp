@@ -102,7 +102,7 @@ LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, co
     ranges.y = placed(ranges.y, area.bottom, area.top);
     if (area.width() < drawn_side || area.height() < drawn_side) return given;
     if (ranges.right) ranges.right = placed(*ranges.right, area.bottom, area.top);
-    if (plot.map) list.push_back(map_cells(*plot.map, ranges.x, ranges.y, area, style.theme));
+    if (plot.map) list.push_back(map_cells(plot, ranges.x, ranges.y, area, style.theme));
     if (plot.map && !plot.map->shares_bar) draw_bar(*plot.map, area, area.right, style, list);
     const Panel panel{plot, ranges, area, held, words, style, list};
     draw_axes(panel);

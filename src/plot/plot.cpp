@@ -3,7 +3,7 @@
 #include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ struct Layout {
     std::vector<TextBlock> captions;
     Area body;
     float captions_top = 0;
-    std::string_view left_out;  // left out for lack of space
+    std::vector<std::string_view> left_out;  // for lack of space
 };
 
 /// Whether the contents of the body are large enough to read.
@@ -71,12 +71,8 @@ Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& s
         if (height > 0) page.body.bottom = page.captions_top - 0.9f * style.caption;
         if (legible(figure, page.body, sheet, style)) break;
     }
-    const bool lacks_subtitle = page.subtitle.lines.empty() && !figure.subtitle.empty();
-    const bool lacks_captions = page.captions.empty() && !figure.captions.empty();
-    page.left_out = lacks_subtitle && lacks_captions ? "the subtitle and the captions"
-                    : lacks_subtitle                 ? "the subtitle"
-                    : lacks_captions                 ? "the captions"
-                                                     : "";
+    if (page.subtitle.lines.empty() && !figure.subtitle.empty()) page.left_out.emplace_back("the subtitle");
+    if (page.captions.empty() && !figure.captions.empty()) page.left_out.emplace_back("the captions");
     return page;
 }
 
@@ -116,7 +112,8 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
             caption.draw({sheet.left, top}, made.items);
             top += caption.height();
         }
-        if (!page.left_out.empty()) made.notes.push_back(fmt::format("there is no space for {}", page.left_out));
+        if (!page.left_out.empty())
+            made.notes.push_back(fmt::format("there is no space for {}", fmt::join(page.left_out, " and ")));
         if (unit && made.scale < scale)
             made.notes.push_back(
                 fmt::format("text is reduced to {:.2g} times its size for lack of space", made.scale / scale));

@@ -46,12 +46,11 @@ struct Rule {
     std::string label;
 };
 
-/// A quantity on a rectangle, shown as colour with a colour bar.
+/// A quantity on a rectangle, shown as colour with a colour bar. Its cells are equidistant on the plot's x and y, from
+/// their low to their high ends, which must be given.
 struct HeatMap {
     std::size_t columns = 0, rows = 0;
-    std::vector<float> values;  // row by row, from y_low up; NaN = no value, shown as `none_label`
-    double x_low = 0, x_high = 1, y_low = 0,
-           y_high = 1;                // outer edges of the cells, which are equidistant on their axes
+    std::vector<float> values;        // row by row, from the lowest up; NaN = no value, shown as `none_label`
     std::string label;                // of the colour bar, including the unit
     std::string none_label;           // "no flip within 20 s"
     bool none_is_bad = false;         // shown in the theme's `bad` colour

@@ -27,8 +27,7 @@ inline FigurePreset figure_from(const std::string& text, const std::vector<std::
 
 inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
     const std::atomic<bool> never = false;
-    Computation computation(figure, header_of(figure), std::nullopt, jobs,
-                            {[](const FigureProgress&) {}, [](const std::string&) {}});
+    Computation computation(figure, header_of(figure), std::nullopt, jobs, {});
     parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, never); });
     return computation.take_all();
 }
@@ -110,12 +109,7 @@ struct Said {
     std::vector<RunResult> results;
     std::mutex mutex;
 
-    /// The report of one computation.
-    ComputationReport report() {
-        return {[this](const FigureProgress& p) { progress.push_back(p); },
-                [this](const std::string& sentence) { notes.push_back(sentence); }};
-    }
-    /// For a run of figures, which may report at the same time.
+    /// Figures may report at the same time.
     FigureReport run_report() {
         const auto add = [this](auto& list, const auto& what) {
             const std::lock_guard hold(mutex);

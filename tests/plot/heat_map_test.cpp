@@ -15,36 +15,34 @@ HeatMap strip(std::vector<float> values) {
     return {.columns = values.size(), .rows = 1, .values = values, .label = "an error", .low = 0, .high = 1};
 }
 
-/// A map 90 px wide over an axis from 1 to 1000 or reversed, with a margin of 5 px.
-Picture drawn(const HeatMap& map, bool logarithmic, bool reversed) {
+/// A map from `low` to `high`, over an axis of 90 px from 1 to 1000 or reversed, with a margin of 5 px.
+Picture drawn(const HeatMap& map, double low, double high, bool logarithmic, bool reversed) {
+    const Plot plot{.x = {.low = low, .high = high}, .y = {.low = 0, .high = 1}, .map = map};
     Axis x{.low = 1, .high = 1000, .from = 5, .to = 95, .logarithmic = logarithmic};
     if (reversed) std::swap(x.low, x.high);
     const Axis y{.low = 0, .high = 1, .from = 15, .to = 5};
     return picture_of({.size = {100, 20},
-                       .items = {filled({100, 20}, rgb(0xffffff)), map_cells(map, x, y, {5, 5, 95, 15}, themes[1])}});
+                       .items = {filled({100, 20}, rgb(0xffffff)), map_cells(plot, x, y, {5, 5, 95, 15}, themes[1])}});
 }
 
 TEST(HeatMap, HasCellsThatAreEvenOnTheirAxes) {
-    auto map = strip({0, 0.5, 1});
-    map.x_low = 1, map.x_high = 1000;
+    const auto map = strip({0, 0.5, 1});
     const auto expect_color = [](const Picture& picture, int x, const Color& color) {
         EXPECT_TRUE(is_color(picture.at(x + 5, 10), color, 1)) << x;
     };
     for (const bool logarithmic : {false, true})
         for (const bool reversed : {false, true}) {
-            const auto picture = drawn(map, logarithmic, reversed);
+            const auto picture = drawn(map, 1, 1000, logarithmic, reversed);
             for (const int cell : {0, 1, 2})
                 for (const int x : {30 * cell, 30 * cell + 29})
                     expect_color(picture, reversed ? 89 - x : x, map_color(0.5 * cell));
             for (const int outside : {-1, 90}) expect_color(picture, outside, rgb(0xffffff));
         }
     // one that covers only the middle decade, and one that is cut off
-    map.x_low = 10, map.x_high = 100;
-    auto picture = drawn(map, true, false);
+    auto picture = drawn(map, 10, 100, true, false);
     for (const int x : {30, 39, 40, 49, 50, 59}) expect_color(picture, x, map_color(0.5 * ((x - 30) / 10)));
     for (const int outside : {29, 60}) expect_color(picture, outside, rgb(0xffffff));
-    map.x_low = 1e-3, map.x_high = 1e3;
-    picture = drawn(map, true, false);
+    picture = drawn(map, 1e-3, 1e3, true, false);
     for (const int x : {0, 29, 30, 89}) expect_color(picture, x, map_color(x < 30 ? 0.5 : 1));
     expect_color(picture, -1, rgb(0xffffff));
 }
@@ -52,8 +50,8 @@ TEST(HeatMap, HasCellsThatAreEvenOnTheirAxes) {
 TEST(HeatMap, ShowsTheMeanWhereCellsAreSmallerThanPixels) {
     auto map = strip({});
     for (int i = 0; i < 2000; ++i) map.values.push_back(i % 2 ? 1.0f : 0.2f);
-    map.columns = 2000, map.x_low = 1, map.x_high = 1000;
-    const auto picture = drawn(map, true, false);
+    map.columns = 2000;
+    const auto picture = drawn(map, 1, 1000, true, false);
     for (int x = 7; x < 93; ++x)
         EXPECT_NEAR(picture.at(x, 10)[1], 255 * (map_color(0.2).g + map_color(1).g) / 2, 12) << x;
 }

@@ -23,16 +23,7 @@ Figure four_maps(bool shares_axes, bool split) {
         Plot plot{.title = "map", .note = "17 s"};
         plot.x = {.label = high == 10 ? "step, s" : "tolerance", .low = 0, .high = high};
         plot.y = {.label = "angle, °", .low = 0, .high = 180, .every = 90};
-        plot.map = HeatMap{.columns = 1,
-                           .rows = 1,
-                           .values = {1},
-                           .x_low = 0,
-                           .x_high = high,
-                           .y_low = 0,
-                           .y_high = 180,
-                           .low = 0,
-                           .high = 2,
-                           .shares_bar = true};
+        plot.map = HeatMap{.columns = 1, .rows = 1, .values = {1}, .low = 0, .high = 2, .shares_bar = true};
         figure.panels.push_back(plot);
     }
     return figure;

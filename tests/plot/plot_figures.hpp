@@ -51,13 +51,11 @@ inline Figure convergence() {
 }
 
 inline Figure map(bool logarithmic) {
-    Plot plot{.x = {.label = "θ1, °", .every = 45}, .y = {.label = "θ2, °", .every = 45}, .square = true};
+    Plot plot{.x = {.label = "θ1, °", .low = -180, .high = 180, .every = 45},
+              .y = {.label = "θ2, °", .low = -180, .high = 180, .every = 45},
+              .square = true};
     HeatMap cells{.columns = 60,
                   .rows = 60,
-                  .x_low = -180,
-                  .x_high = 180,
-                  .y_low = -180,
-                  .y_high = 180,
                   .label = "time to the first flip, s",
                   .none_label = "no flip within twenty seconds",
                   .logarithmic = logarithmic};

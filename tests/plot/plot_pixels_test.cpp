@@ -17,8 +17,7 @@ constexpr Size size{400, 300};
 
 /// A panel with only a map: x from 0 to 10, y from 0 to 1.
 Figure bare_map(std::size_t columns, std::size_t rows, bool blank = false) {
-    HeatMap map{
-        .columns = columns, .rows = rows, .x_low = 0, .x_high = 10, .y_low = 0, .y_high = 1, .low = 0.0, .high = 1.0};
+    HeatMap map{.columns = columns, .rows = rows, .low = 0.0, .high = 1.0};
     for (std::size_t i = 0; i < columns * rows; ++i)
         map.values.push_back(blank ? std::nanf("") : static_cast<float>(i % 11) / 10);
     return {.panels = {{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}, .map = map}}};

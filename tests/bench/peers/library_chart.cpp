@@ -21,21 +21,21 @@ public:
         for (std::size_t p = 0; p < problems_.size(); ++p)
             for (std::size_t m = 0; m < methods_.size() && problems_[p].is_plain_chain(); ++m)
                 studies_.emplace_back(p, m);
+        unit_ = own_->unit();
+        subtitle_ = own_->subtitle();
+        columns_ = own_->columns();
         settings_ = own_->resolved();
         chart_settings_ = own_->resolved_chart();
     }
 
     std::size_t trials() const override { return own_->trials() + rounds() * studies_.size(); }
     bool measures_time() const override { return own_->measures_time(); }
-    std::string unit() const override { return own_->unit(); }
     double units(std::size_t trial) const override { return trial < problems_.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
         // studies of any method have the same numbers
         return own_->fits(trial < problems_.size() ? trial : problems_.size(), numbers);
     }
-
-    std::vector<std::string> columns() const override { return own_->columns(); }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
         own_->write_rows(own(numbers), table);
@@ -82,7 +82,6 @@ public:
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         return own_->nothing_to_draw(own(numbers));
     }
-    std::string subtitle() const override { return own_->subtitle(); }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
         auto found = own_->findings(own(numbers));
