@@ -61,7 +61,7 @@ TEST(Plot, ACurvePassesWhereItsValuesAre) {
     for (const bool logarithmic : {false, true}) {
         Figure figure = bare_map(1, 1, true);
         Plot& plot = figure.panels[0];
-        if (logarithmic) plot.y = {.low = 1e-4, .high = 1, .logarithmic = true}, plot.map->y_low = 1e-4;
+        if (logarithmic) plot.y = {.low = 1e-4, .high = 1, .logarithmic = true};
         const Area area = area_of(composed(figure, size, light));
         plot.curves = {
             {.x = {0, 10}, .y = logarithmic ? std::vector{1e-4, 1.0} : std::vector{0.0, 1.0}, .quiet = true}};
