@@ -109,7 +109,7 @@ TEST(ChartTicks, ReadAsPeopleWrite) {
     EXPECT_EQ(texts({1e-4, 1e-1, 0, 300, true}), (Texts{"10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"}));
     EXPECT_EQ(texts({1e-16, 1, 0, 300, true}), (Texts{"10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"}));
     EXPECT_EQ(texts({0.1, 2, 0, 400, true}), (Texts{"0.1", "0.2", "0.5", "1", "2"}));
-    EXPECT_EQ(texts({1, 100, 0, 300, true}, 30), (Texts{"1", "10", "100"}));
+    EXPECT_EQ(texts({1, 100, 0, 300, true}, 30), (Texts{"1", "10", "10²"}));
 }
 
 TEST(ChartTicks, AreFewWhereValuesCannotBeDistinguished) {
