@@ -23,13 +23,6 @@ namespace doppel {
 template <class Model>
 class IncrementalEuler;
 
-/// Put before the loops of a single pendulum: if its components were paired in vectors, they would wait for shuffles.
-#if defined(__GNUC__) && !defined(__clang__)
-#define DOPPEL_COMPONENTS_APART [[gnu::optimize("no-tree-slp-vectorize")]]
-#else
-#define DOPPEL_COMPONENTS_APART
-#endif
-
 /// Whether there is one for this model.
 template <class Model>
 inline constexpr bool has_incremental_euler = false;

@@ -39,13 +39,12 @@ public:
           adaptive_(find_method(spec.method)->adaptive),
           wants_tension_(spec.wants_tension) {
         if (spec.chain) pendulum_ = spec.chain->cast<Scalar>();
-        if (spec.physical) {
-            physical_ = spec.physical->cast<Scalar>();
-            layout_.emplace(*physical_, static_cast<Eigen::Index>(spec.chain->links()));
-        }
+        if (spec.physical) physical_ = spec.physical->cast<Scalar>();
         if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
         if (wants_tension_ && model_ == Model::mechanism) tension_model_.emplace(spec.parts->cast<double>());
         stepper_->read(y_);
+        if (const auto links = static_cast<Eigen::Index>(spec.chain ? spec.chain->links() : 0); physical_)
+            layout_.emplace(*physical_, links, true, y_.size() == 2 * (links + 2));
         const auto released = configuration_of(y_);
         start_energy_ = released.energy.total;
         const double interval = spec.sample_interval.value();

@@ -17,15 +17,26 @@ namespace doppel {
 template <class Scalar>
 using MakeStepper = std::unique_ptr<Stepper<Scalar>>(const MotionSpec& spec);
 
+template <class Scalar>
+Scalar step_or_tolerance(const MotionSpec& spec) {
+    return find_method(spec.method)->adaptive ? static_cast<Scalar>(spec.tolerance)
+                                              : spec.sample_interval.as<Scalar>() / Scalar(spec.steps_per_sample);
+}
+
 /// With a model of `system`, constructed with `more`.
 template <class Model, class System, class... More>
 std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on(const System& system, const MotionSpec& spec,
                                                             const More&... more) {
     using Scalar = typename Model::Scalar;
-    const Scalar step_or_tolerance = find_method(spec.method)->adaptive
-                                         ? static_cast<Scalar>(spec.tolerance)
-                                         : spec.sample_interval.as<Scalar>() / Scalar(spec.steps_per_sample);
-    return make_stepper(spec.method, Model(system, more...), Model::start(system), step_or_tolerance);
+    return make_stepper(spec.method, Model(system, more...), Model::start(system), step_or_tolerance<Scalar>(spec));
+}
+
+/// RK4 of N bodies, for which the compiler unrolls the loops.
+template <int N>
+std::unique_ptr<Stepper<double>> rk4_of_bodies(const PhysicalPendulum<double>& p, const MotionSpec& spec) {
+    using Model = PhysicalChain<double, N>;
+    return std::make_unique<MethodStepper<Rk4, Model>>(std::make_unique<Model>(p), Model::start(p),
+                                                       step_or_tolerance<double>(spec));
 }
 
 /// With a constrained model of `system`, stabilised as requested.
@@ -42,8 +53,16 @@ std::unique_ptr<Stepper<typename Model::Scalar>> stepper_on_stabilised(const Sys
 /// methods that only need rates.
 template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_angles_stepper(const MotionSpec& spec) {
-    if (spec.physical) return stepper_on<PhysicalChain<Scalar>>(spec.physical->cast<Scalar>(), spec);
     const auto p = spec.chain->cast<Scalar>();
+    if (spec.physical) {
+        const auto bodies = spec.physical->cast<Scalar>();
+        if constexpr (std::is_same_v<Scalar, double>)
+            if (spec.method == Rk4::method.name) {
+                if (p.links() == 2) return rk4_of_bodies<2>(bodies, spec);
+                if (p.links() == 3) return rk4_of_bodies<3>(bodies, spec);
+            }
+        return stepper_on<PhysicalChain<Scalar>>(bodies, spec);
+    }
     if (p.links() == 2) return stepper_on<DoublePendulum<Scalar>>(p, spec);
     if constexpr (std::is_same_v<Scalar, double>)
         if (p.links() == 3 && find_method(spec.method)->stabilised) return stepper_on<AngleChain<Scalar, 3>>(p, spec);

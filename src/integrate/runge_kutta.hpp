@@ -77,7 +77,9 @@ concept HasStageAngles = is_machine_number<typename Model::Scalar> &&
 };
 template <class Model>
 auto stage_angles(Eigen::Index links) {
-    if constexpr (HasStageAngles<Model>)
+    if constexpr (HasStageAngles<Model> && Model::State::RowsAtCompileTime != Eigen::Dynamic)
+        return typename Model::Angles();
+    else if constexpr (HasStageAngles<Model>)
         return typename Model::Angles(links);
     else
         return std::monostate();
@@ -156,6 +158,12 @@ private:
     State at_;
 };
 
+/// A chain of rigid bodies.
+template <class Model>
+concept OfBodies = requires(const Model& model) {
+    model.pendulum.friction;
+};
+
 /// Short states of doubles, for which inlining is forced: otherwise the compiler's choice depends on the rest of the
 /// file. Other states gain nothing from it. Not with sanitizers, where two test files took more than six minutes each.
 #ifdef __SANITIZE_ADDRESS__
@@ -213,6 +221,9 @@ private:
     }
 
     [[gnu::flatten]] void repeat_flattened(long steps) { repeat(steps); }
+    DOPPEL_COMPONENTS_APART [[gnu::flatten]] void repeat_flattened(long steps) requires OfBodies<Model> {
+        repeat(steps);
+    }
 
     void step(State& y) {
         // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)

@@ -13,7 +13,7 @@ template <class Scalar>
 struct Pendulum;
 template <class Scalar>
 struct Assembly;
-template <class Scalar>
+template <class Scalar, int N>
 class PhysicalChain;
 
 /// The Taylor series in time of a motion about one state. The scale of the rates is max |ω_i| + √max |ω_i′|; it is 0
@@ -50,12 +50,12 @@ public:
 template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of(const Pendulum<Scalar>& p, int order);
 template <class Scalar>
-std::unique_ptr<Series<Scalar>> series_of(const PhysicalChain<Scalar>& model, int order);
+std::unique_ptr<Series<Scalar>> series_of(const PhysicalChain<Scalar, Eigen::Dynamic>& model, int order);
 template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of(const Assembly<Scalar>& parts, int order);
 // Each scalar is compiled in its own file.
 template <class Scalar>
-using SeriesOfBodies = std::unique_ptr<Series<Scalar>>(const PhysicalChain<Scalar>& model, int order);
+using SeriesOfBodies = std::unique_ptr<Series<Scalar>>(const PhysicalChain<Scalar, Eigen::Dynamic>& model, int order);
 template <class Scalar>
 using SeriesOfMechanism = std::unique_ptr<Series<Scalar>>(const Assembly<Scalar>& parts, int order);
 

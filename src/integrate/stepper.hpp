@@ -8,6 +8,13 @@
 
 namespace doppel {
 
+/// Put before the loops of a single pendulum: if its components were paired in vectors, they would wait for shuffles.
+#if defined(__GNUC__) && !defined(__clang__)
+#define DOPPEL_COMPONENTS_APART [[gnu::optimize("no-tree-slp-vectorize")]]
+#else
+#define DOPPEL_COMPONENTS_APART
+#endif
+
 // The interface of every method, a class template over the model:
 //
 //     (Model&, const State& start, const Scalar& step or tolerance)   allocates all memory

@@ -3,6 +3,8 @@
 #include "physics/physical_pendulum.hpp"
 #include "physics/rod_multipliers.hpp"
 
+#include <array>
+#include <type_traits>
 #include <vector>
 
 namespace doppel {
@@ -20,15 +22,16 @@ namespace doppel {
 /// stored by components across and along the link, and det A. These are sums of products in which those of a light link
 /// do not cancel.
 /// Source  Featherstone 2008, Rigid Body Dynamics Algorithms, §7.2, in the plane.
-template <class S>
+template <class S, int N = Eigen::Dynamic>
 class ArticulatedBodies {
 public:
     using Scalar = S;
-    using Half = State<Scalar, Eigen::Dynamic>;
+    using Half = State<Scalar, N>;
     using Vector = Planar<Scalar>;
 
     explicit ArticulatedBodies(const PhysicalPendulum<Scalar>& p)
-        : links_(p.chain.links()), still_(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))) {
+        : still_(Half::Zero(static_cast<Eigen::Index>(p.chain.links()))) {
+        if constexpr (N == Eigen::Dynamic) links_.resize(p.chain.links());
         for (std::size_t i = 0; i < links_.size(); ++i) {
             auto& link = links_[i];
             const Scalar beyond = p.chain.length[i] - p.center[i];
@@ -140,10 +143,12 @@ public:
         Scalar h_across, h_along, by_d;  // of h; 1/d
         Scalar carried;                  // n·A₊n − m
     };
-    const std::vector<Link>& links() const { return links_; }
+    using Links =
+        std::conditional_t<N == Eigen::Dynamic, std::vector<Link>, std::array<Link, N == Eigen::Dynamic ? 0 : N>>;
+    const Links& links() const { return links_; }
 
 private:
-    std::vector<Link> links_;
+    Links links_;
     Matrix whole_;  // A₊ of the first link
     Half still_;    // zero rates
 };

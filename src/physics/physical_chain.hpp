@@ -18,20 +18,23 @@ namespace doppel {
 /// A joint with Coulomb friction that comes to rest is held as long as a torque of at most c can hold it; its angle is
 /// then exactly constant. Between such events the right-hand side is smooth.
 ///
-/// State   (q, v) of PhysicalLayout, q = (θ1 … θN …). Angles are not wrapped.
-template <class S>
+/// State   (q, v) of PhysicalLayout, q = (θ1 … θN …), with time and work if N is known to the compiler. Angles are not
+///         wrapped.
+template <class S, int N = Eigen::Dynamic>
 class PhysicalChain {
 public:
     using Scalar = S;
-    using State = doppel::State<Scalar, Eigen::Dynamic>;
-    using Half = State;
+    static constexpr bool has_all = N != Eigen::Dynamic;
+    using State = doppel::State<Scalar, has_all ? 2 * (N + 2) : N>;
+    using Half = doppel::State<Scalar, N>;
+    using Angles = StageAngles<Scalar, N>;
 
     PhysicalPendulum<Scalar> pendulum;
     PhysicalLayout layout;
 
     explicit PhysicalChain(const PhysicalPendulum<Scalar>& p, bool with_work = true)
         : pendulum(p),
-          layout(p, links(p), with_work),
+          layout(p, links(p), with_work, has_all),
           forces_(p),
           bodies_(p),
           turned_(Half::Zero(links(p))),
@@ -43,10 +46,10 @@ public:
           slides_(p.chain.links(), 0) {}
 
     static State start(const PhysicalPendulum<Scalar>& p, bool with_work = true) {
-        const PhysicalLayout layout(p, links(p), with_work);
+        const PhysicalLayout layout(p, links(p), with_work, has_all);
         State y(2 * layout.half);
         layout.start(y);
-        const auto released = released_in_angles<Scalar, Eigen::Dynamic>(p.chain);
+        const auto released = released_in_angles<Scalar, N>(p.chain);
         y.head(layout.coordinates) = released.head(layout.coordinates);
         y.segment(layout.half, layout.coordinates) = released.tail(layout.coordinates);
         return y;
@@ -55,15 +58,21 @@ public:
     /// dydt ← d/dt of the state. The modes of the joints (held, or sliding in one direction) are those set by
     /// take_modes() and settle(), or if none were set, those at y.
     void rate(const State& y, State& dydt) {
-        const auto n = layout.coordinates;
-        const auto omega = y.segment(layout.half, n);
         if (switches() && !has_modes_) choose_modes(y);
-        const Scalar by_pivot = accelerate(y, omega);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            dydt[i] = omega[i];
-            dydt[layout.half + i] = alpha_[i];
-        }
-        layout.rate(y, Scalar(forces_.power + by_pivot), dydt);
+        take_angles(y);
+        rate_at_angles(y, dydt);
+    }
+    /// dydt ← d/dt of the state at the start of a step, or at one of its stages.
+    void rate(const State& y, State& dydt, Angles& angles) requires(has_all) {
+        if (switches() && !has_modes_) choose_modes(y);
+        angles.start(turned(y), sin_, cos_);
+        bodies_.factor(sin_, cos_);
+        rate_at_angles(y, dydt);
+    }
+    void rate_of_stage(const State& y, State& dydt, const Angles& angles) requires(has_all) {
+        angles.at(turned(y), sin_, cos_);
+        bodies_.factor(sin_, cos_);
+        rate_at_angles(y, dydt);
     }
 
     // Events (integrate/events.hpp): a sliding joint stops, or a held one starts to slide.
@@ -103,14 +112,13 @@ public:
 
     /// For the Hamiltonian form (Canonical), at the angles of y = (q, …).
     void take_angles(const State& y) {
-        turned_[0] = y[0];
-        for (Eigen::Index i = 1; i < turned_.size(); ++i) turned_[i] = y[i] - y[i - 1];
-        take_sin_cos(turned_, sin_, cos_);
+        take_sin_cos(turned(y), sin_, cos_);
         bodies_.factor(sin_, cos_);
     }
     void solve_mass(const Half& f, Half& a) { bodies_.solve_mass(f, a); }
     /// Without Coulomb friction.
-    const PhysicalForces<Scalar>& forces_at(const Half& omega, const Scalar& t, const Planar<Scalar>& pivot_velocity) {
+    const PhysicalForces<Scalar, N>& forces_at(const Half& omega, const Scalar& t,
+                                               const Planar<Scalar>& pivot_velocity) {
         rates_ = omega;
         take_forces(t, pivot_velocity);
         return forces_;
@@ -120,10 +128,15 @@ public:
         return bodies_.accelerate(forces_.torque, forces_.drag, rates_, pendulum.chain.gravity, acceleration, alpha_) -
                forces_.at_pivot;
     }
-    const std::vector<typename ArticulatedBodies<Scalar>::Link>& bodies() const { return bodies_.links(); }
+    const auto& bodies() const { return bodies_.links(); }
 
 private:
     static Eigen::Index links(const PhysicalPendulum<Scalar>& p) { return static_cast<Eigen::Index>(p.chain.links()); }
+    const Half& turned(const State& y) {
+        turned_[0] = y[0];
+        for (Eigen::Index i = 1; i < turned_.size(); ++i) turned_[i] = y[i] - y[i - 1];
+        return turned_;
+    }
     static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
     template <class Rates>
     static Scalar rate_at(const Rates& omega, Eigen::Index joint) {
@@ -197,6 +210,20 @@ private:
     template <class Rates>
     Scalar accelerate(const State& y, const Rates& omega) {
         take_angles(y);
+        return accelerate_at_angles(y, omega);
+    }
+    void rate_at_angles(const State& y, State& dydt) {
+        const auto n = layout.coordinates;
+        const auto omega = y.segment(layout.half, n);
+        const Scalar by_pivot = accelerate_at_angles(y, omega);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            dydt[i] = omega[i];
+            dydt[layout.half + i] = alpha_[i];
+        }
+        layout.rate(y, Scalar(forces_.power + by_pivot), dydt);
+    }
+    template <class Rates>
+    Scalar accelerate_at_angles(const State& y, const Rates& omega) {
         const Scalar t = layout.time_of(y);
         const PivotPlace<Scalar> pivot(pendulum.pivot, t);
         rest(omega, rates_);
@@ -232,7 +259,8 @@ private:
     void add_holding_torques(const std::vector<Eigen::Index>& joints) {
         const auto m = static_cast<Eigen::Index>(joints.size());
         Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> matrix(m, m);
-        Half right(m), one(alpha_.size()), answer(alpha_.size());
+        doppel::State<Scalar, Eigen::Dynamic> right(m);
+        Half one(alpha_.size()), answer(alpha_.size());
         for (Eigen::Index k = 0; k < m; ++k) {
             one.setZero();
             add_torque(joints[at(k)], Scalar(1), one);
@@ -251,8 +279,8 @@ private:
         if (joint > 0) on_links[joint - 1] -= torque;
     }
 
-    PhysicalForces<Scalar> forces_;
-    ArticulatedBodies<Scalar> bodies_;
+    PhysicalForces<Scalar, N> forces_;
+    ArticulatedBodies<Scalar, N> bodies_;
     Half turned_, sin_, cos_;  // of θ_1 and the differences of neighbouring angles
     Half rates_, alpha_;
     Half holding_;  // of held joints, N m

@@ -9,15 +9,17 @@ namespace doppel {
 
 /// The layout of the state (q, v) of a rigid-body chain. q contains the coordinates of its links; with a drive, the
 /// time t, whose rate is 1; if energy is not conserved, a number whose rate is the work W by friction and drive, J, so
-/// that energy − W is constant. Users that do not need W leave it out. Methods treat these like coordinates.
+/// that energy − W is constant. Users that do not need W leave it out. Methods treat these like coordinates. With
+/// `has_all` both are present, needed or not.
 struct PhysicalLayout {
     Eigen::Index coordinates, time = -1, work = -1, half;  // `half`: size of q; −1 if not present
 
     template <class Scalar>
-    PhysicalLayout(const PhysicalPendulum<Scalar>& p, Eigen::Index of_links, bool with_work = true)
+    PhysicalLayout(const PhysicalPendulum<Scalar>& p, Eigen::Index of_links, bool with_work = true,
+                   bool has_all = false)
         : coordinates(of_links), half(of_links) {
-        if (p.is_driven()) time = half++;
-        if (with_work && !p.conserves_energy()) work = half++;
+        if (has_all || p.is_driven()) time = half++;
+        if (has_all || (with_work && !p.conserves_energy())) work = half++;
     }
 
     /// From y = (q, v): the time, s, and the work, J.
@@ -68,11 +70,11 @@ struct PivotPlace {
 };
 
 /// The torques on links, N m, and forces on their ends, N, by friction and drive torques, and their power, W.
-template <class S>
+template <class S, int N = Eigen::Dynamic>
 class PhysicalForces {
 public:
     using Scalar = S;
-    using Half = State<Scalar, Eigen::Dynamic>;
+    using Half = State<Scalar, N>;
 
     Half torque;                                    // on each link
     std::vector<Planar<Scalar>> drag;               // on the end of each link; empty if there is none

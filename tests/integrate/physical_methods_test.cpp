@@ -103,6 +103,24 @@ TEST(PhysicalModels, KeepEnergyLessWork) {
     EXPECT_LT(off(spec_of(p, "rk4", {2, 1}, 2000)), 2e-7);
 }
 
+TEST(PhysicalModels, AreSteppedByRk4AsInQuad) {
+    // two and three bodies in double have code of their own
+    auto sticking = bodies<Quad>(2);
+    sticking.friction.coulomb = {Quad(0.5), Quad(0.25)};
+    for (const auto& p : {bodies<Quad>(2), bodies<Quad>(3), driven_bodies<Quad>(2), driven_bodies<Quad>(3), sticking}) {
+        auto spec = spec_of(p, "rk4", {1, 1}, 2000);
+        const auto truth = Course(spec).advance(1);
+        spec.precision = Precision::in_double;
+        const auto seen = Course(spec).advance(1);
+        for (std::size_t k = 0; k < seen.bobs.size(); ++k) {
+            EXPECT_NEAR(seen.bobs[k].theta, truth.bobs[k].theta, 1e-12);
+            EXPECT_NEAR(seen.bobs[k].omega, truth.bobs[k].omega, 1e-11);
+        }
+        EXPECT_NEAR(seen.work, truth.work, 1e-11);
+        EXPECT_NEAR(seen.energy_change, truth.energy_change, 1e-11);
+    }
+}
+
 /// The difference between SᵀJS and J; S is the Jacobian in (θ, p) of one step of the frictionless chain.
 template <class Which>
 double symplecticity_error(const PhysicalPendulum<Quad>& p) {
