@@ -143,8 +143,16 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     const auto number = groups_.size() - 1;
     if (!x_.is_of_method && !y_.is_of_method) use_common_method(group.pair, pair_at({number, 0, 0}), reader.stop);
     const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
+    InCommon all{.have_same_method = x_.keeps_method && y_.keeps_method};
+    const auto include = [&](const Cell& cell) {  // a friction may be 0 in some of them
+        const auto pair = pair_at(cell);
+        all.are_ideal = all.are_ideal && pair.a.physical.is_none() && pair.b.physical.is_none();
+        all.have_same_links = all.have_same_links && pair.a.links() == first.a.links();
+    };
+    for (std::size_t i = 0; i < (group.x.angle ? 1 : group.x.count); ++i) include({number, 0, i});
+    for (std::size_t i = 0; i < (y_.angle ? 1 : y_.count); ++i) include({number, i, 0});
     const auto measure = [&](std::string_view key, Quantity quantity) {
-        group.measurements.emplace_back(table, key, quantity, first, x_.keeps_method && y_.keeps_method, options_);
+        group.measurements.emplace_back(table, key, quantity, first, all, options_);
         require_difference(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
         if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, last.a);
     };

@@ -64,17 +64,20 @@ void GridAxis::fields(KeyVisitor& visit) {
            .is_drawn = true},
           labels);
     const bool are_even = exists() && !values;
+    const bool has_step = visit.from_command_line("step") && !visit.from_command_line("points");
     const Condition even{
-        are_even, exists() ? "is for even values; give it, or values" : "is for an axis, and this one has no key"};
+        are_even, exists() ? "is for even values; give it, or values" : "is for an axis, and this one has no key",
+        visit.from_command_line("values")};
     visit({.key = "from", .help = "the first value; for a map the lower edge", .only = even}, from);
     visit({.key = "to", .help = "the last value; for a map the upper edge", .only = even}, to);
     visit({.key = "spacing", .help = "by equal differences, or by equal ratios", .only = even}, spacing);
     visit({"points", "number of values; for a map number of cells, each computed at its centre", "",
-           from_to(2, max_points), "given by `step`", even},
+           from_to(2, max_points), "given by `step`",
+           Condition{even.applies && !has_step, even.error, even.drops || has_step}},
           points);
     visit({"step", "difference of two values; must divide the range from `from` to `to`", "", positive, "",
            Condition{are_even && !points && spacing == Spacing::linear, "is for even values; give it, or points",
-                     visit.from_command_line("points") || visit.from_command_line("spacing")}},
+                     even.drops || visit.from_command_line("points") || visit.from_command_line("spacing")}},
           step);
     const Condition of_setting{is_setting(), "is only for key = \"setting\""};
     constexpr Bounds tolerances{.low = 1e-32, .is_positive = true};

@@ -155,15 +155,23 @@ public:
         keep(time, bobs);
         return first < never ? std::optional(first) : std::nullopt;
     }
-    /// Records when the link passes the downward vertical to the right.
+    /// Records when the link passes the downward vertical, in whatever turn.
     void add_swing(double time, const Bobs<double>& bobs) {
-        const double passed = before_.empty() ? never : rise(time, before_[0], bobs[0], 1, 0);
-        if (passed < never && passes_++ == 0) first_pass_s_ = passed;
-        if (passed < never) last_pass_s_ = passed;
+        for (auto& [sense, count, first_s, last_s] : passes_) {
+            if (before_.empty()) break;
+            const double turns = std::round((before_[0].theta + bobs[0].theta) / (4 * pi));
+            const double passed = rise(time, before_[0], bobs[0], sense, sense * 2 * pi * turns);
+            if (passed < never && count++ == 0) first_s = passed;
+            if (passed < never) last_s = passed;
+        }
         keep(time, bobs);
     }
     /// The mean period; NaN if no period is complete.
-    double period() const { return passes_ < 2 ? NAN : (last_pass_s_ - first_pass_s_) / (passes_ - 1); }
+    double period() const {
+        for (const auto& [sense, count, first_s, last_s] : passes_)
+            if (count > 1) return (last_s - first_s) / (count - 1);
+        return NAN;
+    }
 
 private:
     void keep(double time, const Bobs<double>& bobs) {
@@ -185,10 +193,15 @@ private:
                });
     }
 
+    struct Passes {
+        double sense;  // 1: to the right
+        int count = 0;
+        double first_s = 0, last_s = 0;
+    };
+
     Bobs<double> before_;
     double before_s_ = 0;
-    int passes_ = 0;
-    double first_pass_s_ = 0, last_pass_s_ = 0;
+    std::array<Passes, 2> passes_{{{1}, {-1}}};
 };
 
 }  // namespace
@@ -229,7 +242,7 @@ std::string seconds_text(const Preset& pair) {
 }
 
 Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
-                         bool same_method, const QuantityOptions& options)
+                         const InCommon& all, const QuantityOptions& options)
     : quantity_(quantity),
       words_(words_of(quantity, seconds_text(pair), options.stroboscope)),
       options_(options),
@@ -237,7 +250,7 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     if (words_.short_label.empty()) words_.short_label = words_.label.substr(0, words_.label.rfind(", "));
     const auto& a = pair.a;
     const bool is_ideal = quantity == Quantity::step_cost || quantity == Quantity::stability;
-    if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !a.physical.is_none())))
+    if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !all.are_ideal)))
         throw table.error(key, "needs a plain chain, without further forces and constraints");
     if (quantity == Quantity::exponent && a.physical.has_coulomb())
         throw table.error(key, "needs a smooth motion; joints with joint_coulomb_N_m stick and slip");
@@ -256,9 +269,11 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         throw table.error(key, "\"stability\" needs a release with more energy than hanging at rest");
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
         throw table.error(key, "\"energy_error\" needs a system that conserves energy; a spring is damped");
-    flips_in_lanes_ = quantity == Quantity::flip_time && !a.is_mechanism() && a.physical.is_none() && a.links() == 2;
+    const bool has_lanes = all.are_ideal && all.have_same_links;
+    flips_in_lanes_ = quantity == Quantity::flip_time && has_lanes && !a.is_mechanism() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
-    if (same_method && (is_of_distance(quantity) || quantity == Quantity::energy_error)) run_ = lanes_of(scene);
+    if (has_lanes && all.have_same_method && (is_of_distance(quantity) || quantity == Quantity::energy_error))
+        run_ = lanes_of(scene);
     if (run_ && !is_of_distance(quantity)) run_->b = run_->a;
 }
 

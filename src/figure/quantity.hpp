@@ -79,6 +79,11 @@ struct QuantityOptions {
     StroboscopeSpec stroboscope;
 };
 
+/// What all pairs to measure have in common.
+struct InCommon {
+    bool are_ideal = true, have_same_links = true, have_same_method = true;
+};
+
 /// Returns pair i; it stays valid until the next call.
 using PairAt = std::function<const Preset&(std::size_t i)>;
 
@@ -89,10 +94,9 @@ using PairAt = std::function<const Preset&(std::size_t i)>;
 /// infinite if there is no flip.
 class Measurement {
 public:
-    /// For pairs like `pair`; `same_method` = they have one method and number of links. Throws Error (exit 2) at the
-    /// table's `key` if the quantity is not defined for them.
-    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair, bool same_method,
-                const QuantityOptions& options);
+    /// For pairs like `pair`. Throws Error (exit 2) at the table's `key` if the quantity is not defined for them.
+    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
+                const InCommon& all, const QuantityOptions& options);
 
     /// How flips are found in lanes, if they are.
     std::optional<FlipSpec> flips_in_lanes() const { return flips_in_lanes_ ? std::optional(flip_) : std::nullopt; }

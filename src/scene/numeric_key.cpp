@@ -68,6 +68,10 @@ FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> p
     return found;
 }
 
+bool are_one(std::span<const Quad> all) {
+    return !all.empty() && std::ranges::all_of(all, [&](const Quad& x) { return x == all[0]; });
+}
+
 /// All numbers of a chain, array by array.
 std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
     std::vector<std::span<Quad>> all;
@@ -127,10 +131,17 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     if (!is_array && number.element) refuse("is a number, not an array");
     number.bounds = field.bounds;
     number.label = label_of(number, field);
+    if (number.element && values.empty()) refuse(fmt::format("needs {} in the preset", field.key));
     if (number.element && *number.element >= values.size())
         refuse(fmt::format("is beyond the array, whose last element is [{}]", values.size() - 1));
     if (!number.element && field.each.empty() && values.size() > 1)
         refuse(fmt::format("has two numbers; give {0}[0] or {0}[1]", number.path));
+    for_each_key(side, [&](const SideEntry& owner, const Field& other, const KeyMember& any) {
+        const auto all = numbers_of(any);
+        const bool is_of_links = place.key == "links" && owner.number == 0 && all;
+        if (is_of_links && !all->empty() && !are_one(*all))
+            refuse(fmt::format("needs links that are all equal; {} has different numbers", other.key));
+    });
 }
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {
@@ -150,14 +161,11 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
     }
     if (!number.is_whole) return;
     // equal links stay equal
-    const auto are_one = [](std::span<const Quad> all) {
-        return !all.empty() && std::ranges::all_of(all, [&](const Quad& x) { return x == all[0]; });
-    };
     const auto numbers = all_numbers(side), were = all_numbers(old);
     for (std::size_t i = 0; i < numbers.size(); ++i)
         if (are_one(were[i])) std::ranges::fill(numbers[i], were[i][0]);
     if (const auto& centers = old.physical.center_m; !centers.empty())
-        side.physical.center_m = are_one(centers) ? std::vector<Quad>(side.links(), centers[0]) : side.length_m;
+        side.physical.center_m.assign(side.links(), centers[0]);
 }
 
 }  // namespace

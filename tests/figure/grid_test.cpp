@@ -76,6 +76,24 @@ TEST(Grid, OneByOneFindsWhatLanesFind) {
     }
 }
 
+TEST(Grid, FindsTheSameInAnyOrderOfItsValues) {
+    // one link without friction and two with it: not all of them can be in lanes
+    const auto of = [](const std::string& quantity, const std::string& values) {
+        return table_of(figure_from(twins, {"scene.duration_s=3", "system.angle_deg=[150,150]",
+                                            "b.angle_deg=[150.01,150]", "system.integrator=\"rk4\"",
+                                            "grid.quantity=" + quantity, "grid.x.key=system.joint_viscous_N_m_s[0]",
+                                            "grid.x.values=" + values, "system.joint_viscous_N_m_s=[0,0]"}))
+            .rows;
+    };
+    for (const std::string quantity : {"greatest_distance", "energy_error", "flip_time"}) {
+        const auto up = of(quantity, "[0,0.5,1]"), down = of(quantity, "[1,0.5,0]");
+        for (std::size_t i = 0; i < up.size(); ++i)
+            EXPECT_TRUE(up[i][1] == down[2 - i][1] || (std::isnan(up[i][1]) && std::isnan(down[2 - i][1])))
+                << quantity << i << ": " << up[i][1] << ", " << down[2 - i][1];
+        EXPECT_NE(up[0][1], up[1][1]) << quantity;
+    }
+}
+
 TEST(Grid, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
     const auto table = table_of(figure_from(
         "[scene]\nkind = \"grid\"\nduration_s = 2\n[system]\nintegrator = \"rk4\"\nangle_deg = [60, 60]\n[grid]\n"
@@ -258,6 +276,24 @@ TEST(Grid, PeriodsAreThoseOfTheEllipticIntegral) {
         "[grid.x]\nvalues = [0, 90]");
     EXPECT_EQ(none.experiment->nothing_to_draw(computed(none)),
               "none of the 2 pairs has a period: no whole period within 1 s");
+}
+
+TEST(Grid, TakesAnotherFormOfAnAxisFromTheCommandLine) {
+    const std::string brief = "scene.duration_s=0.5";
+    EXPECT_EQ(table_of(figure_of("fig2-right", {"grid.x.values=[10,20,30]", brief})).rows.size(), 3u);
+    EXPECT_EQ(table_of(figure_of("flip-map", {"grid.x.step=60", "grid.y.step=90", brief})).rows.size(), 24u);
+    EXPECT_EQ(table_of(figure_of("fig2-right", {"grid.x.points=4", brief})).rows.size(), 4u);
+}
+
+TEST(Grid, PeriodsOfRotationsAreThoseOfWholeTurns) {
+    // gravity is too small to matter
+    for (const std::string rate : {"720", "-720"}) {
+        const auto figure = figure_from(
+            "[scene]\nkind = \"grid\"\nduration_s = 5\n[system]\nlinks = 1\nangle_deg = 0\nomega_deg_per_s = " + rate +
+            "\ngravity_m_per_s2 = 1e-9\nintegrator = \"rk4\"\n[grid]\nquantity = \"period\"\n[grid.x]\n"
+            "key = \"system.length_m[0]\"\nvalues = [1, 2]\n");
+        for (const auto& row : table_of(figure).rows) EXPECT_NEAR(row[1], 0.5, 1e-9) << rate;
+    }
 }
 
 /// The exponents of chains with more and more links equal those of largest_exponent(); and the cost of their steps.

@@ -93,12 +93,15 @@ TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
 }
 
 TEST(NumericKey, OfLinksKeepsWhatAllLinksHaveInCommon) {
-    Found links("system.links", "[system]\nlinks = 2\nangle_deg = 120\nlength_m = [1, 2]\n");
+    const Found unequal("system.links", "[system]\nlinks = 2\nangle_deg = 120\nlength_m = [1, 2]\n");
+    EXPECT_NE(unequal.message.find("needs links that are all equal; length_m has different numbers"), std::string::npos)
+        << unequal.message;
+    Found links("system.links", "[system]\nlinks = 2\nangle_deg = 120\nlength_m = 3\n");
     ASSERT_TRUE(links.key) << links.message;
     EXPECT_TRUE(links.key->is_whole);
     const auto set = links.with(4);
     EXPECT_EQ(set.a.angle_deg, (std::vector<Quad>(4, 120)));
-    EXPECT_EQ(set.a.length_m, (std::vector<Quad>(4, 1)));  // the lengths differed
+    EXPECT_EQ(set.a.length_m, (std::vector<Quad>(4, 3)));
     Found rods("system.links", "[system]\nlinks = 2\nrod_mass_kg = 0.5\ncenter_m = 0.3\n");
     EXPECT_EQ(rods.with(3).a.physical.rod_mass_kg, (std::vector<Quad>(3, Quad(1) / 2)));
     EXPECT_EQ(rods.with(3).a.physical.center_m, (std::vector<Quad>(3, parse_quad("0.3"))));
