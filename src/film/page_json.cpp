@@ -55,6 +55,7 @@ Json strip_json(const FilmState& state, std::size_t index, const PictureJson& js
     const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance, state.layout.style);
     auto words = placed_caption(strip, state.scene, state.layout, curves, start_distance == 0);
     Json json{{"kind", name_of(strip.kind)},
+              {"isHeld", !page_computes(strip.kind)},  // the file contains its curves
               {"area", json_of(strip.area)},
               {"time", axis_json(strip.time)},
               {"axis", axis_json(strip.value)}};
@@ -210,7 +211,8 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
               {"sample_s", quotient({1, 1}, scene.preset.sample_hz)->value()},
               {"duration_s", scene.time(samples)},
               {"trail_s", video.trail_s},
-              {"start_s", video.poster_s ? video.poster_s->value() : 0},
+              {"sample_hz", {scene.preset.sample_hz.numerator, scene.preset.sample_hz.denominator}},
+              {"poster_s", video.poster_s ? Json(video.poster_s->value()) : Json(nullptr)},
               {"fps", scene.fps.value()},
               {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
               {"speed", speed_json(scene)},

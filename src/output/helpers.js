@@ -31,12 +31,14 @@ function setSize(canvas, width, height) {
   [canvas.width, canvas.height] = [width, height].map(length => Math.max(1, Math.round(length * devicePixelRatio)));
 }
 
-// Keys with their actions, where no control has the focus.
+// Keys with their actions, where no control that has the focus takes them, and, of a player, while it is shown.
 function onKeys(actions, target = window) {
   target.addEventListener("keydown", event => {
-    const isOfControl = event.target.matches("input, select, textarea, button");
-    if (isOfControl || event.defaultPrevented || event.ctrlKey || event.metaKey || !actions[event.key]) return;
+    const { key, target: at } = event, isOfControl = at.matches("button, [type=checkbox]") ? [" ", "Enter"].includes(key)
+      : at.matches("input:not([type=range]), select, textarea");
+    const isHidden = target === window && $(".player")?.hidden, isOther = event.ctrlKey || event.metaKey || event.altKey;
+    if (isOfControl || isHidden || isOther || event.defaultPrevented || !actions[key]) return;
     event.preventDefault();
-    actions[event.key](event);
+    actions[key](event);
   });
 }

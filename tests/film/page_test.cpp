@@ -232,7 +232,7 @@ TEST(Page, IsAWholeFilm) {
 TEST(Page, IsAloneWithPosterAndContactSheetLeftOut) {
     const auto text =
         html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]") + "poster_s = 1\ncontact_sheet = [2, 2]\n";
-    EXPECT_EQ(data_of(page_of(text)).at("start_s"), 1);
+    EXPECT_EQ(data_of(page_of(text)).at("poster_s"), 1);
 }
 
 /// docs/update-gallery writes the example.

@@ -37,12 +37,16 @@ function go(to) {
   seek(to);
   keepTime();
 }
-const goBy = frames => ({ shiftKey }) => go(time + frames * (shiftKey ? 1 : speedAt(time)[1] / film.fps));
+const goBy = frames => ({ shiftKey }) => {
+  const frame = speedAt(time)[1] / film.fps, isEven = film.speed.length === 1 && !shiftKey;
+  go(isEven ? frame * (Math.round(time / frame) + frames) : time + frames * (shiftKey ? 1 : frame));
+};
 
 // Releases by hand. The form has the numbers of the first pendulum; the last one differs in one of them.
 
 const quantities = [["angle", "angle_deg", "°", degrees], ["rate", "omega_deg_per_s", "°/s", degrees],
   ["mass", "mass_kg", "kg", 1], ["length", "length_m", "m", 1], ["gravity", "gravity_m_per_s2", "m/s²", 1]];
+let differing = 0;  // numbers in which the film's pendulums differ
 const numbersOf = (chain, [name, , , per]) => [chain[name]].flat().map(v => v * per);
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
 function makeForm() {
@@ -59,11 +63,15 @@ function makeForm() {
 }
 function fillForm() {
   form.by.value = 0;
+  differing = 0;
   for (const quantity of quantities) {
     const [first, last] = [bodies[0], bodies.at(-1)].map(({ chain }) => numbersOf(chain, quantity));
     inputsOf(quantity[0]).forEach((input, i) => {
       input.value = shortened(first[i]);
-      if (first[i] !== last[i]) form.key.value = input.name, form.by.value = shortened(last[i] - first[i], 6);
+      if (first[i] === last[i]) return;
+      ++differing;
+      form.key.value = input.name;
+      form.by.value = shortened(last[i] - first[i], 6);
     });
   }
 }
@@ -75,33 +83,48 @@ function chainOfForm(k) {
     chain[name] = inputsOf(name).map(input => (input.valueAsNumber + differenceIn(input.name, k)) / per);
   return { ...chain, gravity: chain.gravity[0] };
 }
+// Why there is no such motion; empty if there is one.
+function faultOf(of) {
+  const numbers = of.flatMap(chain => quantities.flatMap(quantity => numbersOf(chain, quantity)));
+  if (numbers.some(Number.isNaN)) return "every field needs a number";
+  if (of.some(({ mass, length, gravity }) => Math.min(...mass, ...length, gravity) <= 0))
+    return "masses, lengths and gravity must be greater than 0";
+  return of.some(({ angle }) => mostOf(angle.map(Math.abs)) > 1e6 / degrees) ? "angles must be within 10⁶ degrees" : "";
+}
 // Shows how the pendulums start, and with it, once they are known, the curves of the new motion; then plays it.
 async function releaseAnew(playsThen) {
-  const of = bodies.map((_, k) => chainOfForm(k)), { curves, since } = motion ?? {};
-  if (of.some(chain => quantities.some(quantity => numbersOf(chain, quantity).some(Number.isNaN)))) return;
-  if (of.some(({ mass, length }) => Math.min(...mass, ...length) <= 0))
-    return say("masses and lengths must be greater than 0");
+  const of = bodies.map((_, k) => chainOfForm(k)), { curves, since } = motion ?? {}, fault = faultOf(of);
+  if (fault) return say(fault);
   play(false);
   motion = { ...motionOf(of, of.map(({ angle, rate }) => [...angle, ...rate])), curves, since, isStill: true };
   seek(0);
   const made = await compute(of);
   if (!made || !motion.isStill) return;
   await withCurves(made);
-  const method = `Runge–Kutta 4, steps of 1/${Math.round(1 / of[0].step)} s`;
-  say(`${method}; energy drift ${scientific(made.drift)} of the potential range`);
-  motion = held?.bob ? { ...motion, curves: made.curves, since: made.since } : made;
-  if (playsThen) play(true);
+  const isNewest = wanted === of;  // otherwise its curves are shown until those of the newest one are known
+  motion = held?.bob || !isNewest ? { ...motion, curves: made.curves, since: made.since } : made;
+  if (!isNewest) return draw();
+  const drift = made.drift >= 0 ? `energy drift ${scientific(made.drift)} of the potential range`
+    : "the motion is too fast for it and is not finite";
+  const single = differing > 1 ? "; the pendulums differ in one number now" : "";
+  say(`Runge–Kutta 4, steps of 1/${Math.round(1 / of[0].step)} s; ${drift}${single}`);
+  if (playsThen && !held) play(true);
   draw();
 }
-function presetOfForm() {
-  const [a, b] = [0, bodies.length - 1].map(k => quantities.map(quantity => {
-    const list = numbersOf(chainOfForm(k), quantity).map(v => shortened(v, 14)).join(", ");
+const fraction = (n, d) => n % d === 0 ? n / d : `"${n}/${d}"`;
+// Of the film as it is, or of the form.
+function presetOf(chains) {
+  const [samples, seconds] = film.sample_hz;
+  const [a, b] = [chains[0], chains.at(-1)].map(chain => [...quantities.map(quantity => {
+    const list = numbersOf(chain, quantity).map(v => shortened(v, 14)).join(", ");
     return `${quantity[1]} = ${quantity[0] === "gravity" ? list : `[${list}]`}`;
-  }));
-  const { angle, step } = chainOfForm(0), differing = b.filter(line => !a.includes(line)).join("\n");
-  return ['title = "Released anew"', "", "[scene]", 'kind = "pair"', `duration_s = ${film.duration_s}`,
-    `sample_hz = ${shortened(1 / film.sample_s, 8)}`, "", "[system]", `links = ${angle.length}`, ...a,
-    'integrator = "rk4"', `step_s = "1/${Math.round(1 / step)}"`, "", ...(differing ? ["[b]", differing, ""] : []),
+  }), ...(chain.method ? [`integrator = "${chain.method}"`, `step_s = ${fraction(seconds, samples * chain.steps)}`]
+    : ["accuracy = 1e-6"])]);
+  const differences = b.filter(line => !a.includes(line)).join("\n");
+  return [`title = "${chains[0] === bodies[0].chain ? "The film again" : "Released anew"}"`, "", "[scene]",
+    'kind = "pair"', `duration_s = ${fraction(film.samples * seconds, samples)}`,
+    `sample_hz = ${fraction(samples, seconds)}`, "", "[system]", `links = ${chains[0].angle.length}`, ...a, "",
+    ...(differences ? ["[b]", differences, ""] : []),
     "[video]", `layout = "${layout}"`, ...(isEnsemble ? [`members = ${bodies.length}`] : []), ""].join("\n");
 }
 
@@ -128,30 +151,31 @@ function turnTo(link, from, to, k, digits = 3) {
 canvas.onpointerdown = event => {
   const place = placeOf(event), bob = bobAt(place, event.pointerType === "touch" ? 24 : 10);
   canvas.setPointerCapture(event.pointerId);
-  held = bob ?? { strip: picture.strips.find(({ area }) => isIn(place, area)) };
+  held = { ...(bob ?? { strip: picture.strips.find(({ area }) => isIn(place, area)) }), place, plays: isPlaying };
   if (bob || held.strip) play(false);
-  if (!bob) return canvas.onpointermove(event);
-  const joints = jointsOf(bob.panel);  // at rest as they are seen
-  for (let i = 1; i < joints.length; ++i) turnTo(i - 1, joints[i - 1], joints[i], bob.panel.shown[0]);
-  for (const input of inputsOf("rate")) input.value = 0;
-  releaseAnew(false);
+  canvas.onpointermove(event);
 };
 canvas.onpointermove = event => {
   const place = placeOf(event), { strip, bob, panel } = held ?? {};
   if (!held) canvas.style.cursor = bobAt(place, 10) ? "grab" : "";
   if (strip) seek(shareAt(strip.time, place[0]) * film.duration_s);
-  if (!bob) return;
-  turnTo(bob - 1, jointsOf(panel)[bob - 1], place, panel.shown[0], event.shiftKey ? 0 : 3);
+  if (!bob || (!held.isDragged && Math.hypot(place[0] - held.place[0], place[1] - held.place[1]) < 2)) return;
+  const joints = jointsOf(panel);  // at rest as they are seen
+  for (let i = 1; i < joints.length && !held.isDragged; ++i) turnTo(i - 1, joints[i - 1], joints[i], panel.shown[0]);
+  for (const input of held.isDragged ? [] : inputsOf("rate")) input.value = 0;
+  held.isDragged = true;
+  turnTo(bob - 1, joints[bob - 1], place, panel.shown[0], event.shiftKey ? 0 : 3);
   releaseAnew(false);
 };
-canvas.onpointerup = () => {
-  const { bob, strip } = held ?? {};
+canvas.onpointerup = ({ type }) => {
+  if (!held) return;
+  const { isDragged, strip, plays } = held;
   held = null;
-  if (bob) releaseAnew(true);
+  if (isDragged) releaseAnew(true);
   else if (strip) keepTime();
-  else play(!isPlaying);
+  else play(type === "pointerup" ? !plays : plays);
 };
-canvas.onpointercancel = () => { held = null; };
+canvas.onpointercancel = canvas.onpointerup;
 
 // Controls
 
@@ -168,13 +192,16 @@ const clicks = {
   },
   back: () => {
     play(false);
+    wanted = null;
     motion = original;
     fillForm();
     say("");
     draw();
   },
   copy: () => {
-    const area = Object.assign($("#preset"), { value: presetOfForm(), hidden: false });
+    const chains = bodies.map((body, k) => motion === original ? body.chain : chainOfForm(k)), fault = faultOf(chains);
+    if (fault) return say(fault);
+    const area = Object.assign($("#preset"), { value: presetOf(chains), hidden: false });
     area.select();
     const tell = () => say("copied; save it as NAME.toml, and run: doppel render NAME.toml");
     navigator.clipboard?.writeText(area.value).then(tell, () => {});
@@ -186,7 +213,8 @@ $("#time").onchange = keepTime;
 form.oninput = () => releaseAnew(false);
 form.onsubmit = () => false;
 addEventListener("resize", resize);
-addEventListener("beforeprint", () => { play(false); seek(film.start_s); });
+addEventListener("beforeprint", () => { play(false); seek(film.poster_s ?? time); });
+addEventListener("afterprint", () => seek(addressNumbers().t ?? time));
 addEventListener("hashchange", () => seek(addressNumbers().t ?? time));
 
 // The player of a figure is hidden until a place of the figure is chosen: angles in degrees by their keys.
@@ -205,12 +233,14 @@ async function startFilm() {
   resize();
   if (isLive) fillForm();
   const made = film.motion ? await embeddedMotion(film.motion) : await compute(bodies.map(body => body.chain));
-  motion = original = await withCurves(made, true);
+  original = await withCurves(made, true);
+  if (motion) return;  // released by the form before
+  motion = original;
   say(isLive ? "Drag a bob to release the pendulums anew."
     : "This film only plays: the page cannot compute its motion.");
-  const { t } = addressNumbers();
-  seek(t ?? film.start_s);
-  if (t === undefined && !matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
+  const { t } = addressNumbers(), plays = t === undefined && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  seek(t ?? (plays ? 0 : film.poster_s ?? 0));
+  play(plays);
 }
 for (const [name, color] of Object.entries(theme)) $(".player").style.setProperty(`--${name}`, color);
 if (film.transparent) $(".player").style.background = "none";

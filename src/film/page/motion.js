@@ -49,11 +49,17 @@ function motionOf(of, states) {
   const growth = distance.map((d, i) => 20 * i >= film.samples && d > 0 && distance[0] > 0
     ? Math.log(d / distance[0]) / (i * film.sample_s) : NaN);
   const levels = ({ mass, length }) => sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));
-  const range = mostOf(ends.map(k => 2 * of[k].gravity * levels(of[k])));
-  const energy = ends.map((k, e) => numbers(i => chains.energy(of[k].gravity, bobs[e][i])))
-    .map(total => total.map(now => Math.abs(now - total[0]) / range));
+  const ranges = ends.map(k => 2 * of[k].gravity * levels(of[k])), range = mostOf(ranges);
+  const totals = ends.map((k, e) => numbers(i => chains.energy(of[k].gravity, bobs[e][i])));
+  const energy = totals.map(total => total.map(now => Math.abs(now - total[0]) / range));
+  const parts = totals.map((total, e) => {  // kinetic, potential from the lowest place on, and both
+    const kinetic = numbers(i => chains.energy(0, bobs[e][i])), above = total.map(now => now + ranges[e] / 2);
+    return [kinetic, above.map((now, i) => now - kinetic[i]), above];
+  });
+  const inDegrees = first => ends.flatMap(k => of[k].length.map((_, b) => list(k, first + b).map(v => v * degrees)));
   const phase = film.phase && ends.map(k => [film.phase.link, size / 2 + film.phase.link, 0].map(i => list(k, i)));
-  const computed = { distance: [distance], exponent: [growth], energy };
+  const computed = { distance: [distance], exponent: [growth], energy, angles: inDegrees(0), rates: inDegrees(size / 2),
+    "energies-a": parts[0], "energies-b": parts.at(-1), "total-energy": parts.map(part => part[2]) };
   return { of, pendulums, computed, phase, drift: mostOf(energy.map(mostOf)) };
 }
 
@@ -62,7 +68,8 @@ async function withCurves(motion, isOriginal) {
   const held = film.curves && isOriginal ? new Float32Array((await unpacked(film.curves, 4, 1)).buffer) : [];
   let at = 0;
   const next = () => isOriginal ? held.subarray(at, at += count) : numbers(() => NaN);
-  motion.curves = strips.map(({ kind, pens }) => motion.computed?.[kind] ?? pens.map(next));
+  motion.curves = strips.map(({ kind, pens, isHeld }) =>
+    (isHeld && isOriginal ? null : motion.computed?.[kind]) ?? pens.map(next));
   if (film.phase) motion.phase ??= [0, 1].map(() => [next(), next(), next()]);
   motion.distance = motion.curves[strips.findIndex(strip => strip.kind === "distance")]?.[0];
   motion.since = motion.distance ? divergence(motion.distance) : NaN;
@@ -94,7 +101,7 @@ function compute(of) {
     const begun = performance.now();
     worker.onmessage = ({ data: { share, states } }) => {
       if (states) done(motionOf(of, states));
-      else if (performance.now() - begun > 500) say(`computing the motion: ${Math.round(100 * share)} %`);
+      else if (wanted === of && performance.now() - begun > 500) say(`computing the motion: ${Math.round(100 * share)} %`);
     };
     worker.postMessage({ of, samples: film.samples });
   }));
