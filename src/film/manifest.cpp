@@ -88,6 +88,9 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
                 "= 1e-3",
                 name, 100 * error, side.method.title, step_control_text(side), scene.time(record.last_sample)));
     }
+    if (const auto& proof = scene.certificate; proof && proof->last() < scene.samples)
+        record.warnings.push_back(
+            fmt::format("{}; nothing is proved after that", certificate_words(scene, *proof).front()));
     try {
         const TimeLimit limit(std::clamp(record.wall_s, min_patience_s, max_patience_s), stop);
         for (const char name : scene.letters())

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <mutex>
 #include <numeric>
 
@@ -152,6 +153,25 @@ std::optional<Interval> divergence_of(const Scene& scene, const Certificate& pro
     return Interval{*earliest.since(), *latest.since()};
 }
 
+double largest_radius(const Certificate& proved) {
+    return std::ranges::max_element(proved.rows, {}, &Certificate::Row::radius)->radius;
+}
+
+enum class Rounding { down, up };
+/// A number with so many significant digits, rounded in this direction.
+std::string bound_text(double number, int digits, Rounding rounding) {
+    const bool is_up = rounding == Rounding::up;
+    const double share = (is_up ? 0.5 : -0.5) * std::abs(number) * std::pow(10.0, 1 - digits);
+    for (double shifted = number;; shifted += share) {
+        const auto text = fmt::format("{:.{}g}", shifted, digits);
+        const double written = std::strtod(text.c_str(), nullptr);
+        if (!(is_up ? written < number : written > number)) return text;
+    }
+}
+std::string time_text(double time_s, Rounding rounding = Rounding::down) {
+    return bound_text(time_s, 6, rounding);
+}
+
 }  // namespace
 
 void check_provable(const Scene& scene) {
@@ -193,24 +213,26 @@ double Certificate::run_until_s() const {
 }
 
 std::vector<std::string> certificate_words(const Scene& scene, const Certificate& proved) {
-    std::vector<std::string> all{fmt::format("the true motion is proved until {:.6g} s in {}: angles within {:.1e} rad",
-                                             scene.time(proved.last()), arithmetics[proved.precision].words,
-                                             proved.rows.back().radius)};
+    const double end = scene.time(proved.last());
+    std::vector<std::string> all{fmt::format("the true motion is proved until {} s in {}: angles within {} rad",
+                                             time_text(end), arithmetics[proved.precision].words,
+                                             bound_text(largest_radius(proved), 2, Rounding::up))};
     for (std::size_t i = 0; i < proved.runs.size(); ++i) {
         const auto& run = proved.runs[i];
-        auto words = run.until_s ? fmt::format("proved within {:g} rad of the true motion until {:.6g} s",
-                                               proved.run_radius, *run.until_s)
+        auto words = run.until_s ? fmt::format("proved within {:g} rad of the true motion until {} s",
+                                               proved.run_radius, time_text(*run.until_s))
                                  : fmt::format("not proved within {:g} rad of the true motion", proved.run_radius);
-        if (run.beyond_s) words += fmt::format(", and farther from it at {:.6g} s", *run.beyond_s);
+        if (run.beyond_s) words += fmt::format(", and farther from it at {} s", time_text(*run.beyond_s, Rounding::up));
         all.push_back(fmt::format("side {}: its run is {}", scene.letters()[i], words));
     }
     const auto& distance = proved.rows.back().bounds.back();
     if (!scene.is_single())
-        all.push_back(fmt::format("the true distance at {:.6g} s is between {:.10g} and {:.10g}",
-                                  scene.time(proved.last()), distance.low, distance.high));
+        all.push_back(fmt::format("the true distance at {:.6g} s is between {} and {}", end,
+                                  bound_text(distance.low, 10, Rounding::down),
+                                  bound_text(distance.high, 10, Rounding::up)));
     if (const auto& time = proved.diverged_s)
-        all.push_back(fmt::format("the true motions diverge at {:.6g} s{}", time->low,
-                                  time->low == time->high ? "" : fmt::format(" to {:.6g} s", time->high)));
+        all.push_back(fmt::format("the true motions diverge at {} s{}", time_text(time->low),
+                                  time->low == time->high ? "" : " to " + time_text(time->high, Rounding::up) + " s"));
     return all;
 }
 
@@ -220,7 +242,7 @@ Json certificate_json(const Scene& scene, const Certificate& proved) {
     Json json{{"bits", arithmetics[proved.precision].bits},
               {"until_s", scene.time(proved.last())},
               {"to_the_end", proved.last() == scene.samples},
-              {"largest_radius_rad", proved.rows.back().radius},
+              {"largest_radius_rad", largest_radius(proved)},
               {"run_radius_rad", proved.run_radius}};
     for (std::size_t i = 0; i < proved.runs.size(); ++i)
         json[std::string(1, scene.letters()[i])] = {{"run_proved_until_s", number(proved.runs[i].until_s)},

@@ -137,6 +137,10 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     check_difference(scene);
     check_tracks(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
+    if (preset.certify && !scene.members.empty())
+        throw bad_input(
+            "{}: [scene] certify is for one or two pendulums; this film has {}. Without it, doppel certify proves two",
+            preset.name, scene.members.size());
     if (preset.certify)
         scene.certificate = std::make_shared<Certificate>(certificate_of(scene, usual_run_radius, cores(), stop));
     return scene;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
@@ -63,6 +64,15 @@ TEST(Certify, WritesBoundsThatContainAnAccurateRun) {
             EXPECT_GE(bounds[n][low + 1], known[n][i + 1]) << n << ' ' << i;
             EXPECT_LT(bounds[n][low + 1] - bounds[n][low], 1e-11) << n << ' ' << i;
         }
+    // the sentences, too, are bounds
+    const std::string before = "angles within ";
+    const double radius = std::stod(result.err.substr(result.err.find(before) + before.size()));
+    double low = NAN, high = NAN;
+    std::sscanf(result.err.substr(result.err.find("is between ")).c_str(), "is between %lf and %lf", &low, &high);
+    EXPECT_LE(low, bounds.back()[18]) << result.err;
+    EXPECT_GE(high, bounds.back()[19]) << result.err;
+    for (const auto& row : bounds)
+        for (const std::size_t i : {2, 4, 10, 12}) EXPECT_GE(radius, (row[i + 1] - row[i]) / 2);
     const auto manifest = json::parse(bytes_of(folder / "out/butterfly/butterfly.certified.json"));
     EXPECT_EQ(manifest["certificate"]["bits"], 53);
     EXPECT_EQ(manifest["certificate"]["to_the_end"], true);
