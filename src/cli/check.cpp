@@ -91,7 +91,7 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
         }
     }
     if (seen.limit) {
-        const auto from = fmt::format("{:.2g}", seen.limit->from), to = fmt::format("{:.2g}", seen.limit->to);
+        const auto from = two_digits(seen.limit->from), to = two_digits(seen.limit->to);
         print_indented(
             fmt::format("predictability limit in {}: about {}{} s", precision, from, from == to ? "" : " to " + to));
     }

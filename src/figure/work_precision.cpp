@@ -251,6 +251,7 @@ private:
 }  // namespace
 
 std::string timing_caption(const WorkComparison::Studies& studies, int repeats) {
+    if (repeats == 1) return "CPU time of one thread, warm, measured once.";
     const auto [typical, worst] = time_spread(studies);
     return fmt::format(
         "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "

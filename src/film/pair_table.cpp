@@ -106,11 +106,15 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
 
 void add_row(Csv& table, const Scene& scene, const Snapshot& snapshot, double start_distance) {
     visit_row(scene, snapshot, start_distance, [&](const std::string&, const char*, std::size_t, const auto& value) {
-        if constexpr (std::is_same_v<decltype(value), const Quad&>)
-            std::isfinite(static_cast<double>(value)) ? table.add(text_of(value))
-                                                      : table.add(static_cast<double>(value));
-        else
+        if constexpr (std::is_same_v<decltype(value), const Quad&>) {
+            const auto nearest = static_cast<double>(value);
+            if (std::isfinite(nearest))
+                table.add(text_of(value));
+            else
+                table.add(nearest);
+        } else {
             table.add(value);
+        }
     });
     table.end_row();
 }

@@ -186,6 +186,7 @@ std::vector<TimeMark> limits_of(const Scene& scene) {
     }
     if (const auto limit = scene.preset.video.model_limit_s)
         marks.push_back({*limit, fmt::format("predictability limit of the model {:.1f} s", *limit)});
+    std::erase_if(marks, [&](const TimeMark& mark) { return mark.time_s > scene.time(scene.samples); });
     return marks;
 }
 

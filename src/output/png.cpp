@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
@@ -31,8 +32,9 @@ public:
     std::uint8_t* take(std::size_t size) {
         const auto block = std::ranges::find(blocks_, false, &Block::is_taken);
         if (block == blocks_.end()) return nullptr;
+        auto* const room = block->bytes.make_room(size);
         block->is_taken = true;
-        return block->bytes.make_room(size);
+        return room;
     }
 
     void give_back(const void* bytes) {

@@ -118,7 +118,8 @@ void state_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vecto
 
 /// The step size, tolerance or accuracy, if the preset sets it.
 std::string control_words(const Side& side) {
-    return side.choice ? fmt::format("accuracy {:g} rad", side.choice->accuracy) : step_control_text(side);
+    if (!side.choice) return step_control_text(side);
+    return fmt::format("accuracy {} rad", tolerance_text(parse_quad(fmt::format("{:g}", side.choice->accuracy))));
 }
 
 /// For side b, or for side a.

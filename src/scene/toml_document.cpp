@@ -119,9 +119,12 @@ toml::table given_by(const Override& change, TomlTexts& texts) {
             return parsed_value(change, quoted, texts);
         const auto list = fmt::format("[{}]", change.value);
         const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
+        const bool has_quotes = change.value.find_first_of("\"'") != std::string::npos;
         throw bad_input("{}: \"{}\" is not a TOML value ({}); {}", change.origin, change.value, error.description(),
                         lacks_brackets ? fmt::format("a list needs brackets: '{}={}'", change.key, list)
-                                       : fmt::format("a string needs quotes: '{}=\"{}\"'", change.key, change.value));
+                        : change.value.starts_with('[') ? "a list is like [1, 2] or [\"a\", \"b\"]"
+                        : has_quotes                    ? "a string needs quotes around it, and \\\" for a quote inside"
+                                     : fmt::format("a string needs quotes: '{}=\"{}\"'", change.key, change.value));
     }
 }
 

@@ -28,7 +28,7 @@ Preset read(const FormatRow& row, const Edge& edge) {
                      row.format == FilmFormat::webm ? fmt::format("codec = \"{}\"\n", row.codec) : "")});
 }
 
-TEST(FormatEdges, TheReaderRefusesWhatTheSinkRefuses) {
+TEST(FormatEdges, WhatTheReaderTakesTheSinkWrites) {
     const std::array edges{
         Edge{{64, 64}, "25"},
         Edge{{65, 64}, "25", {"H.264", "VP9", "AV1", "Y4M"}},
@@ -53,7 +53,7 @@ TEST(FormatEdges, TheReaderRefusesWhatTheSinkRefuses) {
             EXPECT_EQ(message == "nothing was thrown", !is_refused)
                 << row.title << " " << edge.size.width << "x" << edge.size.height << " " << edge.rate << ": "
                 << message;
-            if (row.format == FilmFormat::png || row.format == FilmFormat::html) continue;
+            if (is_refused || row.format == FilmFormat::png || row.format == FilmFormat::html) continue;
             const auto rate = *parse_rational(edge.rate);
             const VideoOptions options{.format = row.format,
                                        .codec = std::string(row.codec),
@@ -66,7 +66,7 @@ TEST(FormatEdges, TheReaderRefusesWhatTheSinkRefuses) {
                 sink->finish();
             };
             const auto written = error_of(write);
-            EXPECT_EQ(written.second == "nothing was thrown", !is_refused)
+            EXPECT_EQ(written.second, "nothing was thrown")
                 << row.title << " " << edge.size.width << "x" << edge.size.height << " " << edge.rate << ": "
                 << written.second;
         }
