@@ -3,7 +3,7 @@
 #include "analysis/exponent.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
-#include "physics/physical_canonical.hpp"
+#include "physics/canonical.hpp"
 
 #include <Eigen/Householder>
 

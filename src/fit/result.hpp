@@ -40,8 +40,6 @@ struct FitResult {
 FitResult analyse(Track track, const FitOptions& options, const std::atomic<bool>& stop,
                   const std::function<void(const Progress&)>& report);
 
-// Defined in run.cpp.
-
 /// The results of a run, and sentences for the user.
 struct FitRun {
     RunResult run;

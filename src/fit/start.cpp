@@ -1,7 +1,7 @@
 #include "fit/start.hpp"
 
 #include "base/error.hpp"
-#include "numeric/elimination.hpp"
+#include "numeric/solvers.hpp"
 #include "track/regression.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "integrate/output_time.hpp"
 #include "integrate/runge_kutta.hpp"
+#include "integrate/stepper.hpp"
 #include "numeric/portable_math.hpp"
 
 #include <cmath>

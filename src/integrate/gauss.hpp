@@ -4,7 +4,6 @@
 #include "integrate/methods.hpp"
 #include "integrate/stepper.hpp"
 #include "physics/canonical.hpp"
-#include "physics/physical_canonical.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "integrate/angle_series.hpp"
-#include "integrate/mechanism_series.hpp"
 #include "integrate/motion_steppers.hpp"
+#include "integrate/taped_series.hpp"
 
 namespace doppel {
 

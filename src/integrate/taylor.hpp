@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
-#include "integrate/output_time.hpp"
 #include "integrate/series.hpp"
 #include "integrate/stabilise.hpp"
 #include "integrate/stepper.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "numeric/envelope_matrix.hpp"
 #include "numeric/sin_cos.hpp"
+#include "numeric/solvers.hpp"
 
 #include <Eigen/Core>
 

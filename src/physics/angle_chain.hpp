@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/chain_matrix.hpp"
+#include "numeric/solvers.hpp"
 #include "numeric/state.hpp"
 #include "physics/pendulum.hpp"
 

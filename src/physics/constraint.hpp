@@ -1,6 +1,6 @@
 #pragma once
 
-#include "physics/cast.hpp"
+#include "numeric/state.hpp"
 
 #include <cmath>
 #include <concepts>

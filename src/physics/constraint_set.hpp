@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/envelope_matrix.hpp"
+#include "numeric/solvers.hpp"
 #include "physics/constraint.hpp"
 
 #include <algorithm>

@@ -152,7 +152,7 @@ struct Mechanism : ConstraintSet<S> {
     }
 
 private:
-    friend MechanismSeries<Scalar>;  // with the same errors (integrate/mechanism_series.hpp)
+    friend MechanismSeries<Scalar>;  // with the same errors (integrate/taped_series.hpp)
 
     using Set = ConstraintSet<Scalar>;
     using Gradients = typename Set::Gradients;

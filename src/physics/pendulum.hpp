@@ -1,7 +1,7 @@
 #pragma once
 
 #include "numeric/sin_cos.hpp"
-#include "physics/cast.hpp"
+#include "numeric/state.hpp"
 
 #include <algorithm>
 

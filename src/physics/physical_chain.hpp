@@ -1,6 +1,6 @@
 #pragma once
 
-#include "numeric/elimination.hpp"
+#include "numeric/solvers.hpp"
 #include "physics/articulated.hpp"
 #include "physics/physical_forces.hpp"
 

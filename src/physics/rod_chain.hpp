@@ -1,7 +1,7 @@
 #pragma once
 
-#include "numeric/chain_matrix.hpp"
 #include "numeric/compensated.hpp"
+#include "numeric/solvers.hpp"
 #include "physics/bob.hpp"
 #include "physics/rod_multipliers.hpp"
 

@@ -1,7 +1,7 @@
 #include "track/regression.hpp"
 
 #include "base/error.hpp"
-#include "numeric/elimination.hpp"
+#include "numeric/solvers.hpp"
 #include "numeric/portable_math.hpp"
 #include "numeric/sin_cos.hpp"
 

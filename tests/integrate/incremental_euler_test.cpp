@@ -1,5 +1,3 @@
-#include "integrate/incremental_euler.hpp"
-
 #include "integrate/euler.hpp"
 #include "integrate/pendulums.hpp"
 

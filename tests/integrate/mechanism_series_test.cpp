@@ -1,7 +1,6 @@
-#include "integrate/mechanism_series.hpp"
-
 #include "allocations.hpp"
 #include "errors.hpp"
+#include "integrate/taped_series.hpp"
 #include "integrate/taylor.hpp"
 #include "numeric/quad.hpp"
 #include "physics/mechanism.hpp"

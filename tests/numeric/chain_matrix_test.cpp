@@ -1,4 +1,4 @@
-#include "numeric/chain_matrix.hpp"
+#include "numeric/solvers.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>

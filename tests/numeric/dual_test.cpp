@@ -3,7 +3,7 @@
 #include "integrate/euler.hpp"
 #include "integrate/flow.hpp"
 #include "integrate/runge_kutta.hpp"
-#include "numeric/elimination.hpp"
+#include "numeric/solvers.hpp"
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"

@@ -5,7 +5,6 @@
 #include "numeric/quad.hpp"
 #include "physics/oracles.hpp"
 #include "physics/pendulums.hpp"
-#include "physics/physical_canonical.hpp"
 #include "physics/physical_pendulums.hpp"
 
 #include <gtest/gtest.h>

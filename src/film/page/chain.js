@@ -106,7 +106,7 @@ function makeChains() {
   }
 
   // Euler's method of two links with rates as changes h ω of one step, and sine and cosine of θ1 and D = θ2 − θ1 turned
-  // on from step to step (src/integrate/incremental_euler.hpp).
+  // on from step to step (src/integrate/euler.hpp).
   function eulerOfPair(p, h) {
     var longer = p.length[1] / p.length[0], masses = p.mass[0] / p.mass[1], square = longer * longer;
     var ratio = masses / square, lever = (1 + masses) / square, scale = [h * h * p.gravity / p.length[0], 1 / longer];

@@ -1,8 +1,0 @@
-#include "integrate/mechanism_series.hpp"
-
-namespace doppel {
-
-template SeriesOfBodies<double> series_of;
-template SeriesOfMechanism<double> series_of;
-
-}  // namespace doppel
