@@ -209,11 +209,10 @@ void GridAxis::require_in(const TomlReader& table, std::string_view of, const Pr
 }
 
 void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
-    if (are_cells && values)
-        throw table.error("values", "are for curves and panels; the cells of a map go from `from` to `to`");
     if (values) {
         for (const auto& text : values->texts) require(table, "values", numbers_.emplace_back(parse_quad(text)));
         count = numbers_.size();
+        if (are_cells) find_spacing(table);
     } else {
         find_even_values(table);
     }
@@ -225,16 +224,33 @@ void GridAxis::find_even_values(const TomlReader& table) {
     if (are_cells ? !(from < to) : to < from)
         throw table.error("to", "must {} from ({}); it is {}", are_cells ? "be above" : "not be below", text_of(from),
                           text_of(to));
-    if (are_cells && number_ && number_->is_whole)
-        throw table.error("key", "\"{}\" takes only whole numbers, and cannot be an axis of a map", key);
+    const bool are_edges = are_cells && !are_centers();
     const bool is_logarithmic = spacing == Spacing::logarithmic;
     if (is_logarithmic && !points) throw table.error("spacing", "\"logarithmic\" takes points, the number of values");
     if (is_logarithmic && !(from > 0))
         throw table.error("from", "must be > 0 for equal ratios; it is {}", text_of(from));
-    count = points ? static_cast<std::size_t>(*points) : even_steps(table) + (are_cells ? 0 : 1);
-    require(table, "from", are_cells ? even_value(0) : from);
-    require(table, "to", are_cells ? even_value(count - 1) : to);
+    count = points ? static_cast<std::size_t>(*points) : even_steps(table) + (are_edges ? 0 : 1);
+    require(table, "from", are_edges ? even_value(0) : from);
+    require(table, "to", are_edges ? even_value(count - 1) : to);
     for (std::size_t i = 0; i < count; ++i) numbers_.push_back(even_value(i));
+}
+
+void GridAxis::find_spacing(const TomlReader& table) {
+    constexpr double slack = 1e-9;  // of decimals
+    const auto is_even = [&](Spacing by) {
+        const auto at = [&](std::size_t i) {
+            return by == Spacing::linear ? static_cast<double>(numbers_[i])
+                                         : std::log(static_cast<double>(numbers_[i]));
+        };
+        const double step = (at(count - 1) - at(0)) / static_cast<double>(count - 1);
+        for (std::size_t i = 0; i < count; ++i)
+            if (!(std::abs(at(i) - at(0) - step * static_cast<double>(i)) <= slack * step)) return false;
+        return true;
+    };
+    if (count < 2 || (!is_even(Spacing::linear) && !is_even(Spacing::logarithmic)))
+        throw table.error("values",
+                          "must increase by equal steps or by equal ratios, as centres of the cells of a map");
+    spacing = is_even(Spacing::linear) ? Spacing::linear : Spacing::logarithmic;
 }
 
 std::size_t GridAxis::even_steps(const TomlReader& table) const {
@@ -254,7 +270,7 @@ std::size_t GridAxis::even_steps(const TomlReader& table) const {
 
 Quad GridAxis::even_value(std::size_t i) const {
     const Quad number(static_cast<double>(i));
-    if (are_cells) return Quad(middle_of_cell(i));
+    if (are_cells && !are_centers()) return Quad(middle_of_cell(i));
     if (!points) return from + step * number;
     if (i + 1 == count) return to;
     const Quad share = number / Quad(static_cast<double>(count - 1));
@@ -326,6 +342,11 @@ PlotAxis GridAxis::plot_axis() const {
     constexpr double turn = 360;  // degrees
     if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
     if (number_ && number_->is_whole) axis.every = 1;
+    if (!are_cells || !are_centers()) return axis;
+    const double cells = static_cast<double>(count - 1);
+    const double half = (*axis.high - *axis.low) / (2 * cells), ratio = std::pow(*axis.high / *axis.low, 0.5 / cells);
+    axis.low = axis.logarithmic ? *axis.low / ratio : *axis.low - half;
+    axis.high = axis.logarithmic ? *axis.high * ratio : *axis.high + half;
     return axis;
 }
 

@@ -81,6 +81,11 @@ private:
     void find_even_values(const TomlReader& table);
     void find_settings(const TomlReader& table, const Preset& pair);
     Quad even_value(std::size_t i) const;
+    /// Of a map: whether `values`, or whole numbers from `from` to `to`, are the centres of its cells. Otherwise `from`
+    /// and `to` are its edges.
+    bool are_centers() const { return values || (number_ && number_->is_whole); }
+    /// Whether the values of a map increase by equal steps or by equal ratios. Throws Error (exit 2) if by neither.
+    void find_spacing(const TomlReader& table);
     double middle_of_cell(std::size_t i) const;
     std::size_t even_steps(const TomlReader& table) const;
 

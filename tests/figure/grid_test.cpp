@@ -322,6 +322,33 @@ Figure page_of(const FigurePreset& figure) {
     return page;
 }
 
+/// Cells of listed values and of whole numbers have the numbers of curves, and lie around their values.
+TEST(Grid, MapsTakeValuesAndWholeNumbersAsCentres) {
+    const std::string top =
+        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = "
+        "\"energy_error\"\n[grid.x]\nkey = \"links\"\nfrom = 2\nto = 4\n";
+    const std::string of_mass = "key = \"system.mass_kg\"\nvalues = [0.5, 1, 2]\n";
+    const auto map = figure_from(top + "[grid.y]\n" + of_mass);
+    const auto cells = table_of(map), curves = table_of(figure_from(top + "[grid.color]\n" + of_mass));
+    ASSERT_EQ(cells.rows.size(), 9u);
+    for (std::size_t i = 0; i < 9; ++i) {
+        EXPECT_EQ(cells.rows[i][0], curves.rows[i][1]) << i;  // links
+        EXPECT_EQ(cells.rows[i][1], curves.rows[i][0]) << i;  // kg
+        EXPECT_EQ(cells.rows[i][2], curves.rows[i][2]) << i;
+    }
+    const auto panel = page_of(map).panels.at(0);
+    EXPECT_EQ(panel.x.low, 1.5);
+    EXPECT_EQ(panel.x.high, 4.5);
+    EXPECT_TRUE(panel.y.logarithmic);
+    EXPECT_NEAR(*panel.y.low, std::sqrt(0.125), 1e-15);
+    EXPECT_NEAR(*panel.y.high, std::sqrt(8.0), 1e-15);
+    const auto even =
+        page_of(figure_from(top + "[grid.y]\nkey = \"system.length_m\"\nvalues = [1, 1.5, 2]\n")).panels.at(0).y;
+    EXPECT_FALSE(even.logarithmic);
+    EXPECT_EQ(even.low, 0.75);
+    EXPECT_EQ(even.high, 2.25);
+}
+
 TEST(Grid, WhatIsComparedHasOneRange) {
     for (const char* name : {"fig2-right", "fig4-right", "fig8", "true-fig2-right"}) {
         const auto axis = page_of(figure_of(name, {"grid.x.to=2", "scene.duration_s=1"})).panels.at(0).y;

@@ -151,8 +151,10 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   ":5:1: [grid.x] to",
                   {"must be above from (10); it is 10"}},
     RefusedFigure{"grid", "[grid.y]\nkey = \"theta1_deg\"", ": [grid] x", {"\"theta1_deg\" is there twice"}},
-    RefusedFigure{
-        "grid", "[grid.y]\nkey = \"system.links\"\nfrom = 1\nto = 4", ":4:1: [grid.y] key", {"only whole numbers"}},
+    RefusedFigure{"grid",
+                  "[grid.y]\nkey = \"theta2_deg\"\nvalues = [1, 2, 4, 9]",
+                  ":5:1: [grid.y] values",
+                  {"equal steps or by equal ratios"}},
     RefusedFigure{"grid",
                   "[grid]\nquantity = \"flip_time\"\nrange = [0, 3]\n[grid.y]\nkey = \"theta2_deg\"",
                   ":5:1: [grid] range",
