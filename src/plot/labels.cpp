@@ -136,6 +136,10 @@ LabelText text_for(const Curve& curve, float size, const Panel& panel) {
     return {curve.label, size, Weight::bold, curve_color(curve, theme, panel.is_map())};
 }
 
+bool is_empty(const DrawnCurve& curve) {
+    return curve.lines.empty() && curve.points.empty();
+}
+
 /// The labels placed beside or on the curves, and the curves without space for one.
 struct PlacedLabels {
     std::vector<Label> labels;
@@ -153,8 +157,7 @@ PlacedLabels place_labels(const std::vector<DrawnCurve>& drawn, float size, bool
     PlacedLabels made;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const Curve& curve = curves[i];
-        const bool empty = drawn[i].lines.empty() && drawn[i].points.empty();
-        if (curve.label.empty() || empty || std::ranges::count(elsewhere, i) > 0) continue;
+        if (curve.label.empty() || is_empty(drawn[i]) || std::ranges::count(elsewhere, i) > 0) continue;
         const LabelText text = text_for(curve, size, panel);
         const float clear = curve.mark == Mark::line ? style.curve / 2 : style.marker;
         std::optional<Found> found;
@@ -214,12 +217,19 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
         if (legend) left.add_text(legend->box);
         made = tried(size, left);
     }
+    // where a legend is beside the panel, it has all names
+    if (given.legend > 0 || (!others.empty() && !legend)) {
+        others.clear();
+        for (std::size_t i = 0; i < curves.size(); ++i)
+            if (!curves[i].label.empty() && !is_empty(drawn[i])) others.push_back(i);
+        legend.reset();
+        made = {};
+    }
     const LabelNeeds needs{given.small || is_small,
                            others.empty() || legend ? given.legend : legend_gutter(curves, size)};
     const Area& held = panel.held;
     if (!others.empty() && !legend && given.legend > 0)
-        legend =
-            legend_in({held.right - given.legend, panel.area.top, held.right, panel.area.bottom}, curves, others, size);
+        legend = legend_in({held.right - given.legend, panel.area.top, held.right, held.bottom}, curves, others, size);
     if (legend) draw_legend(*legend, panel);
     const Color background = (panel.is_map() ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
     for (const Area& g : made.backgrounds)

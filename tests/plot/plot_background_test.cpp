@@ -89,22 +89,29 @@ TEST(Plot, LabelsHaveOneSizeInAllPanels) {
               labels_of(composed({.panels = {{.title = "title"}, {.title = "title"}}}, size, light), "title")[0].size);
 }
 
-TEST(Plot, ALegendCoversNoData) {
-    // clouds over the whole panel leave no space beside them
+TEST(Plot, ALegendCoversNoDataAndHasAllNames) {
+    // clouds over most of the panel leave no space for a legend; a line above them has space for its label
     auto figure = sections(1);
-    auto& curves = figure.panels[0].curves;
+    auto& panel = figure.panels[0];
+    auto& curves = panel.curves;
     for (int k = 1; k < 3; ++k) curves.push_back(curves[0]), curves.back().hue = k;
     for (auto& curve : curves)
         for (std::size_t i = 0; i < curve.x.size(); ++i)
             curve.x[i] = static_cast<double>(i % 27), curve.y[i] = static_cast<double>(i / 27);
+    const double top = *std::ranges::max_element(curves[0].y);
+    panel.y.high = 1.12 * top;
+    curves.push_back({.label = "one orbit's limit", .x = {0, 26}, .y = {1.02 * top, 1.02 * top}});
     const auto list = composed(figure, size, light);
     const auto names = labels_of(list, "one orbit");
-    ASSERT_EQ(names.size(), 3u);
+    ASSERT_EQ(names.size(), 4u);
     float right = 0;
     for (const PageItem& item : list)
         if (const auto* image = std::get_if<Image>(&item)) right = std::max(right, image->right);
     ASSERT_GT(right, 0);
-    for (const auto& name : names) EXPECT_GT(name.anchor.x, right);
+    for (const auto& name : names) EXPECT_GT(name.anchor.x, right) << name.text;
+    // by itself the line is labelled in the panel
+    panel.curves = {curves.back()};
+    EXPECT_LT(labels_of(composed(figure, size, light), "one orbit").at(0).anchor.x, right);
 }
 
 TEST(Plot, ARuleOverAMapIsSeenOnAllColors) {
