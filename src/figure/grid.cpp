@@ -138,8 +138,11 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     color_.require_in(table, color_.role, group.pair);
     color_.put(group.pair, c);
     group.x.settle(group.pair);
-    x_.require_in(table, x_.role, group.pair);
-    y_.require_in(table, y_.role, group.pair);
+    for (const auto& [axis, other] : {std::pair(&x_, &y_), {&y_, &x_}}) {
+        auto fewest = group.pair;
+        if (other->is_whole()) other->put(fewest, 0);
+        axis->require_in(table, axis->role, fewest);
+    }
     const auto number = groups_.size() - 1;
     if (!x_.is_of_method && !y_.is_of_method) use_common_method(group.pair, pair_at({number, 0, 0}), reader.stop);
     const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
@@ -354,9 +357,16 @@ bool Grid::is_of_releases() const {
 
 Preset Grid::pair_at(const Cell& cell) const {
     auto pair = groups_[cell.group].pair;
-    y_.put(pair, cell.row);
-    groups_[cell.group].x.put(pair, cell.column, difference_);
+    put(cell, pair);
     return pair;
+}
+
+/// The number of links comes first: it makes equal links.
+void Grid::put(const Cell& cell, Preset& pair) const {
+    const auto& x = groups_[cell.group].x;
+    if (y_.is_whole()) y_.put(pair, cell.row);
+    x.put(pair, cell.column, difference_);
+    if (!y_.is_whole()) y_.put(pair, cell.row);
 }
 
 /// The first cell of a trial, and the number of its cells.
@@ -383,8 +393,7 @@ void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atom
         const auto at = [&](std::size_t i) -> const Preset& {
             pair.a = group.pair.a;
             if (right_ || is_of_distance(quantity_)) pair.b = group.pair.b;  // otherwise side b is not used
-            y_.put(pair, first.row + (are_columns_ ? i : 0));
-            group.x.put(pair, first.column + (are_columns_ ? 0 : i), difference_);
+            put({first.group, first.row + (are_columns_ ? i : 0), first.column + (are_columns_ ? 0 : i)}, pair);
             return pair;
         };
         for (const auto& measurement : group.measurements)

@@ -58,6 +58,7 @@ private:
     const std::vector<Measurement>& measurements() const { return groups_.front().measurements; }
     const QuantityWords& words() const { return measurements().front().words(); }
     Preset pair_at(const Cell& cell) const;
+    void put(const Cell& cell, Preset& pair) const;
 
     std::size_t lines_computed(const Group& group) const;
     std::size_t line_cells(const Group& group) const { return are_columns_ ? y_.count : group.x.count; }

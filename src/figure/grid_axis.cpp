@@ -263,7 +263,7 @@ std::size_t GridAxis::even_steps(const TomlReader& table) const {
     if (std::abs(static_cast<double>(steps - Quad(static_cast<double>(whole)))) > slack)
         throw table.error("step", "must divide the way from {} to {}; it is {}", text_of(from), text_of(to),
                           text_of(step));
-    if (number_ && number_->is_whole && step != round(step))
+    if (is_whole() && step != round(step))
         throw table.error("step", "must be a whole number, as {} is; it is {}", key, text_of(step));
     return static_cast<std::size_t>(whole);
 }
@@ -341,7 +341,7 @@ PlotAxis GridAxis::plot_axis() const {
     axis.high = static_cast<double>(values ? *maximum : is_adaptive_ ? tolerance_to : to);
     constexpr double turn = 360;  // degrees
     if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
-    if (number_ && number_->is_whole) axis.every = 1;
+    if (is_whole()) axis.every = 1;
     if (!are_cells || !are_centers()) return axis;
     const double cells = static_cast<double>(count - 1);
     const double half = (*axis.high - *axis.low) / (2 * cells), ratio = std::pow(*axis.high / *axis.low, 0.5 / cells);
@@ -361,7 +361,7 @@ std::string GridAxis::difference_words(const Quad& difference) const {
 }
 
 void GridAxis::require(const TomlReader& table, std::string_view of, const Quad& number) const {
-    if (number_ && number_->is_whole && number != round(number))
+    if (is_whole() && number != round(number))
         throw table.error(of, "must be a whole number, as {} is; it is {}", key, text_of(number));
     const bool is_above = bounds_.is_open || bounds_.is_positive;
     const bool too_low = bounds_.has_low() && (is_above ? number <= bounds_.low : number < bounds_.low);

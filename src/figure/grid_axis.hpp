@@ -48,6 +48,8 @@ struct GridAxis {
     bool exists() const { return !key.empty(); }
     /// The accuracy setting of the method: its step size, or the tolerance of an adaptive method.
     bool is_setting() const { return key == "setting"; }
+    /// Whether the key takes whole numbers only, as `links` does.
+    bool is_whole() const { return number_ && number_->is_whole; }
     void fields(KeyVisitor& visit);
 
     /// `table` = that of the axis. Throws Error (exit 2) if the pair has no such key, or cannot take a value.
@@ -83,7 +85,7 @@ private:
     Quad even_value(std::size_t i) const;
     /// Of a map: whether `values`, or whole numbers from `from` to `to`, are the centres of its cells. Otherwise `from`
     /// and `to` are its edges.
-    bool are_centers() const { return values || (number_ && number_->is_whole); }
+    bool are_centers() const { return values || is_whole(); }
     /// Whether the values of a map increase by equal steps or by equal ratios. Throws Error (exit 2) if by neither.
     void find_spacing(const TomlReader& table);
     double middle_of_cell(std::size_t i) const;

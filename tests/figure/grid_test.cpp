@@ -349,6 +349,27 @@ TEST(Grid, MapsTakeValuesAndWholeNumbersAsCentres) {
     EXPECT_EQ(even.high, 2.25);
 }
 
+/// Whichever axis has the number of links; and no axis is an element that the shortest chain lacks.
+TEST(Grid, MapsOfLinksSetTheirNumberFirst) {
+    const std::string top =
+        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = "
+        "\"energy_error\"\n";
+    const std::string links = "key = \"links\"\nfrom = 2\nto = 3\n";
+    const std::string mass = "key = \"system.mass_kg[1]\"\nvalues = [0.5, 1, 2]\n";
+    const auto columns = table_of(figure_from(top + "[grid.x]\n" + links + "[grid.y]\n" + mass));
+    const auto rows = table_of(figure_from(top + "[grid.x]\n" + mass + "[grid.y]\n" + links));
+    for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(columns.rows[2 * k + i][2], rows.rows[3 * i + k][2]) << i << k;
+    EXPECT_NE(rows.rows[3][2], rows.rows[4][2]);  // of three links
+    const auto [code, message] = error_of([&] {
+        figure_from(
+            top + "[grid.x]\n" + links + "[grid.y]\nkey = \"system.mass_kg[2]\"\nfrom = 1\nto = 2\npoints = 2\n",
+            {"system.links=3"});
+    });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("is beyond the array, whose last element is [1]"), std::string::npos) << message;
+}
+
 TEST(Grid, WhatIsComparedHasOneRange) {
     for (const char* name : {"fig2-right", "fig4-right", "fig8", "true-fig2-right"}) {
         const auto axis = page_of(figure_of(name, {"grid.x.to=2", "scene.duration_s=1"})).panels.at(0).y;
