@@ -1,9 +1,48 @@
 #pragma once
 
-#include "render/gl_objects.hpp"
+#include "render/gl_api.hpp"
 #include "render/render_list.hpp"
 
+#include <string>
+
 namespace doppel::gl {
+
+/// Throws Error (exit 4) if OpenGL has reported an error since the last call. `what`: the task, "a canvas of 64 × 64
+/// px".
+void check_errors(const std::string& what);
+
+/// Owns an OpenGL object. Its context must be current at construction and destruction.
+template <auto& generate, auto& destroy>
+class Object {
+public:
+    Object() { generate(1, &number_); }
+    ~Object() { destroy(1, &number_); }
+    Object(const Object&) = delete;
+    Object& operator=(const Object&) = delete;
+    operator GLuint() const { return number_; }
+
+private:
+    GLuint number_ = 0;
+};
+
+using Buffer = Object<GenBuffers, DeleteBuffers>;
+using Texture = Object<GenTextures, DeleteTextures>;
+using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
+using Framebuffer = Object<GenFramebuffers, DeleteFramebuffers>;
+
+/// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader beside it;
+/// compiled and linked.
+class Program {
+public:
+    explicit Program(const std::string& fragment);
+    ~Program() { DeleteProgram(number_); }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    operator GLuint() const { return number_; }
+
+private:
+    GLuint number_;
+};
 
 /// A canvas of RGBA pixels, all zero at first, and what draws render lists onto it. Row 0 is the top of the picture. A
 /// stroke takes two passes. The first writes 1 - opacity of each segment into the canvas's alpha, which is 1 otherwise.

@@ -95,7 +95,7 @@ constexpr Library libraries[]{
     {"ft2build", "render", "font"},
     {"libavformat/", "output", "libav"},
     {"libavcodec/", "output", "libav"},
-    {"fontconfig/", "render", "system_fonts"},
+    {"fontconfig/", "render", "typeface"},
     {"libavutil/", "output", ""},
     {"libdeflate", "output", ""},
     {"libavfilter/", "output", "gif"},
