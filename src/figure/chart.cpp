@@ -9,7 +9,7 @@ namespace doppel {
 namespace {
 
 constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
-constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/chart_parts.hpp), layout px
+constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/panel.hpp), layout px
 constexpr double paths_scale = 4;                 // for output made of paths
 constexpr double page_scale = 2;                  // for a page, whose picture may be pixels
 constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL supports, which reports its own limit

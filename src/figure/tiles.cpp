@@ -42,7 +42,7 @@ Json scale_json(const HeatMap& map, const Theme& theme) {
     scale.axis.to = 380;  // px on the page
     for (const auto& tick : chart_ticks(scale.axis, {.size = 14, .across = false}, map.threshold))
         if (!tick.text.empty()) numbers.push_back({scale.axis.share(tick.value), tick.text});
-    return {{"colors", colors}, {"numbers", numbers}, {"none", hexadecimal(map.none_is_bad ? theme.bad : theme.none)}};
+    return {{"colors", colors}, {"numbers", numbers}, {"none", hexadecimal(none_color(map, theme))}};
 }
 
 std::string body_of(const FigurePreset& figure, const HeatMap& map) {

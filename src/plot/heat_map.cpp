@@ -1,7 +1,7 @@
 #include "image/color.hpp"
 #include "plot/axis.hpp"
-#include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
+#include "plot/panel.hpp"
 #include "render/typeface.hpp"
 
 #include <algorithm>
@@ -66,6 +66,10 @@ float below(const TextBlock& heading, float height, const PlotStyle& style) {
 
 }  // namespace
 
+Color none_color(const HeatMap& map, const Theme& theme) {
+    return map.none_is_bad ? theme.bad : theme.none;
+}
+
 Picture cell_picture(const HeatMap& map, const Theme& theme) {
     Picture picture({static_cast<int>(map.columns), static_cast<int>(map.rows)});
     const MapScale scale(map);
@@ -87,10 +91,6 @@ CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& 
     return {{place(x, plot.x.low), place(y, plot.y.high), place(x, plot.x.high), place(y, plot.y.low)},
             area,
             std::make_shared<Picture>(cell_picture(*plot.map, theme))};
-}
-
-Color none_color(const HeatMap& map, const Theme& theme) {
-    return map.none_is_bad ? theme.bad : theme.none;
 }
 
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {

@@ -1,13 +1,178 @@
 #include "plot/labels.hpp"
 
+#include "base/text.hpp"
 #include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 namespace doppel {
 namespace {
+
+/// The number of bytes of `text` whose whole characters are at most `width` px wide; at least one character.
+std::size_t bytes_within(std::string_view text, float size, Weight weight, float width) {
+    std::size_t taken = 0;
+    for (std::string_view rest = text; !rest.empty();) {
+        next_character(rest);
+        const std::size_t next = text.size() - rest.size();
+        if (taken > 0 && text_width(text.substr(0, next), size, weight) > width) break;
+        taken = next;
+    }
+    return taken;
+}
+
+/// Whether a line must not break between the words: "2 464", "1 kg", "θ₁ = 45°".
+bool stay_together(std::string_view word, std::string_view next) {
+    const auto is_sign = [](std::string_view text) { return text == "=" || text == "×" || text == "±"; };
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (is_sign(word) || is_sign(next)) return true;
+    if (!is_digit(word.back())) return false;
+    constexpr std::size_t unit = 4;  // letters, with punctuation
+    std::size_t letters = 0;
+    for (std::string_view rest = next; !rest.empty(); ++letters) next_character(rest);
+    return is_digit(next.front()) || letters <= unit;
+}
+
+/// The parts of `text` between which a line may break.
+std::vector<std::string> words_of(std::string_view text, float size, Weight weight, float width) {
+    std::vector<std::string> words;
+    std::string_view before;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        if (const auto word = text.substr(0, end); !word.empty()) {
+            const auto joined = words.empty() ? "" : words.back() + ' ' + std::string(word);
+            if (!joined.empty() && stay_together(before, word) && text_width(joined, size, weight) <= width)
+                words.back() = joined;
+            else
+                words.emplace_back(word);
+            before = word;
+        }
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return words;
+}
+
+void wrap_paragraph(std::string_view text, float size, Weight weight, float width, std::vector<std::string>& lines) {
+    std::string line;
+    const auto add = [&](const std::string& word) {
+        const std::string longer = line.empty() ? word : line + ' ' + word;
+        if (line.empty() || text_width(longer, size, weight) <= width) {
+            line = longer;
+        } else {
+            lines.push_back(std::move(line));
+            line = word;
+        }
+        // wider than a line by itself
+        while (text_width(line, size, weight) > width) {
+            const std::size_t part = bytes_within(line, size, weight, width);
+            if (part == line.size()) break;
+            lines.push_back(line.substr(0, part));
+            line.erase(0, part);
+        }
+    };
+    for (const auto& word : words_of(text, size, weight, width)) add(word);
+    lines.push_back(std::move(line));
+}
+
+constexpr float square = 3;  // px
+
+std::uint64_t bit(std::size_t owner) {
+    return std::uint64_t{1} << (owner % LabelPlacer::no_owner);
+}
+
+/// A box with the names of curves, each beside a sample of the curve.
+struct Legend {
+    std::vector<std::size_t> which;  // numbers of the curves
+    Area box;
+    float size;  // of text, px per em
+};
+
+/// A position for a box of this size where nothing is drawn, preferably a corner.
+std::optional<Point> empty_place(float width, float height, float margin, const LabelPlacer& placer) {
+    constexpr int steps = 20;
+    const Area& area = placer.area();
+    const float across = area.width() - width - 2 * margin, down = area.height() - height - 2 * margin;
+    if (across < 0 || down < 0) return {};
+    std::optional<Point> best;
+    float minimum = 0;
+    for (int row = 0; row <= steps; ++row) {
+        for (int column = steps; column >= 0; --column) {
+            const float left = area.left + margin + across * static_cast<float>(column) / steps;
+            const float top = area.top + margin + down * static_cast<float>(row) / steps;
+            const Area box{left, top, left + width, top + height};
+            if (!placer.is_free(box) || placer.ink(box) > 0) continue;
+            const bool side = column == 0 || column == steps, end = row == 0 || row == steps;
+            const float cost = side && end ? 0 : side || end ? 6.0f : 15.0f;
+            if (!best || cost < minimum) best = Point{left, top}, minimum = cost;
+        }
+    }
+    return best;
+}
+
+void draw_sample(const Curve& curve, float left, float right, float y, const Panel& panel) {
+    DrawnCurve sample;
+    const float middle = (left + right) / 2;
+    if (curve.mark != Mark::points) sample.lines.push_back({{left, y}, {right, y}});
+    if (curve.mark != Mark::line) sample.points.push_back({middle, y});
+    draw_curve(curve, sample, panel);
+}
+
+// dimensions of a legend, em
+constexpr float row_em = 1.4f, pad_em = 0.5f, sample_em = 1.7f, gap_em = 0.5f;
+
+float legend_width(const std::vector<Curve>& curves, const std::vector<std::size_t>& which, float size) {
+    float widest = 0;
+    for (const std::size_t i : which) widest = std::max(widest, text_width(curves[i].label, size));
+    return (2 * pad_em + sample_em + gap_em) * size + widest;
+}
+/// Its height, em.
+float legend_rows(std::size_t count) {
+    return 2 * pad_em - 0.35f + row_em * static_cast<float>(count);
+}
+
+/// Placed where nothing is drawn, away from all labels, preferably in a corner; nothing if there is no such place.
+std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which, float size,
+                                    const LabelPlacer& placer) {
+    const float width = legend_width(curves, which, size);
+    const float height = legend_rows(which.size()) * size;
+    const auto at = empty_place(width, height, 0.5f * size, placer);
+    if (!at) return {};
+    return Legend{std::move(which), {at->x, at->y, at->x + width, at->y + height}, size};
+}
+
+/// Width that the names of all curves take beside a panel, px.
+float legend_gutter(const std::vector<Curve>& curves, float size) {
+    std::vector<std::size_t> all(curves.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return legend_width(curves, all, size);
+}
+
+/// In the upper left corner of `area`, with text of at most `size` px per em.
+Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float maximum) {
+    const float width = legend_width(curves, which, 1), height = legend_rows(which.size());
+    const float size = std::min({maximum, area.width() / width, area.height() / height});
+    return {std::move(which), {area.left, area.top, area.left + width * size, area.top + height * size}, size};
+}
+
+void draw_legend(const Legend& legend, const Panel& panel) {
+    const auto& [which, box, size] = legend;
+    const Theme& theme = panel.style.theme;
+    const bool over_map = panel.is_map();
+    const Color background = over_map ? rgb(0x0b0e13).with_alpha(0.7f) : theme.background.with_alpha(0.88f);
+    panel.list.push_back(Box{box.left, box.top, box.right, box.bottom, 0.3f * size, background});
+    const float left = box.left + pad_em * size, right = left + sample_em * size;
+    float baseline = box.top + (pad_em + 0.8f) * size;
+    for (const std::size_t i : which) {
+        const Curve& curve = panel.plot.curves[i];
+        draw_sample(curve, left, right, baseline - 0.3f * size, panel);
+        panel.list.push_back(
+            label(curve.label, {right + gap_em * size, baseline}, size, over_map ? rgb(0xffffff) : theme.text));
+        baseline += row_em * size;
+    }
+}
 
 /// The label of a curve or rule, not yet placed.
 struct LabelText {
@@ -184,6 +349,95 @@ PlacedLabels place_labels(const std::vector<DrawnCurve>& drawn, float size, bool
 }
 
 }  // namespace
+
+Area text_area(const Label& label) {
+    const float width = text_width(label.text, label.size, label.weight);
+    const float before = label.align == Align::left ? 0 : label.align == Align::center ? width / 2 : width;
+    const float left = label.anchor.x - before;
+    return {left, label.anchor.y - 0.8f * label.size, left + width, label.anchor.y + 0.25f * label.size};
+}
+
+std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width) {
+    std::vector<std::string> lines;
+    while (true) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        wrap_paragraph(text.substr(0, end), size, weight, width, lines);
+        if (end == text.size()) return lines;
+        text.remove_prefix(end + 1);
+    }
+}
+
+std::vector<std::string> evenly_wrapped(std::string_view text, float size, Weight weight, float width) {
+    constexpr float min_share = 1.0f / 3, narrower = 0.97f;
+    auto lines = wrapped(text, size, weight, width);
+    const auto ends_short = [&](const std::vector<std::string>& all, float measure) {
+        return all.size() > 1 && text_width(all.back(), size, weight) < min_share * measure;
+    };
+    for (float measure = width; ends_short(lines, measure);) {
+        measure *= narrower;
+        auto tried = wrapped(text, size, weight, measure);
+        if (tried.size() > lines.size()) break;
+        lines = std::move(tried);
+    }
+    return lines;
+}
+
+float widest(const std::vector<std::string>& lines, float size) {
+    float width = 0;
+    for (const std::string& line : lines) width = std::max(width, text_width(line, size));
+    return width;
+}
+
+float widest(const std::vector<Tick>& ticks, float size) {
+    std::vector<std::string> texts;
+    for (const Tick& tick : ticks) texts.push_back(tick.text);
+    return widest(texts, size);
+}
+
+void TextBlock::draw(Point at, PageList& list) const {
+    float baseline = at.y + 0.98f * size;
+    for (const std::string& line : lines) {
+        list.push_back(Label{line, {at.x, baseline}, size, Align::left, weight, color});
+        baseline += line_height();
+    }
+}
+
+LabelPlacer::LabelPlacer(const Area& area)
+    : area_(area),
+      columns_(std::max(1, static_cast<int>(std::ceil(area.width() / square)))),
+      rows_(std::max(1, static_cast<int>(std::ceil(area.height() / square)))),
+      drawn_(static_cast<std::size_t>(columns_) * rows_) {}
+
+void LabelPlacer::add_line(Point from, Point to, std::size_t owner) {
+    const float length = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+    const int steps = 1 + static_cast<int>(length / square * 1.5f);
+    for (int i = 0; i <= steps; ++i) {
+        const float part = static_cast<float>(i) / static_cast<float>(steps);
+        const int column = static_cast<int>((std::lerp(from.x, to.x, part) - area_.left) / square);
+        const int row = static_cast<int>((std::lerp(from.y, to.y, part) - area_.top) / square);
+        if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
+        drawn_[static_cast<std::size_t>(row) * columns_ + column] |= bit(owner);
+    }
+}
+
+int LabelPlacer::ink(const Area& box, std::size_t except) const {
+    const std::uint64_t others = except == no_owner ? ~std::uint64_t{0} : ~bit(except);
+    const auto within = [](float v, int maximum) {
+        return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(maximum)));
+    };
+    const int left = within(std::floor((box.left - area_.left) / square), columns_);
+    const int right = within(std::ceil((box.right - area_.left) / square), columns_);
+    const int bottom = within(std::ceil((box.bottom - area_.top) / square), rows_);
+    int count = 0;
+    for (int row = within(std::floor((box.top - area_.top) / square), rows_); row < bottom; ++row)
+        for (int column = left; column < right; ++column)
+            count += (drawn_[static_cast<std::size_t>(row) * columns_ + column] & others) != 0;
+    return count;
+}
+
+bool LabelPlacer::is_free(const Area& box) const {
+    return area_.contains(box) && std::ranges::none_of(texts_, [&](const Area& text) { return text.overlaps(box); });
+}
 
 LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& given, const LabelPlacer& placer,
                         const Panel& panel) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "plot/axis.hpp"
-#include "plot/chart_parts.hpp"
+#include "plot/panel.hpp"
 #include "plot/plot.hpp"
 
 #include <cstdint>
@@ -34,24 +34,6 @@ private:
     std::vector<std::uint64_t> drawn_;  // for each square, one bit per curve number
     std::vector<Area> texts_;
 };
-
-/// A box with the names of curves, each beside a sample of the curve.
-struct Legend {
-    std::vector<std::size_t> which;  // numbers of the curves
-    Area box;
-    float size;  // of text, px per em
-};
-
-/// Placed where nothing is drawn, away from all labels, preferably in a corner; nothing if there is no such place.
-std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which, float size,
-                                    const LabelPlacer& placer);
-
-/// Width that the names of all curves take beside a panel, px.
-float legend_gutter(const std::vector<Curve>& curves, float size);
-/// In the upper left corner of `area`, with text of at most `size` px per em.
-Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float maximum);
-
-void draw_legend(const Legend& legend, const Panel& panel);
 
 /// Writes the labels of rules beside them, where they hide the least.
 void label_rules(const Panel& panel, LabelPlacer& placer);

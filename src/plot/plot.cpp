@@ -1,7 +1,7 @@
 #include "plot/plot.hpp"
 
-#include "plot/chart_parts.hpp"
 #include "plot/labels.hpp"
+#include "plot/panel.hpp"
 
 #include <fmt/ranges.h>
 
@@ -11,6 +11,233 @@
 
 namespace doppel {
 namespace {
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+/// The extent of the values on one axis.
+class Extent {
+public:
+    explicit Extent(bool logarithmic) : logarithmic_(logarithmic) {}
+
+    bool can_show(double value) const { return std::isfinite(value) && (value > 0 || !logarithmic_); }
+    void add(double value) {
+        if (!can_show(value)) return;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
+    }
+
+    /// The range with a `margin` at either side, except for ends that `axis` sets.
+    Axis range(const PlotAxis& axis, double margin) const {
+        double low = low_, high = high_;
+        if (!(low <= high)) low = logarithmic_ ? 1 : 0, high = logarithmic_ ? 10 : 1;
+        // if the given end is on the wrong side of the values, the other is chosen beyond it
+        if (axis.low && !axis.high) high = above(*axis.low, high), low = std::min(*axis.low, low);
+        if (axis.high && !axis.low) low = below(*axis.high, low), high = std::max(*axis.high, high);
+        if (low == high) low = below(low, low), high = above(high, high);
+        if (logarithmic_) {
+            const double part = std::pow(10.0, margin * (std::log10(high) - std::log10(low)));
+            low = std::max(low / part, std::numeric_limits<double>::min());
+            high = std::min(high * part, largest);
+        } else {
+            const double part = 2 * margin * (high / 2 - low / 2);
+            low = low >= 0 && low < part ? 0 : std::max(low - part, -largest);
+            high = std::min(high + part, largest);
+        }
+        Axis made{.low = axis.low.value_or(low), .high = axis.high.value_or(high), .logarithmic = logarithmic_};
+        if (made.low == made.high) made.low = below(made.low, made.low), made.high = above(made.high, made.high);
+        return made;
+    }
+
+private:
+    /// `value`, or something a little larger than `limit`.
+    double above(double limit, double value) const {
+        if (value > limit) return value;
+        return logarithmic_ ? std::min(limit * 3, largest)
+               : limit == 0 ? 1
+                            : std::min(limit + 0.1 * std::abs(limit), largest);
+    }
+    double below(double limit, double value) const {
+        if (value < limit) return value;
+        return logarithmic_ ? limit / 3 : limit == 0 ? -1 : std::max(limit - 0.1 * std::abs(limit), -largest);
+    }
+
+    bool logarithmic_;
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
+/// The requested ranges. Missing ends are fitted to the contents with a small margin (none around a map, or below
+/// zero).
+PlotRanges fitted_ranges(const Plot& plot) {
+    Extent x(plot.x.logarithmic), y(plot.y.logarithmic), right(plot.right && plot.right->logarithmic);
+    bool spread = !plot.map.has_value();
+    for (const Curve& curve : plot.curves) {
+        Extent& values = curve.right && plot.right ? right : y;
+        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+            if (!x.can_show(curve.x[i]) || !values.can_show(curve.y[i])) continue;
+            x.add(curve.x[i]);
+            values.add(curve.y[i]);
+            if (curve.uncertainty.empty()) continue;
+            values.add(curve.y[i] - std::abs(curve.uncertainty[i]));
+            values.add(curve.y[i] + std::abs(curve.uncertainty[i]));
+        }
+    }
+    for (const Rule& rule : plot.rules) (rule.orientation == Rule::Orientation::vertical ? x : y).add(rule.at);
+    PlotRanges ranges{x.range(plot.x, spread ? 0.015 : 0), y.range(plot.y, spread ? 0.05 : 0), {}};
+    if (plot.right) ranges.right = right.range(*plot.right, 0.05);
+    return ranges;
+}
+
+struct PanelGrid {
+    int columns, rows;
+};
+
+/// The map whose colour bar is shared by all panels; null if each has its own.
+const HeatMap* shared_map(const Figure& figure) {
+    const auto found =
+        std::ranges::find_if(figure.panels, [](const Plot& plot) { return plot.map && plot.map->shares_bar; });
+    return found == figure.panels.end() ? nullptr : &*found->map;
+}
+
+/// If panels share axes, only the leftmost and lowest ones show the texts of these.
+AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t columns) {
+    if (!figure.shares_axes) return {};
+    const auto& all = figure.panels;
+    const Plot& plot = all[panel];
+    AxisWords words;
+    words.x = panel + columns >= all.size() || all[panel + columns].x != plot.x;
+    words.y = panel % columns == 0 || all[panel - 1].y != plot.y;
+    words.y_name = words.y && (panel < columns || all[panel - columns].y != plot.y);
+    return words;
+}
+
+/// Gives axes with the same label the union of their ranges.
+void share_ranges(const std::vector<Plot>& panels, std::vector<PlotRanges>& ranges) {
+    for (const auto& [axis, range] : {std::pair(&Plot::x, &PlotRanges::x), {&Plot::y, &PlotRanges::y}})
+        for (const auto& one : panels) {
+            std::vector<Axis*> matching;
+            for (std::size_t i = 0; i < panels.size(); ++i)
+                if (panels[i].*axis == one.*axis) matching.push_back(&(ranges[i].*range));
+            Axis all = *matching.front();
+            for (const Axis* each : matching)
+                if (all.low < all.high)
+                    all.low = std::min(all.low, each->low), all.high = std::max(all.high, each->high);
+            for (Axis* each : matching) *each = all;
+        }
+}
+
+/// The larger of each side.
+Gutters united(const Gutters& a, const Gutters& b) {
+    return {std::max(a.left, b.left), std::max(a.right, b.right), std::max(a.title, b.title),
+            std::max(a.labels, b.labels), std::max(a.bottom, b.bottom)};
+}
+
+/// The cells of all panels and the space for texts around the panels.
+struct Cells {
+    std::vector<Gutters> columns, rows;
+    float width, height;  // size of a panel without its texts, px
+
+    Gutters around(std::size_t column, std::size_t row) const {
+        return {columns[column].left, columns[column].right, rows[row].title, rows[row].labels, rows[row].bottom};
+    }
+};
+
+/// Whole pixels, so that all panels have the same size. If they share axes, each column and row takes what its own
+/// texts need; otherwise all take as much as the largest.
+Cells cells_of(const std::vector<Gutters>& own, const PanelGrid& grid, float width, float height, bool shares_axes,
+               const PlotStyle& style) {
+    const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
+    Cells cells{std::vector<Gutters>(columns), std::vector<Gutters>(rows), 0, 0};
+    Gutters largest;
+    for (const Gutters& each : own) largest = united(largest, each);
+    if (!shares_axes) {
+        std::ranges::fill(cells.columns, largest);
+        std::ranges::fill(cells.rows, largest);
+        cells.width = std::floor(width / static_cast<float>(columns)) - largest.left - largest.right;
+        cells.height = std::floor(height / static_cast<float>(rows)) - largest.top(style) - largest.bottom;
+        return cells;
+    }
+    for (std::size_t i = 0; i < own.size(); ++i)
+        for (Gutters* of : {&cells.columns[i % columns], &cells.rows[i / columns]}) *of = united(*of, own[i]);
+    for (Gutters& of : cells.columns) {
+        of.left = std::ceil(of.left), of.right = std::ceil(of.right);
+        width -= of.left + of.right;
+    }
+    for (Gutters& of : cells.rows) {
+        of.bottom += std::ceil(of.top(style) + of.bottom) - of.top(style) - of.bottom;
+        height -= of.top(style) + of.bottom;
+    }
+    cells.width = std::floor(width / static_cast<float>(columns));
+    cells.height = std::floor(height / static_cast<float>(rows));
+    return cells;
+}
+
+/// The figure's number of columns, or the one that makes the panels largest.
+PanelGrid grid_of(const Figure& figure, const Area& body) {
+    const int panels = static_cast<int>(figure.panels.size());
+    const auto grid = [&](int columns) { return PanelGrid{columns, (panels + columns - 1) / columns}; };
+    if (figure.columns > 0) return grid(std::min(figure.columns, panels));
+    const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // preferred ratio of width to height
+    PanelGrid best = grid(1);
+    float maximum = 0;
+    for (int columns = 1; columns <= panels; ++columns) {
+        const PanelGrid tried = grid(columns);
+        const float room = std::min(body.width() / static_cast<float>(columns),
+                                    shape * (body.height() / static_cast<float>(tried.rows)));
+        if (room > 1.001f * maximum) maximum = room, best = tried;
+    }
+    return best;
+}
+
+/// Draws all panels of the figure, and the colour bar that they share. Returns the axes of each, with their pixels.
+std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
+    const PanelGrid grid = grid_of(figure, body);
+    if (const HeatMap* map = shared_map(figure)) {
+        const float gutter = bar_gutter(*map, body.height(), style);
+        draw_bar(*map, body, body.right - gutter, style, list);
+        body.right -= gutter;
+    }
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    const float across = std::round(1.9f * style.tick), down = std::round(1.3f * style.tick);
+    const float width = body.width() - across * static_cast<float>(grid.columns - 1);
+    const float height = body.height() - down * static_cast<float>(grid.rows - 1);
+    std::vector<PlotRanges> ranges;
+    for (const auto& panel : figure.panels) ranges.push_back(fitted_ranges(panel));
+    if (figure.shares_axes) share_ranges(figure.panels, ranges);
+    // drawn again if the labels need more space than they were given
+    const std::size_t before = list.size();
+    for (LabelNeeds given;;) {
+        std::vector<Gutters> own;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            own.push_back(gutters(figure.panels[i], ranges[i], std::floor(width / static_cast<float>(grid.columns)),
+                                  std::floor(height / static_cast<float>(grid.rows)), axis_words(figure, i, columns),
+                                  style));
+            own.back().right += given.legend;
+        }
+        const Cells cells = cells_of(own, grid, width, height, figure.shares_axes, style);
+        PlotStyle fitted = style;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const auto& panel = figure.panels[i];
+            const Gutters around = cells.around(i % columns, i / columns);
+            const float wide = panel.square ? std::min(cells.width, cells.height) : cells.width;
+            fit_labels(panel, around.left + wide + around.right, style, fitted);
+        }
+        LabelNeeds needs = given;
+        float left = body.left, top = body.top;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const Gutters around = cells.around(i % columns, i / columns);
+            const float right = left + around.left + cells.width + around.right;
+            const float bottom = top + around.top(style) + cells.height + around.bottom;
+            const auto own_needs = draw_panel(figure.panels[i], ranges[i], {left, top, right, bottom}, around,
+                                              axis_words(figure, i, columns), given, fitted, list);
+            needs = {needs.small || own_needs.small, std::max(needs.legend, own_needs.legend)};
+            left = right + across;
+            if ((i + 1) % columns == 0) left = body.left, top = bottom + down;
+        }
+        if (needs == given) return ranges;
+        given = needs;
+        list.resize(before);
+    }
+}
 
 /// One line of at most `width` px if possible. It is shrunk, on paper to the size of labels, otherwise to three quarters
 /// but not below 9 px, then broken.
@@ -77,6 +304,19 @@ Layout figure_layout(const Figure& figure, const Area& sheet, const PlotStyle& s
 }
 
 }  // namespace
+
+MapScale::MapScale(const HeatMap& map) {
+    Extent values(map.logarithmic);
+    if (!map.low || !map.high)
+        for (const float value : map.values) values.add(static_cast<double>(value));
+    axis = values.range({.low = map.low, .high = map.high, .logarithmic = map.logarithmic}, 0);
+    if (map.threshold) step = axis.share(*map.threshold);
+}
+
+Color MapScale::color(double share) const {
+    constexpr double below = 0.3, above = 0.93;
+    return map_color(!step ? share : share > *step ? above : below);
+}
 
 float smallest_side(const std::vector<PlotRanges>& panels) {
     float smallest = std::numeric_limits<float>::infinity();

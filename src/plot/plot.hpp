@@ -89,6 +89,8 @@ struct MapScale {
     std::optional<double> step = {};  // position on the axis where the first of two colours ends
     Color color(double share) const;
 };
+/// The colour of cells without a value.
+Color none_color(const HeatMap& map, const Theme& theme);
 /// A picture of the map alone, one pixel per cell, the first row at the bottom.
 Picture cell_picture(const HeatMap& map, const Theme& theme);
 

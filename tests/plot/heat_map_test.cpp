@@ -1,5 +1,5 @@
 #include "image/color.hpp"
-#include "plot/chart_parts.hpp"
+#include "plot/panel.hpp"
 #include "plot/plot_figures.hpp"
 #include "render/pixels.hpp"
 

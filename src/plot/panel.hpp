@@ -32,13 +32,6 @@ struct LabelNeeds {
     friend bool operator==(const LabelNeeds&, const LabelNeeds&) = default;
 };
 
-/// The requested ranges. Missing ends are fitted to the contents with a small margin (none around a map, or below
-/// zero).
-PlotRanges fitted_ranges(const Plot& plot);
-
-/// Labelled ticks of a horizontal axis (`across`) or a vertical one.
-std::vector<Tick> ticks_of(const Axis& axis, const PlotAxis& requested, bool across, const PlotStyle& style);
-
 /// The axes whose texts a panel shows: the numbers at the ticks, and the label of the vertical axis above the panel.
 struct AxisWords {
     bool x = true, y = true, y_name = true;
@@ -57,19 +50,9 @@ struct Panel {
     const Axis& y_of(const Curve& curve) const { return curve.right && axes.right ? *axes.right : axes.y; }
 };
 
-/// Grid, axes, ticks with labels, and the label of the x axis.
-void draw_axes(const Panel& panel);
-
-/// Height of the labels above a panel of this width, px: one line if all fit side by side, otherwise one each.
-float axis_labels_height(const Plot& plot, float width, const AxisWords& words, const PlotStyle& style);
-
 /// Reduces the text sizes in `fitted` (initially `style`) until the labels and titles of a panel of this width, px,
 /// fit.
 void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle& fitted);
-
-/// The panel's title in the uppermost `title` px. The labels of the vertical axes and of the map's bar are in the
-/// `labels` px below.
-void draw_headings(const Panel& panel, float title, float labels);
 
 /// The cells of the plot's map on these axes.
 CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
@@ -81,9 +64,6 @@ float bar_gutter(const HeatMap& map, float height, const PlotStyle& style);
 /// The colour bar beside `area`, from `left` on: colours with ticks, and below them the colour of cells without a
 /// value.
 void draw_bar(const HeatMap& map, Area area, float left, const PlotStyle& style, PageList& list);
-
-/// The colour of cells without a value.
-Color none_color(const HeatMap& map, const Theme& theme);
 
 /// Space around a panel's area for its labels, px.
 struct Gutters {
@@ -101,16 +81,6 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
 /// `ranges`.
 LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, const Gutters& around,
                       const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list);
-
-struct PanelGrid {
-    int columns, rows;
-};
-
-/// The figure's number of columns, or the one that makes the panels largest.
-PanelGrid grid_of(const Figure& figure, const Area& body);
-
-/// Draws all panels of the figure, and the colour bar that they share. Returns the axes of each, with their pixels.
-std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list);
 
 /// A curve in pixels, clipped to its panel.
 struct DrawnCurve {
@@ -134,10 +104,5 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Panel& panel)
 
 /// Polylines, dashed if the curve is.
 void draw_line(const std::vector<std::vector<Point>>& lines, float width, bool dashed, Color color, const Panel& panel);
-
-/// Discs at many points as an image with `scale` pixels per px: cheaper than paths. Discs of less than full opacity add
-/// up where they overlap. They are clipped to `area`.
-Image scatter_image(const std::vector<Point>& points, float radius, Color color, float opacity, const Area& area,
-                    float scale);
 
 }  // namespace doppel
