@@ -2,8 +2,8 @@
 #include "cli/options.hpp"
 #include "cli/program.hpp"
 #include "cli/terminal.hpp"
+#include "figure/page.hpp"
 #include "figure/run.hpp"
-#include "figure/tiles.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,14 +1,20 @@
 #pragma once
 
 #include "figure/grid_axis.hpp"
-#include "figure/overlay.hpp"
 #include "figure/quantity.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace doppel {
+
+/// Theoretical curves on a map.
+enum class Overlay { none, kapitza, mathieu, energy_bound, linear_limit };
+template <>
+inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none", "kapitza", "mathieu", "energy-bound",
+                                                                           "linear-limit"});
 
 /// A quantity of pairs over the values of one to four keys: curves over x, in several colours; maps over x and y;
 /// panels of either. A trial is a value of x of one curve, or some adjacent cells of a map. If the map has a mirror

@@ -12,6 +12,67 @@
 namespace doppel {
 namespace {
 
+std::vector<Curve> stability_curves(Overlay overlay, const PhysicalPendulum<double>& p) {
+    const double mass = p.chain.mass[0], center = p.center[0], gravity = p.chain.gravity;
+    const double length = (p.inertia[0] + mass * center * center) / (mass * center);
+    std::vector<Curve> curves;
+    const auto add = [&](const char* label, double first, double last, const auto& characteristic) {
+        Curve curve{.label = label, .hue = 1};
+        constexpr int parts = 400;
+        for (int i = 0; i <= parts; ++i) {
+            const double q = first * std::pow(last / first, static_cast<double>(i) / parts);
+            const double below = -characteristic(q);  // 4 g / (l ν²)
+            if (below > 0) add_point(curve, std::sqrt(4 * gravity / (length * below)) / (2 * pi), q * length / 2);
+        }
+        curves.push_back(std::move(curve));
+    };
+    if (overlay == Overlay::kapitza) {
+        add("Kapitza: stable above", 1e-3, 2, [](double q) { return -q * q / 2; });
+        return curves;
+    }
+    add("a₀ of Mathieu: stable above", 1e-3, 1.2, [](double q) {
+        const double s = q * q;
+        return s * (-1.0 / 2 + s * (7.0 / 128 + s * (-29.0 / 2304 + s * 68687 / 18874368)));
+    });
+    add("b₁ of Mathieu: unstable above", 0.9, 1.2,
+        [](double q) { return 1 - q * (1 + q * (1.0 / 8 - q * (1.0 / 64 - q * (1.0 / 1536 + q * (11.0 / 36864))))); });
+    return curves;
+}
+
+Curve energy_bound(const Pendulum<double>& p) {
+    const double w1 = p.gravity * p.length[0] * (p.mass[0] + p.mass[1]), w2 = p.gravity * p.length[1] * p.mass[1];
+    const double bound = w1 + w2 - 2 * std::min(w1, w2);
+    std::vector<std::pair<double, double>> half;  // θ2 ≥ 0
+    constexpr int points = 2000;
+    for (int i = -points; i <= points; ++i) {
+        const double theta1 = 180.0 * i / points, cosine = (bound - w1 * std::cos(radians(theta1))) / w2;
+        if (std::abs(cosine) <= 1) half.emplace_back(theta1, std::acos(cosine) / radians(1.0));
+    }
+    Curve outline;
+    for (const auto& [theta1, theta2] : half) add_point(outline, theta1, theta2);
+    for (auto at = half.rbegin(); at != half.rend(); ++at) add_point(outline, at->first, -at->second);
+    if (!half.empty()) add_point(outline, half.front().first, half.front().second);
+    return outline;
+}
+
+/// `kapitza`, `mathieu`: where a vertically oscillating pivot stabilises one link upright, and where it destabilises
+/// it. The curves are the amplitude a, m, over the frequency, Hz. With l = J/(m c) the length of the equivalent simple
+/// pendulum, and ν = 2π f:
+///     Kapitza    a² ν² = 2 g l ,    for a much less than l
+///     Mathieu    −4 g / (l ν²) = a₀(q) and b₁(q) ,   q = 2 a / l ,
+/// from the power series of the characteristic values, accurate to 1e-3 for q ≤ 1.2.
+/// `energy_bound`: where a double pendulum released at rest has just enough energy for a flip: θ2 over θ1, degrees,
+/// with
+///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
+/// `linear_limit`: for each panel, the step size at which small oscillations diverge in linear theory
+/// (analysis/stability.hpp); it depends on the grid, which draws it.
+/// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
+std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side) {
+    if (overlay == Overlay::none || overlay == Overlay::linear_limit) return {};
+    if (overlay == Overlay::energy_bound) return {energy_bound(chain_of(side).cast<double>())};
+    return stability_curves(overlay, physical_of(side).cast<double>());
+}
+
 /// Whether any part of the line lies inside the axes of the map.
 bool shows(const Plot& plot, const Curve& line) {
     for (std::size_t i = 0; i < line.x.size(); ++i)

@@ -3,7 +3,6 @@
 #include "analysis/exponent.hpp"
 #include "analysis/pair_batch.hpp"
 #include "figure/experiment.hpp"
-#include "figure/stroboscope.hpp"
 #include "integrate/flips.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
@@ -13,9 +12,23 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace doppel {
+
+/// Samples a driven pendulum at each drive period.
+struct StroboscopeSpec {
+    int link = 1;  // from 1
+    int transient_periods = 200, periods = 100;
+};
+
+/// Throws Error (exit 2) at the table's `key` or `link` without exactly one drive frequency of at most 18 digits, or
+/// such a link.
+void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side);
+
+/// How many motions repeat after one, two or four periods, or have more than 16 distinct rates.
+Json period_findings(std::span<const TrialNumbers> motions);
 
 /// The quantities that a grid can compute for each pair.
 enum class Quantity {

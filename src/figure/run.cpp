@@ -6,7 +6,6 @@
 #include "base/text.hpp"
 #include "base/threads.hpp"
 #include "figure/page.hpp"
-#include "figure/tiles.hpp"
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"

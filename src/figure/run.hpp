@@ -13,7 +13,7 @@ struct FigureOptions {
     int jobs = 0;                       // threads that compute; 0 = one per core
     std::optional<Shard> shard;         // compute only this part, into a file for a merge
     bool merge = false;                 // compute nothing: merge the shards
-    bool tiles = false;                 // for maps: a pyramid of tiles instead of picture and table (figure/tiles.hpp)
+    bool tiles = false;                 // for maps: a pyramid of tiles instead of picture and table (figure/page.hpp)
     Replacing replacing = {};
 };
 

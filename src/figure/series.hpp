@@ -32,8 +32,7 @@ struct SeriesKeys {
     void fields(KeyVisitor& visit);
 };
 
-// For one motion. `table` has read [series].
-std::shared_ptr<const Experiment> make_spectrum(FigureReader& reader, const TomlReader& table, SeriesKeys& keys);
+/// For the errors of one motion by each method. `table` has read [series].
 std::shared_ptr<const Experiment> make_drift(FigureReader& reader, const TomlReader& table, SeriesKeys& keys);
 
 }  // namespace doppel

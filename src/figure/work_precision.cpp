@@ -1,6 +1,8 @@
 #include "figure/work_precision.hpp"
 
+#include "analysis/tangent.hpp"
 #include "base/error.hpp"
+#include "figure/system_words.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
 
@@ -9,11 +11,227 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
+#include <string_view>
 
 namespace doppel {
 namespace {
+
+/// A standard problem: unit masses and lengths, released at rest.
+struct StandardProblem {
+    std::vector<int> angle_deg;
+    int seconds;
+};
+
+constexpr std::array<std::string_view, 4> standard_problem_names{"P1", "P2", "P3", "P4"};
+const std::array<StandardProblem, 4> all_standard{{{{90, 90}, 10}, {{30, 0}, 60}, {{150, 90}, 5}, {{120, 0, 0}, 5}}};
+
+std::string title_words(const std::string& name, const SideSpec& side, const Rational& duration) {
+    const auto seconds = fmt::format("{:.6g} s", duration.value());
+    if (!side.particles.empty()) return fmt::format("{} · {}", name, seconds);
+    return fmt::format("{} · {}{}, {}", name, slashed(side.angle_deg, "°"), side.is_mechanism() ? " and more" : "",
+                       seconds);
+}
+
+/// A chain or mechanism as a problem. Throws Error (exit 2) if the system is invalid.
+WorkProblem make_problem(const std::string& name, SideSpec spec, const Rational& duration) {
+    if (spec.physical.has_coulomb())
+        throw bad_input("{}: methods are compared on smooth motions; joints with joint_coulomb_N_m stick", name);
+    const bool is_mechanism = spec.is_mechanism();
+    spec.model = is_mechanism ? ModelChoice::mechanism : ModelChoice::automatic;
+    spec.integrator = "taylor";
+    spec.precision = Precision::in_double;
+    spec.stabilise = Stabilise::none;
+    const auto side = make_side(spec, {1, 1});
+    WorkProblem problem{.name = name, .title = title_words(name, spec, duration)};
+    problem.motion = {.chain = side.motion.chain,
+                      .physical = side.motion.physical,
+                      .model = is_mechanism ? Model::mechanism : Model::angles,
+                      .sample_interval = duration,
+                      .follows_turns = false};
+    if (is_mechanism || !side.motion.physical) problem.motion.parts = assembly_of(spec);
+    problem.conserves_energy = side.has_energy_error;
+    problem.energy_unit = side.energy_unit;
+    problem.size = side.reach;
+    const double gravity = std::abs(side.gravity);
+    if (side.motion.chain)
+        problem.natural_time = NaturalUnits(physical(side.motion.chain->cast<double>())).time;
+    else
+        problem.natural_time = gravity > 0 ? std::sqrt(side.reach / gravity) : 1;
+    return problem;
+}
+
+SideSpec side_of(const StandardProblem& standard) {
+    SideSpec side;
+    side.set_links(standard.angle_deg.size());  // unit masses and lengths, at rest
+    side.angle_deg.assign(standard.angle_deg.begin(), standard.angle_deg.end());
+    return side;
+}
+
+/// The system in the words of a subtitle.
+std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
+    constexpr std::string_view computed = "double precision, one core";
+    if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
+    const auto besides = side.is_mechanism()        ? ", and more"
+                         : problem.is_plain_chain() ? ""
+                                                    : " with " + physical_words(side.physical);
+    auto shown = side;
+    shown.mass_kg = problem.motion.chain->mass;  // links with mass have none of their own in the preset
+    return fmt::format("side a of {}{}: {}{}; {}", problem.name,
+                       is_zero(side.omega_deg_per_s) ? ", released at rest" : "", links_words(shown), besides,
+                       computed);
+}
+
+/// The text as TOML comments: data that the numbers depend on and no key contains.
+std::string commented(std::string_view text) {
+    std::string lines = "#";
+    for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+    return lines + "\n";
+}
+
+/// The systems of the standard problems: "double and triple pendulums".
+std::string pendulums_words(const std::vector<WorkProblem>& problems) {
+    const auto of = [&](std::size_t links) {
+        return std::ranges::count_if(problems,
+                                     [&](const auto& problem) { return problem.motion.chain->links() == links; });
+    };
+    const auto doubles = of(2), triples = of(3);
+    if (doubles > 0 && triples > 0) return "double and triple pendulums";
+    return doubles > 1 ? "double pendulums" : "a " + chain_words(doubles == 1 ? 2 : 3);
+}
+
+/// The standard problems of these names, listed in `table`'s key `problems`. Throws Error (exit 2).
+WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table) {
+    if (names.empty())
+        throw table.error("problems", "must name at least one of {}", fmt::join(standard_problem_names, ", "));
+    check_distinct(table, "problems", names);
+    WorkProblems problems;
+    for (const auto& name : names) {
+        const auto number = std::ranges::find(standard_problem_names, name) - standard_problem_names.begin();
+        const auto& standard = all_standard.at(static_cast<std::size_t>(number));
+        problems.all.push_back(make_problem(name, side_of(standard), {standard.seconds, 1}));
+    }
+    problems.subtitle =
+        fmt::format("{} released at rest, {}; double precision, one core", pendulums_words(problems.all),
+                    links_words(side_of(all_standard[0])));  // all links are alike
+    return problems;
+}
+
+/// The film's settings follow its name, so that two films of the same name can be distinguished.
+WorkProblems problem_of(Preset film) {
+    WorkProblems problems;
+    problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
+    problems.subtitle = problem_words(problems.all.back(), film.a);
+    film.b = film.a;
+    problems.comment = commented(resolved_sides(film));
+    return problems;
+}
+
+constexpr double rounding = 0x1p-53;
+
+/// Methods of a family, one below the other here, share a hue; the second of two is dashed.
+struct CurveStyle {
+    int hue = 0;
+    bool dashed = false;
+};
+CurveStyle style_of(std::string_view method) {
+    constexpr std::array<std::string_view, 8> first{"taylor", "dop853", "gauss6", "rattle6",
+                                                    "rk4",    "adams",  "euler",  "midpoint"},
+        second{"", "dopri5", "gauss4", "rattle", "", "", "semi-implicit-euler", ""};
+    for (const auto* names : {&first, &second})
+        if (const auto at = std::ranges::find(*names, method) - names->begin(); at < std::ssize(*names))
+            return {static_cast<int>(at), names == &second};
+    return {};
+}
+
+ErrorRange range_of(const WorkDiagram& diagram) {
+    constexpr double at_floor = 10;
+    return {std::isnan(diagram.floor) ? rounding : at_floor * diagram.floor, max_error_shown};
+}
+
+/// An error may be exactly 0, which a logarithmic axis cannot show.
+double shown(double error) {
+    return std::max(error, rounding / 4);
+}
+
+/// Adds the Pareto front of the studies.
+void add_front(std::span<const StepStudy> studies, const WorkDiagram& diagram, Curve& curve) {
+    for (const auto& point : pareto_front(studies, diagram.cost, range_of(diagram)))
+        add_point(curve, point.cost(diagram.cost), shown(point.error));
+}
+
+bool is_named(const StepStudy& study, const WorkDiagram& diagram) {
+    return std::ranges::count(diagram.named, study.solver.method) > 0;
+}
+
+/// In colour with its name, or pale.
+Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
+    const auto& method = study.solver.method;
+    Curve curve{.label = method};
+    if (is_named(study, diagram)) {
+        const auto style = style_of(method);
+        curve.hue = style.hue;
+        curve.dashed = style.dashed;
+    } else {
+        curve.quiet = true;
+        if (diagram.names == NamedCurves::best) curve.label = "", curve.background = Background::line;
+    }
+    add_front({&study, 1}, diagram, curve);
+    return curve;
+}
+
+/// The range of measured times of a curve, as pale bars.
+Curve spread_bars(const StepStudy& study, const WorkDiagram& diagram, int hue) {
+    Curve bars{.hue = hue, .background = Background::line};
+    constexpr double shows = 0.05, maximum = 0.9;
+    for (const auto& point : pareto_front({&study, 1}, Cost::time, range_of(diagram))) {
+        const double spread = std::min(point.spread, maximum);
+        if (spread < shows) continue;
+        add_point(bars, point.cpu_s * (1 - spread), shown(point.error));
+        add_point(bars, point.cpu_s * (1 + spread), shown(point.error));
+        add_point(bars, NAN, NAN);
+    }
+    return bars;
+}
+
+/// The result of the published study.
+void add_kao_point(const WorkDiagram& diagram, Plot& plot) {
+    for (const auto& study : diagram.studies) {
+        if (!study.solver.is_kao_study()) continue;
+        for (const auto& outcome : study.outcomes)
+            if (outcome.is_kao_study())
+                plot.curves.push_back({.label = "the study: Euler, 30 kHz",
+                                       .x = {outcome.cost(diagram.cost)},
+                                       .y = {outcome.error},
+                                       .mark = Mark::points,
+                                       .quiet = true});
+    }
+}
+
+/// The limits of the axes: from the largest useful error down to the error floors, if errors come near them.
+void fit(const WorkDiagram& diagram, Plot& plot) {
+    constexpr double of_use = 0.03, near = 100;
+    double minimum = max_error_shown, cheapest = std::numeric_limits<double>::infinity();
+    for (const auto& curve : plot.curves)
+        for (std::size_t i = 0; i < curve.x.size(); ++i) {
+            minimum = std::fmin(minimum, curve.y[i]);
+            if (curve.y[i] < of_use) cheapest = std::fmin(cheapest, curve.x[i]);
+        }
+    if (std::isfinite(cheapest)) plot.x.low = 0.5 * cheapest;
+    plot.y.low = minimum / 4;
+    plot.y.high = 20 * max_error_shown;  // leaves space for the study's label
+    if (!(minimum < near * diagram.floor)) return;
+    const double grown = diagram.floor / rounding;
+    const auto times = grown < 1e5 ? fmt::format("{:.0f}", grown) : scientific(grown);
+    plot.rules.push_back({.at = diagram.floor, .label = "round-off × " + times});
+    plot.y.low = std::fmin(minimum, diagram.floor) / 20;
+    constexpr double in_sight = 1e-12;
+    if (diagram.floor > in_sight) return;
+    plot.rules.push_back({.at = rounding, .label = "rounding"});
+    plot.y.low = rounding / 20;
+}
 
 /// The film preset of that name or path, given by the table's key `scene`. Throws Error (exit 2).
 Preset film_named(const std::string& name, const TomlReader& table) {
@@ -40,7 +258,7 @@ class WorkPrecision final : public Experiment, public WorkComparison {
 public:
     static constexpr std::string_view table_key = "work_precision";
     WorkPrecision()
-        : problem_names_(standard_problem_names().begin(), standard_problem_names().end()),
+        : problem_names_(standard_problem_names.begin(), standard_problem_names.end()),
           model_names_(names_of<Model>.begin(), names_of<Model>.end()),
           methods_(names_of_methods().begin(), names_of_methods().end()) {}
     explicit WorkPrecision(FigureReader& reader) : WorkPrecision() {
@@ -74,8 +292,7 @@ public:
         const Condition standard{!scene_, "cannot be combined with \"scene\", which is a problem of its own"};
         const Condition of_scene{scene_.has_value(),
                                  "is only for the motion of a \"scene\"; the standard problems have their own"};
-        visit({"problems", "the standard problems", "", {}, "", standard, "", standard_problem_names()},
-              problem_names_);
+        visit({"problems", "the standard problems", "", {}, "", standard, "", standard_problem_names}, problem_names_);
         if (auto* writer = dynamic_cast<TomlWriter*>(&visit); writer && scene_)  // in quotes, whole or not
             writer->add("duration_s", toml_text(film_.duration_s.text()));
         else
@@ -249,6 +466,28 @@ private:
 };
 
 }  // namespace
+
+Plot work_plot(const WorkDiagram& diagram) {
+    Plot plot;
+    plot.title = diagram.problem.title;
+    plot.needs_no_legend = true;
+    plot.x = {.label = diagram.cost == Cost::time ? "CPU time, s" : "evaluations of the right-hand side",
+              .logarithmic = true};
+    plot.y = {.label = diagram.problem.has_angles() ? "angle error at the end, rad"
+                                                    : "error of place at the end, of the size",
+              .logarithmic = true};
+    add_front(diagram.front, diagram, plot.curves.emplace_back(Curve{.background = Background::band}));
+    add_kao_point(diagram, plot);
+    for (const bool named : {false, true})
+        for (const auto* study : best_models(diagram.studies, diagram.cost)) {
+            if (is_named(*study, diagram) != named) continue;
+            plot.curves.push_back(curve_of(*study, diagram));
+            if (named && diagram.cost == Cost::time)
+                plot.curves.push_back(spread_bars(*study, diagram, plot.curves.back().hue));
+        }
+    fit(diagram, plot);
+    return plot;
+}
 
 std::string timing_caption(const WorkComparison::Studies& studies, int repeats) {
     if (repeats == 1) return "CPU time of one thread, warm, measured once.";

@@ -21,10 +21,6 @@ struct WorkProblems {
     std::string subtitle;  // the system
     std::string comment;   // other data that the numbers depend on, as TOML comments
 };
-/// The standard problems of these names, listed in `table`'s key `problems`. Throws Error (exit 2).
-WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table);
-std::span<const std::string_view> standard_problem_names();
-WorkProblems problem_of(Preset film);
 
 /// What a work-precision figure compares, and its results: the interface for a chart that adds methods of other
 /// libraries (tests/bench/peers/library_chart.cpp).

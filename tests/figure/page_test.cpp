@@ -1,7 +1,6 @@
 #include "figure/page.hpp"
 
 #include "figure/support.hpp"
-#include "figure/tiles.hpp"
 #include "output/packed.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-#include "figure/tiles.hpp"
-
+#include "figure/page.hpp"
 #include "figure/support.hpp"
 #include "image/color.hpp"
 #include "output/packed.hpp"
