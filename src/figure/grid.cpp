@@ -53,27 +53,24 @@ void Grid::fields(KeyVisitor& visit) {
 
 Grid::Grid(FigureReader& reader) : Grid() {
     pair_ = reader.pair();
-    const auto table = reader.settings(*this);
+    auto table = reader.settings(*this);
     if (reader.only_keys) return;
     settings_ = resolved_pair(pair_) + settings_text(*this);
-    find_axes(reader);
+    x_.are_cells = y_.are_cells = is_map();
+    for (auto* axis : {&x_, &y_, &color_, &panel_}) axis->find(reader, table.inner(axis->role), pair_);
     check(table);
     for (std::size_t p = 0; p < panel_.count; ++p)
         for (std::size_t c = 0; c < color_.count; ++c) add_group(reader, table, p, c);
     for (const auto& measurement : measurements()) cell_numbers_ += measurement.numbers();
-    check_range(table);
+    if (range_ && words().logarithmic && !(range_->low > 0))
+        throw table.error("range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]", name_of(quantity_),
+                          range_->low, range_->high);
     if (is_map()) make_map();
     std::size_t first = 0;
     for (auto& group : groups_) group.first = std::exchange(first, first + trials_of(group));
     make_subtitle();
     name_columns();
     unit_ = "pairs";
-}
-
-void Grid::find_axes(FigureReader& reader) {
-    x_.are_cells = y_.are_cells = is_map();
-    auto table = reader.document.table(reader.top, table_key);
-    for (auto* axis : {&x_, &y_, &color_, &panel_}) axis->find(reader, table.inner(axis->role), pair_);
 }
 
 /// Checks the axes together with the other keys.
@@ -164,12 +161,6 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     const auto spec = group.measurements.front().flips_in_lanes();
     if (options_.flip_tolerance && !spec)
         throw table.error("flip_tolerance", "is for flips of two ideal links; other flips use the integrator");
-}
-
-void Grid::check_range(const TomlReader& table) const {
-    if (range_ && words().logarithmic && !(range_->low > 0))
-        throw table.error("range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]", name_of(quantity_),
-                          range_->low, range_->high);
 }
 
 void Grid::make_map() {

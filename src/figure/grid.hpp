@@ -51,9 +51,7 @@ private:
     };
 
     // Reading.
-    void find_axes(FigureReader& reader);
     void check(const TomlReader& table) const;
-    void check_range(const TomlReader& table) const;
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();
     void make_subtitle();

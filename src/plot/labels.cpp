@@ -193,6 +193,14 @@ struct Found {
     float cost;
 };
 
+/// The area that the ink of a line of text may cover, with the tallest accents and deepest descenders of the font.
+Area text_area(const Label& label) {
+    const float width = text_width(label.text, label.size, label.weight);
+    const float before = label.align == Align::left ? 0 : label.align == Align::center ? width / 2 : width;
+    const float left = label.anchor.x - before;
+    return {left, label.anchor.y - 0.8f * label.size, left + width, label.anchor.y + 0.25f * label.size};
+}
+
 /// Draws a label; over a map, on a dark box.
 void write(const Label& label, const Panel& panel) {
     const auto [left, top, right, bottom] = text_area(label).grown(0.3f * label.size, 0.1f * label.size);
@@ -349,13 +357,6 @@ PlacedLabels place_labels(const std::vector<DrawnCurve>& drawn, float size, bool
 }
 
 }  // namespace
-
-Area text_area(const Label& label) {
-    const float width = text_width(label.text, label.size, label.weight);
-    const float before = label.align == Align::left ? 0 : label.align == Align::center ? width / 2 : width;
-    const float left = label.anchor.x - before;
-    return {left, label.anchor.y - 0.8f * label.size, left + width, label.anchor.y + 0.25f * label.size};
-}
 
 std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width) {
     std::vector<std::string> lines;

@@ -45,9 +45,6 @@ void label_rules(const Panel& panel, LabelPlacer& placer);
 LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& given, const LabelPlacer& placer,
                         const Panel& panel);
 
-/// The area that the ink of a line of text may cover, with the tallest accents and deepest descenders of the font.
-Area text_area(const Label& label);
-
 /// `text` in lines no wider than `width` px. Lines break at spaces and '\n', but not within a number, or between a
 /// number and its unit. A word that is wider than a line is broken anywhere.
 std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width);
