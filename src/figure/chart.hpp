@@ -1,7 +1,7 @@
 #pragma once
 
 #include "plot/plot.hpp"
-#include "scene/preset_fields.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <optional>
 #include <string>

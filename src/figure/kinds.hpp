@@ -3,8 +3,8 @@
 #include "figure/experiment.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "scene/preset_fields.hpp"
 #include "scene/scene.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <memory>
 #include <span>

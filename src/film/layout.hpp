@@ -7,7 +7,6 @@
 #include "render/typeface.hpp"
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
-#include "scene/video_spec.hpp"
 
 #include <cstddef>
 #include <functional>

@@ -1,5 +1,5 @@
-#include "scene/preset_fields.hpp"
 #include "scene/scene.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

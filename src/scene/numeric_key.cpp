@@ -1,8 +1,8 @@
 #include "scene/numeric_key.hpp"
 
 #include "scene/captions.hpp"
-#include "scene/preset_fields.hpp"
 #include "scene/side_keys.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>
 

@@ -1,7 +1,7 @@
 #include "base/text.hpp"
 #include "integrate/methods.hpp"
-#include "scene/preset_fields.hpp"
 #include "scene/resolved.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>
 
@@ -86,27 +86,6 @@ void check_layout(const Preset& preset, const TomlReader& video) {
         a.allowed_error() != b.allowed_error() || a.accuracy != b.accuracy || a.precision != b.precision ||
         a.stabilise != b.stabilise)
         throw video.error("layout", "\"{}\" needs sides that differ only in numbers, not in model or method", name);
-}
-
-/// Samples are compared particle by particle, so that a particle of one side must exist on the other.
-void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& table) {
-    std::vector<std::string_view> names, others;
-    for (const auto& particle : side.particles) names.push_back(particle.name);
-    for (const auto& particle : other.particles) others.push_back(particle.name);
-    if (names.empty() || names == others) return;
-    if (others.empty())
-        throw table.error("particle", "must be on both sides, so that they can be compared; the other is a chain");
-    const auto tables = table.read_tables("particle");
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
-        std::string name;
-        entry({.key = "name"}, name);
-        if (std::find(others.begin(), others.end(), name) != others.end()) continue;
-        throw entry.error("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
-                          did_you_mean("; ", name, others));
-    }
-    if (names.size() == others.size())
-        throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
 }
 
 /// Reports what the format does not allow; the frame rate is checked once it is known.
@@ -202,30 +181,6 @@ std::string read_kind(TomlReader& scene) {
     std::string kind(pair_kind);
     scene(kind_field, kind);
     return kind;
-}
-
-void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
-    for (auto* level : levels) {
-        auto system = document.table(*level, "system");
-        read_side(system, preset.a);
-    }
-    preset.b = preset.a;
-    for (auto* level : levels) {
-        auto a = document.table(*level, "a"), b = document.table(*level, "b");
-        read_side(a, preset.a, is_film);
-        read_side(b, preset.b, is_film);
-        load_track(document, a, preset.a);
-        load_track(document, b, preset.b);
-        b.check_together([&] {
-            if (!is_film && preset.a.links() != preset.b.links())
-                throw b.error("links",
-                              "must be that of the other side, so that the two can be compared; they are {} and {}",
-                              preset.a.links(), preset.b.links());
-            if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) return;
-            check_particles(preset.a, preset.b, a);
-            check_particles(preset.b, preset.a, b);
-        });
-    }
 }
 
 void check_clock(const Preset& preset, const TomlReader& scene) {

@@ -2,7 +2,7 @@
 
 #include "output/sink.hpp"
 #include "output/transaction.hpp"
-#include "scene/member.hpp"
+#include "scene/preset_fields.hpp"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>

@@ -25,7 +25,7 @@ struct Moment {
     double share = 0;
 
     friend auto operator<=>(const Moment&,
-                            const Moment&) = default;  // NOLINT(modernize-use-nullptr): as in key_errors.hpp
+                            const Moment&) = default;  // NOLINT(modernize-use-nullptr): as in toml_reader.hpp
 };
 /// The moment so many samples after the start, rounded to a sample if it is within 1e-6 of one.
 Moment moment_at(double samples);
@@ -158,10 +158,6 @@ struct Scene {
 /// Throws Error: exit 2 if a system is invalid, the sides differ by less than their precision can represent, or an
 /// accuracy cannot be reached; exit 130 soon after `stop` is set (choosing by accuracy requires trial runs).
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
-
-/// Throws Error (exit 2) if the difference of the sides is lost in their precision: a number of any key, the whole
-/// system, or the attraction of a droplet compared with gravity.
-void check_difference(const Scene& scene);
 
 /// Both sides and their difference at a sample, or between two.
 struct PairState {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/member.hpp"
+#include "scene/preset_fields.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +11,8 @@
 #include <vector>
 
 namespace doppel {
+
+struct Scene;
 
 struct SideKey {
     std::string place;               // its entry, "spring 1", or "pivot"; empty: the side itself
@@ -37,6 +39,10 @@ struct KeyDifference {
 
 /// Compares all keys that decide the motion of a side: system, forces, integration.
 std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b);
+
+/// Throws Error (exit 2) if the difference of the sides is lost in their precision: a number of any key, the whole
+/// system, or the attraction of a droplet compared with gravity.
+void check_difference(const Scene& scene);
 
 /// The numbers of a side's member, if it has such a type: none for an optional one that is not given, unless `is_put`
 /// creates it.

@@ -1,10 +1,13 @@
-#include "scene/preset_fields.hpp"
+#include "embedded/scene.hpp"
+#include "output/written.hpp"
 #include "scene/scene.hpp"
+#include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -179,6 +182,55 @@ void check_choices(TomlReader& table, const SideSpec& side) {
                           side.integrator);
 }
 
+/// Reads the file relative to the preset, to the current folder, or the built-in one.
+void read_file(TrackSpec& spec, const std::string& preset_path, bool from_command_line) {
+    const auto path = path_beside(preset_path, spec.file, from_command_line);
+    const auto built_in = std::find_if(scene_files().begin(), scene_files().end(),
+                                       [&](const EmbeddedFile& file) { return file.name == spec.file; });
+    std::error_code ignored;
+    const bool is_built_in = built_in != scene_files().end() && !std::filesystem::exists(path, ignored);
+    if (!is_built_in) spec.file = path;
+    const auto text = is_built_in ? std::string(built_in->contents) : text_of_track(path);
+    spec.sha256 = sha256_of_text(text);
+    spec.track = std::make_shared<const Track>(tracks_of_texts({spec.file}, {text}));
+}
+
+/// Reads the file of a side's track, if it has one. Throws Error or records it, as the reader of its table does.
+void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side) {
+    if (side.track.is_none()) return;
+    auto table = side_table.inner("track");
+    const bool is_read = table.guarded("file", [&] {
+        if (!side.particles.empty() || side.links() != 2)
+            throw bad_input("a track needs two links; the side has {}",
+                            side.particles.empty()
+                                ? fmt::format("{} link{}", side.links(), side.links() == 1 ? "" : "s")
+                                : "particles");
+        read_file(side.track, document.path, table.from_command_line("file"));
+    });
+    if (is_read) table.guarded("start_s", [&] { replay_of(side.track); });
+}
+
+/// Samples are compared particle by particle, so that a particle of one side must exist on the other.
+void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& table) {
+    std::vector<std::string_view> names, others;
+    for (const auto& particle : side.particles) names.push_back(particle.name);
+    for (const auto& particle : other.particles) others.push_back(particle.name);
+    if (names.empty() || names == others) return;
+    if (others.empty())
+        throw table.error("particle", "must be on both sides, so that they can be compared; the other is a chain");
+    const auto tables = table.read_tables("particle");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
+        std::string name;
+        entry({.key = "name"}, name);
+        if (std::find(others.begin(), others.end(), name) != others.end()) continue;
+        throw entry.error("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
+                          did_you_mean("; ", name, others));
+    }
+    if (names.size() == others.size())
+        throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
+}
+
 }  // namespace
 
 std::vector<std::string_view> models_of(const MethodEntry& method) {
@@ -241,6 +293,30 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text) {
     precision_fields(table, side);
     table.finish();
     table.check_together([&] { check_choices(table, side); });
+}
+
+void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
+    for (auto* level : levels) {
+        auto system = document.table(*level, "system");
+        read_side(system, preset.a);
+    }
+    preset.b = preset.a;
+    for (auto* level : levels) {
+        auto a = document.table(*level, "a"), b = document.table(*level, "b");
+        read_side(a, preset.a, is_film);
+        read_side(b, preset.b, is_film);
+        load_track(document, a, preset.a);
+        load_track(document, b, preset.b);
+        b.check_together([&] {
+            if (!is_film && preset.a.links() != preset.b.links())
+                throw b.error("links",
+                              "must be that of the other side, so that the two can be compared; they are {} and {}",
+                              preset.a.links(), preset.b.links());
+            if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) return;
+            check_particles(preset.a, preset.b, a);
+            check_particles(preset.b, preset.a, b);
+        });
+    }
 }
 
 }  // namespace doppel

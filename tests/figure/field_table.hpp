@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/member.hpp"
+#include "scene/preset_fields.hpp"
 
 #include <cstddef>
 #include <string>
