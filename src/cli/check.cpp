@@ -1,8 +1,6 @@
 #include "base/machine.hpp"
 #include "base/text.hpp"
 #include "cli/options.hpp"
-#include "cli/program.hpp"
-#include "cli/terminal.hpp"
 #include "figure/computation.hpp"
 #include "film/estimate.hpp"
 #include "film/film.hpp"

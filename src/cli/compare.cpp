@@ -3,8 +3,6 @@
 #include "base/read_file.hpp"
 #include "cli/comparison.hpp"
 #include "cli/options.hpp"
-#include "cli/program.hpp"
-#include "cli/terminal.hpp"
 #include "figure/run.hpp"
 #include "film/film.hpp"
 #include "output/page.hpp"

@@ -1,7 +1,5 @@
 #include "base/error.hpp"
 #include "cli/options.hpp"
-#include "cli/program.hpp"
-#include "cli/terminal.hpp"
 #include "fit/result.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,6 @@
 #include "cli/options.hpp"
 
 #include "base/error.hpp"
-#include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
 #include <unistd.h>

@@ -50,11 +50,6 @@ CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string
 CLI::Option* add_set_option(CLI::App& command, PresetOptions& options);
 /// PRESET… and --set.
 void add_preset_options(CLI::App& command, PresetOptions& options);
-/// The overrides that --beside FILE puts on top of a preset and of the overrides `given`; these are included in the
-/// result. Side a shows the track. Side b starts from a fit to the track's first two seconds, and runs as long as the
-/// track. Throws Error as read_preset() does.
-std::vector<Override> beside_overrides(const PresetText& text, const std::vector<Override>& given,
-                                       const std::string& track, const std::atomic<bool>& stop);
 /// Refuses "-" for an option that names a folder or a file, as it usually means standard output.
 CLI::Option* refuse_dash(CLI::Option* option);
 /// --out, --list-outputs, --progress and --force.
@@ -138,15 +133,26 @@ void print_json(const Json& json);
 
 std::vector<std::filesystem::path> preset_files_here();
 
-/// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ of the current folder, or the
-/// installed one; empty if there is neither.
-std::string schema_line(const std::filesystem::path& folder = ".");
-
 /// The error in the schema line of a preset's file: it names a missing file, or not this program's schema.
 std::optional<std::string> schema_line_error(const PresetText& preset);
 
 /// The output of "doppel complete WORD…" for the scripts of "doppel completion": completions of the last word, one per
 /// line, each with a tab and a description. The words are without quotes; the last may be incomplete.
 std::string completions(CLI::App& app, const std::vector<std::string>& words);
+
+// Each adds a command: its options, its help, and its action.
+void add_render(CLI::App& app);
+void add_simulate(CLI::App& app);
+void add_still(CLI::App& app);
+void add_figure(CLI::App& app);
+void add_fit(CLI::App& app);
+void add_compare(CLI::App& app, int& exit_code);  // sets the exit code 1 if pictures differ
+void add_list(CLI::App& app);
+void add_show(CLI::App& app);
+void add_check(CLI::App& app);
+void add_certify(CLI::App& app);
+void add_schema(CLI::App& app);
+void add_init(CLI::App& app);
+void add_completion(CLI::App& app);
 
 }  // namespace doppel

@@ -4,7 +4,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/options.hpp"
-#include "cli/terminal.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>

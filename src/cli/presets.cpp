@@ -1,9 +1,10 @@
+#include "base/error.hpp"
 #include "base/read_file.hpp"
 #include "cli/options.hpp"
-#include "cli/program.hpp"
-#include "cli/terminal.hpp"
 #include "embedded/cli.hpp"
+#include "figure/kinds.hpp"
 #include "figure/preset.hpp"
+#include "output/files.hpp"
 #include "scene/preset_fields.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
@@ -18,9 +19,11 @@
 #include <map>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace doppel {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,6 +117,47 @@ bool is_file(const fs::path& path) {
     return fs::is_regular_file(path, ignored);
 }
 
+/// The first line of a preset in `folder`, "#:schema PATH\n": the schema in presets/ of the current folder, or the
+/// installed one; empty if there is neither.
+std::string schema_line(const fs::path& folder = ".") {
+    std::error_code ignored;
+    if (const fs::path here = "presets/preset.schema.json"; is_file(here)) {
+        const auto way = fs::relative(here, folder, ignored);
+        if (!ignored) return fmt::format("{}{}{}\n", directive, *way.begin() == ".." ? "" : "./", way.string());
+    }
+    const auto program = fs::read_symlink("/proc/self/exe", ignored);
+    const auto installed = (program.parent_path() / "../share/doppel/presets/preset.schema.json").lexically_normal();
+    return is_file(installed) ? fmt::format("{}{}{}\n", directive, address_of_file, installed.string()) : "";
+}
+
+/// The preset of that kind with all keys; rarely used ones are comments. Made by tests/figure/starting_presets.cpp.
+std::string starting_preset(const fs::path& file, std::string_view kind) {
+    const auto text = embedded_file(cli_files(), fmt::format("{}.toml.in", kind));
+    return schema_line(file.parent_path().empty() ? "." : file.parent_path()) +
+           fmt::format(fmt::runtime(text), fmt::arg("file", file.string()),
+                       fmt::arg("title", toml_text(file.stem().string())));
+}
+
+void write_preset(const fs::path& path, std::string_view kind) {
+    if (path.extension() != ".toml" || path.stem().empty())
+        throw bad_input("{}: the name of a preset's file ends in .toml", path.string());
+    const PresetText preset{path.stem().string(), path.string(), starting_preset(path, kind), path.string()};
+    if (kind == pair_kind)
+        read_preset(preset);  // the title must be drawable
+    else
+        read_figure(preset);
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(path, ignored)))
+        throw bad_input("{}: exists already; give a new name", path.string());
+    ignore_sigpipe();
+    const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
+    const SingleFile file(path, "");
+    write_file(file.place(), preset.text);
+    file.publish();
+    report_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
+}
+
 }  // namespace
 
 std::vector<fs::path> preset_files_here() {
@@ -148,17 +192,6 @@ void add_list(CLI::App& app) {
         if (*as_json) return list_as_json();
         list_presets();
     });
-}
-
-std::string schema_line(const fs::path& folder) {
-    std::error_code ignored;
-    if (const fs::path here = "presets/preset.schema.json"; is_file(here)) {
-        const auto way = fs::relative(here, folder, ignored);
-        if (!ignored) return fmt::format("{}{}{}\n", directive, *way.begin() == ".." ? "" : "./", way.string());
-    }
-    const auto program = fs::read_symlink("/proc/self/exe", ignored);
-    const auto installed = (program.parent_path() / "../share/doppel/presets/preset.schema.json").lexically_normal();
-    return is_file(installed) ? fmt::format("{}{}{}\n", directive, address_of_file, installed.string()) : "";
 }
 
 void add_show(CLI::App& app) {
@@ -203,6 +236,26 @@ void add_schema(CLI::App& app) {
         "Example:\n"
         "  doppel schema > preset.schema.json    # beside presets that begin #:schema ./preset.schema.json");
     command.callback([] { write_out(preset_schema()); });
+}
+
+void add_init(CLI::App& app) {
+    auto name = std::make_shared<std::string>();
+    auto kind = std::make_shared<std::string>(pair_kind);
+    auto& command = *app.add_subcommand("init", "Writes a preset with every key, its help and its default");
+    command.footer(
+        "Examples:\n"
+        "  doppel init mine.toml && doppel render mine.toml\n"
+        "  doppel init --figure section sections.toml && doppel figure sections.toml");
+    command.add_option("FILE", *name, "The new file, which ends in .toml; default for a figure: KIND.toml");
+    std::vector<std::string> kinds;
+    for (const auto& figure : figure_kinds()) kinds.emplace_back(figure.name);
+    auto* figure =
+        command.add_option("--figure", *kind, "A figure of this kind, and not a film")->check(CLI::IsMember(kinds));
+    command.callback([name, kind, figure] {
+        if (name->empty() && figure->count() == 0)
+            throw bad_input("init needs the name of the new file: doppel init FILE.toml");
+        write_preset(name->empty() ? *kind + ".toml" : *name, *kind);
+    });
 }
 
 }  // namespace doppel
