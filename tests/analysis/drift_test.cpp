@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace doppel {
-namespace drift_test {
+namespace doppel::drift_test {
 
 TEST(Growth, IsClassifiedByItsExponent) {
     std::vector<double> times, errors;
@@ -33,5 +32,4 @@ TEST(Growth, DoublesUntilItFails) {
     EXPECT_NEAR(growth.doubling_s, 5, 5e-15);  // measured 8.9e-16
 }
 
-}  // namespace drift_test
-}  // namespace doppel
+}  // namespace doppel::drift_test

@@ -11,8 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace doppel {
-namespace enclosure_test {
+namespace doppel::enclosure_test {
 
 const std::atomic<bool> never = false;
 const auto unwatched = [](long) {};
@@ -35,7 +34,8 @@ std::array<Ball<Wide>*, 4> start_of(EnclosedSystem& p) {
     return {&p.chain.angle[0], &p.chain.angle[1], &p.chain.rate[0], &p.chain.rate[1]};
 }
 
-MotionSpec motion_of(const EnclosedSystem& p) {
+/// The motion from a start moved by `shift`.
+MotionSpec motion_of(const EnclosedSystem& p, const std::array<double, 4>& shift = {}) {
     const auto quads = [](const std::vector<Ball<Wide>>& numbers) {
         std::vector<Quad> all;
         for (const auto& x : numbers) all.push_back(Quad(x.center));
@@ -44,6 +44,10 @@ MotionSpec motion_of(const EnclosedSystem& p) {
     MotionSpec spec;
     spec.chain = Pendulum<Quad>{quads(p.chain.mass), quads(p.chain.length), quads(p.chain.angle), quads(p.chain.rate),
                                 Quad(p.chain.gravity.center)};
+    for (std::size_t i = 0; i < 2; ++i) {
+        spec.chain->angle[i] += shift[i];
+        spec.chain->rate[i] += shift[i + 2];
+    }
     spec.method = "taylor";
     spec.precision = Precision::in_quad;
     spec.tolerance = parse_quad("1e-30");
@@ -58,13 +62,8 @@ Numbers numbers_of(const Motion& motion) {
     return {bobs[0].theta, bobs[1].theta, bobs[0].omega, bobs[1].omega};
 }
 
-/// The states of a motion in quad by the reference's method at samples 0, 1 … from a start moved by `shift`.
-std::vector<Numbers> reference(const EnclosedSystem& p, long samples, const std::array<double, 4>& shift = {}) {
-    auto spec = motion_of(p);
-    for (std::size_t i = 0; i < 2; ++i) {
-        spec.chain->angle[i] += shift[i];
-        spec.chain->rate[i] += shift[i + 2];
-    }
+/// The states of a motion in quad at samples 0, 1 ….
+std::vector<Numbers> states_of(const MotionSpec& spec, long samples) {
     const auto motion = make_motion(spec);
     std::vector<Numbers> all{numbers_of(*motion)};
     for (long n = 0; n < samples; ++n) {
@@ -72,6 +71,11 @@ std::vector<Numbers> reference(const EnclosedSystem& p, long samples, const std:
         all.push_back(numbers_of(*motion));
     }
     return all;
+}
+
+/// The same by the reference's method.
+std::vector<Numbers> reference(const EnclosedSystem& p, long samples, const std::array<double, 4>& shift = {}) {
+    return states_of(motion_of(p, shift), samples);
 }
 
 /// Whether every state is in its set; the reference's own error is at most 1e-26.
@@ -108,12 +112,19 @@ std::array<double, 4> corner(unsigned index, double radius) {
     return shift;
 }
 
+/// y = 1/(1 − t), expanded to t = 1/4.
+template <class B>
+auto hyperbola(BallSeries<B>& series) {
+    const auto y = series.state(B(1));
+    series.set_rate(y, y * y);
+    series.expand(B(1) / B(4));
+    return y;
+}
+
 TEST(BallSeries, ContainsAClosedFormAndRefusesWhatItCannotBound) {
     using B = Ball<Quad>;
     BallSeries<B> series(20);
-    const auto y = series.state(B(1));
-    series.set_rate(y, y * y);  // y = 1/(1 − t)
-    series.expand(B(1) / B(4));
+    const auto y = hyperbola(series);
     ASSERT_TRUE(series.find_remainders());
     const auto error = [&](bool has_remainder) {
         const B end = series.value(y.node(), B(1), has_remainder);
@@ -133,9 +144,7 @@ TEST(BallSeries, ContainsAClosedFormAndRefusesWhatItCannotBound) {
 TEST(BallSeries, AtOrderOneEveryTermOfTheRemainderIsNeeded) {
     using B = Ball<double>;
     BallSeries<B> series(1);
-    const auto y = series.state(B(1));
-    series.set_rate(y, y * y);  // y = 1/(1 − t)
-    series.expand(B(1) / B(4));
+    const auto y = hyperbola(series);
     ASSERT_TRUE(series.find_remainders());
     const B end = series.value(y.node(), B(1));
     EXPECT_LE(std::abs(end.center - 4.0 / 3), end.radius);  // 0.0833 and 0.097; 0.082 without a product
@@ -175,15 +184,9 @@ TEST(Enclosure, ContainsAThousandRandomStartsOfAnInterval) {
     for (int trial = 0; trial < 1000; ++trial) {
         auto shift = trial < 16 ? corner(static_cast<unsigned>(trial), radius) : std::array<double, 4>{};
         if (trial >= 16) std::generate(shift.begin(), shift.end(), [&] { return within(random); });
-        auto p = motion_of(uneven);
+        auto p = motion_of(uneven, shift);
         p.sample_interval = {samples, 120};
-        for (std::size_t i = 0; i < 2; ++i) {
-            p.chain->angle[i] += shift[i];
-            p.chain->rate[i] += shift[i + 2];
-        }
-        const auto motion = make_motion(p);
-        motion->advance(never);
-        const auto end = numbers_of(*motion);
+        const auto end = states_of(p, 1).back();
         for (std::size_t i = 0; i < 4; ++i)
             if (std::abs(static_cast<double>(Quad(Quad(sets.back()[i].center) - end[i]))) > sets.back()[i].radius)
                 ++outside;
@@ -288,12 +291,7 @@ TEST(Enclosure, ADropletAttracts) {
     spec.parts = parts_of(*spec.chain);
     spec.parts->forces.push_back(Droplet<Quad>{{parse_quad("2.5"), parse_quad("0.5")}, 3, 1});
     spec.parts->forces.push_back(Droplet<Quad>{{1609, 0}, parse_quad("0.000034"), parse_quad("6.674e-11")});
-    const auto motion = make_motion(spec);
-    std::vector<Numbers> known{numbers_of(*motion)};
-    for (int n = 0; n < 120; ++n) {
-        motion->advance(never);
-        known.push_back(numbers_of(*motion));
-    }
+    const auto known = states_of(spec, 120);
     EXPECT_TRUE(all_inside(enclosed<double>(p, 120), known));
     EXPECT_FALSE(all_inside(enclosed<double>(uneven, 120), known));
     const auto quad = enclosed<Quad>(p, 120);
@@ -338,5 +336,4 @@ TEST(Enclosure, EveryPartThatIsCountedIsNeeded) {
     EXPECT_FALSE(exact_start_inside({}, usual, 1 + 1e-9));
 }
 
-}  // namespace enclosure_test
-}  // namespace doppel
+}  // namespace doppel::enclosure_test

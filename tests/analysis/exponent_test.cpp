@@ -1,11 +1,9 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/physical_releases.hpp"
 #include "analysis/spectrum.hpp"
 #include "analysis/tangent.hpp"
-#include "base/error.hpp"
-#include "integrate/pendulums.hpp"
-#include "physics/physical_pendulums.hpp"
+#include "errors.hpp"
+#include "physics/pendulums.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +12,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace doppel {
-namespace exponent_test {
+namespace doppel::exponent_test {
 
 const std::atomic<bool> never = false;
 
@@ -247,14 +244,7 @@ TEST(NaturalUnits, CountTheDriveAsGravity) {
 }
 
 TEST(Exponent, RefusesWhatMakesNoSense) {
-    const auto code = [](const auto& run) {
-        try {
-            run();
-        } catch (const Error& error) {
-            return error.code();
-        }
-        return ExitCode::done;
-    };
+    const auto code = [](const auto& run) { return test::thrown_by(run).first; };
     auto sticks = rods(from_rest({90, 0}));
     sticks.friction.coulomb = {0.1, 0};
     const ExponentSpec brief{.duration_s = 2};
@@ -269,5 +259,4 @@ TEST(Exponent, RefusesWhatMakesNoSense) {
     EXPECT_EQ(code([&] { lyapunov_spectrum(bodies<double>(2), {}, stop); }), ExitCode::interrupted);
 }
 
-}  // namespace exponent_test
-}  // namespace doppel
+}  // namespace doppel::exponent_test

@@ -20,8 +20,7 @@
 // every C library. Runs are chaotic, so one different bit soon changes all of them. tests/check-arm64 runs these on
 // another processor. A change of the order of sums changes the bits: tests/update-kept-bytes stores the new ones.
 
-namespace doppel {
-namespace kept_bytes_test {
+namespace doppel::kept_bytes_test {
 
 const std::string kept_file = std::string(DOPPEL_SOURCE_DIR) + "/tests/analysis/kept_bytes.txt";
 const std::atomic<bool> never = false;
@@ -128,5 +127,4 @@ TEST(KeptBytes, OfChaoticRunsAreTheSameEverywhere) {
     for (const auto& [name, hash] : found) EXPECT_EQ(hash, kept[name]) << name;
 }
 
-}  // namespace kept_bytes_test
-}  // namespace doppel
+}  // namespace doppel::kept_bytes_test

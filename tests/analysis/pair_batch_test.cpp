@@ -1,17 +1,43 @@
 #include "analysis/pair_batch.hpp"
 
 #include "analysis/difference.hpp"
+#include "analysis/watched_motion.hpp"
 #include "base/error.hpp"
 #include "integrate/support.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 
-namespace doppel {
-namespace twins_test {
+namespace doppel::twins_test {
+
+TEST(Distance, CountsMassesPlacesAndVelocities) {
+    Bobs<double> a(2), b(2);
+    EXPECT_EQ(state_space_distance(a, b), 0);
+    b[0].mass = 2;
+    b[1].x = 3;
+    b[0].vy = 6;
+    EXPECT_DOUBLE_EQ(state_space_distance(a, b), 7);
+    b[0].theta = b[1].omega = 100;  // not part of the distance: x, y and their rates contain the same information
+    EXPECT_DOUBLE_EQ(state_space_distance(a, b), 7);
+}
+
+TEST(Distance, LogRatioIsEmptyWhereThereIsNone) {
+    EXPECT_FALSE(log_ratio(1, 0));
+    EXPECT_FALSE(log_ratio(0, 1));
+    EXPECT_DOUBLE_EQ(log_ratio(std::exp(2.0), 1).value(), 2);
+}
+
+TEST(ErrorScale, IsOfTheRangeWhereTheStartHasNoEnergy) {
+    const auto scale = [](const Pendulum<double>& p) {
+        return ErrorScale(Course(stepping(Model::angles, "euler", p, 120)).observe(), p.potential_range(), p.reach())
+            .energy;
+    };
+    EXPECT_DOUBLE_EQ(scale(released(90, 90)), 2 * 9.8 * (1 * 1 + 1 * 2));                 // cos 90° is 6e-17, not 0
+    EXPECT_NEAR(scale(released(90.003, 90)), 2 * 9.8 * std::sin(radians(0.003)), 7e-16);  // measured 1.2e-16
+    EXPECT_DOUBLE_EQ(scale(released(0, 0)), 29.4);
+}
 
 constexpr long samples = 40;
 
@@ -54,15 +80,9 @@ double average_of_films(const PendulumPair& twins, const PairBatchSpec& run) {
 /// Pairs that differ in an angle, in a mass, or in everything; their number is not a multiple of any register width.
 std::vector<PendulumPair> some_twins(std::size_t count = 13) {
     std::mt19937 random(3);
-    std::uniform_real_distribution<double> some(0.5, 2), angle(-3, 3);
     std::vector<PendulumPair> all;
     for (std::size_t i = 0; i < count; ++i) {
-        Pendulum<double> p;
-        p.mass = {some(random), some(random)};
-        p.length = {some(random), some(random)};
-        p.angle = {angle(random), angle(random)};
-        p.rate = {angle(random), angle(random)};
-        p.gravity = 5 * some(random);
+        const auto p = random_pendulum(random);
         PendulumPair twins{p, p};
         if (i % 3 != 1) twins.b.angle[0] += 1e-4;
         if (i % 3 != 0) twins.b.mass[0] *= 1.01;
@@ -141,5 +161,4 @@ TEST(PendulumPair, StopWhenAsked) {
     EXPECT_THROW(averages_of({{released(90, 0), released(91, 0)}}, both(Model::angles), true), Error);
 }
 
-}  // namespace twins_test
-}  // namespace doppel
+}  // namespace doppel::twins_test

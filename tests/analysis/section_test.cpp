@@ -2,18 +2,17 @@
 
 #include "base/error.hpp"
 #include "integrate/dormand_prince.hpp"
-#include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/bob.hpp"
 #include "physics/canonical.hpp"
+#include "physics/pendulums.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <tuple>
 
-namespace doppel {
-namespace section_test {
+namespace doppel::section_test {
 
 using Model = DoublePendulum<double>;
 const std::atomic<bool> never = false;
@@ -167,5 +166,4 @@ TEST(Section, NeedsEnergyAndStopsOnRequest) {
     EXPECT_THROW(releases_of_energy(upwards, 1, 3), Error);
 }
 
-}  // namespace section_test
-}  // namespace doppel
+}  // namespace doppel::section_test

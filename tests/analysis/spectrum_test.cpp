@@ -1,11 +1,9 @@
 #include "analysis/spectrum.hpp"
 
 #include "analysis/exponent.hpp"
-#include "analysis/physical_releases.hpp"
-#include "integrate/pendulums.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/oracles.hpp"
-#include "physics/physical_pendulums.hpp"
+#include "physics/pendulums.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -14,8 +12,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace doppel {
-namespace spectrum_test {
+namespace doppel::spectrum_test {
 
 const std::atomic<bool> never = false;
 
@@ -187,5 +184,4 @@ TEST(Spectrum, ResolvesContractionBeyondAllDigits) {
         EXPECT_NEAR((2 * all[1].exponents[i] - all[0].exponents[i]) / exact[i], 1, 1e-7) << i;  // measured 9e-9
 }
 
-}  // namespace spectrum_test
-}  // namespace doppel
+}  // namespace doppel::spectrum_test

@@ -10,8 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace doppel {
-namespace stability_test {
+namespace doppel::stability_test {
 
 Pendulum<double> chain(std::vector<double> mass, std::vector<double> angle) {
     Pendulum<double> p{.mass = mass, .length = std::vector(mass.size(), 1.0), .angle = angle};
@@ -194,5 +193,4 @@ TEST(GreatestEnergyErrors, AreThoseOfTheSamplesAndNaNForAFailedRun) {
     EXPECT_TRUE(std::isnan(max_energy_errors(coarse, releases, 8, never).back()));
 }
 
-}  // namespace stability_test
-}  // namespace doppel
+}  // namespace doppel::stability_test

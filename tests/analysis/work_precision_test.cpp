@@ -4,8 +4,7 @@
 
 #include <array>
 
-namespace doppel {
-namespace work_precision_test {
+namespace doppel::work_precision_test {
 
 /// A step-size study with these costs, each with a tenth of the previous error, from 0.1 on.
 StepStudy study(const std::string& method, Model model, const std::vector<double>& costs) {
@@ -57,5 +56,4 @@ TEST(Ranked, IsByTheSumOfTheRanks) {
     EXPECT_TRUE(ranked({}, Cost::time, std::array{0.1}).empty());
 }
 
-}  // namespace work_precision_test
-}  // namespace doppel
+}  // namespace doppel::work_precision_test

@@ -2,8 +2,12 @@
 
 #include "errors.hpp"
 #include "integrate/batch_kernel.hpp"
+#include "integrate/flow.hpp"
+#include "integrate/motion_batch.hpp"
+#include "integrate/support.hpp"
 #include "integrate/widths.hpp"
 #include "physics/angle_chain.hpp"
+#include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -11,33 +15,17 @@
 #include <random>
 #include <string>
 
-namespace doppel {
-namespace batch_test {
+namespace doppel::batch_test {
 
-constexpr double step = 1.0 / 3000;
-constexpr long steps = 300;  // more than the 256 after which Euler computes its sines anew
+constexpr double step = 1.0 / 3000;  // Euler uses series for some links' rotations, and sines for the faster ones
+constexpr long steps = 300;          // more than the 256 after which Euler computes its sines anew
 
 /// Trials with different numbers; the count is not a multiple of any register width.
 std::vector<Pendulum<double>> some_trials(std::size_t links, std::size_t count = 11) {
     std::mt19937 random(7);
-    std::uniform_real_distribution<double> some(0.5, 2);
-    std::vector<Pendulum<double>> trials(count);
-    for (auto& p : trials) {
-        for (auto* quantity : {&p.mass, &p.length, &p.angle, &p.rate}) {
-            quantity->clear();
-            for (std::size_t i = 0; i < links; ++i) quantity->push_back(some(random));
-        }
-        p.gravity = 5 * some(random);
-    }
+    std::vector<Pendulum<double>> trials;
+    while (trials.size() < count) trials.push_back(random_pendulum(random, links));
     return trials;
-}
-
-template <class Which, class Model>
-State<double, Eigen::Dynamic> alone(const Pendulum<double>& p) {
-    Model model(p);
-    typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
-    stepper.advance(steps);
-    return stepper.state();
 }
 
 template <class Which, class Lone>
@@ -48,7 +36,7 @@ void expect_each_trial_as_alone(Model model, std::size_t links) {
         batch.advance(100);
         batch.advance(steps - 100);
         for (std::size_t i = 0; i < trials.size(); ++i)
-            EXPECT_EQ(batch.state(i), (alone<Which, Lone>(trials[i])))
+            EXPECT_EQ(batch.state(i), (after<Which, Lone>(trials[i], Lone::start(trials[i]), step, steps)))
                 << Which::method.name << ", width " << width << ", trial " << i;
     }
 }
@@ -93,5 +81,111 @@ TEST(Batch, RefusesUnsupportedPendulums) {
     refusal([&] { Batch(trials, Model::angles, "euler", step, 3); });
 }
 
-}  // namespace batch_test
-}  // namespace doppel
+/// Chains with releases one degree apart.
+std::vector<MotionSpec> fan(Model model, std::string_view method, std::size_t links, std::size_t count) {
+    std::vector<MotionSpec> specs;
+    for (std::size_t k = 0; k < count; ++k) {
+        Pendulum<double> p;
+        p.mass.assign(links, 1.25);
+        p.length.assign(links, 0.75);
+        p.angle.assign(links, radians(170 - static_cast<double>(k)));
+        p.rate.assign(links, 3.5);
+        specs.push_back(stepping(model, method, p, 120));
+        specs.back().steps_per_sample = 250;
+        specs.back().tolerance = parse_quad("1e-10");
+    }
+    return specs;
+}
+
+void expect_same(const Bobs<double>& seen, const Bobs<double>& expected) {
+    ASSERT_EQ(seen.size(), expected.size());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const auto &one = seen[i], &other = expected[i];
+        EXPECT_EQ(one.mass, other.mass);
+        EXPECT_EQ(one.x, other.x);
+        EXPECT_EQ(one.y, other.y);
+        EXPECT_EQ(one.vx, other.vx);
+        EXPECT_EQ(one.vy, other.vy);
+        EXPECT_EQ(one.theta, other.theta);
+        EXPECT_EQ(one.omega, other.omega);
+    }
+}
+
+/// Each motion equals its run alone, at the start and after many samples.
+void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int width, long samples = 6) {
+    MotionBatch batch(specs, jobs);
+    std::atomic<bool> never = false;
+    ASSERT_EQ(batch.size(), specs.size());
+    EXPECT_EQ(batch.width(), width);
+    for (std::size_t k = 0; k < specs.size(); k += 5) expect_same(batch.bobs(k), Course(specs[k]).observe().bobs);
+    for (long n = 0; n < samples; ++n) batch.advance(never);
+    for (std::size_t k = 0; k < specs.size(); k += 5) {
+        SCOPED_TRACE(specs[k].method + ", motion " + std::to_string(k));
+        expect_same(batch.bobs(k), Course(specs[k]).advance(samples).bobs);
+    }
+}
+
+TEST(MotionBatch, EachMotionEqualsThatAlone) {
+    const int wide = register_widths().back();
+    for (const auto model : {Model::angles, Model::constraints})
+        for (const std::size_t links : {1u, 2u, 3u, 4u})
+            expect_each_as_alone(fan(model, "euler", links, 70), 2, links == 2 || links == 3 ? wide : 1);
+    expect_each_as_alone(fan(Model::angles, "rk4", 2, 70), 2, wide);
+    expect_each_as_alone(fan(Model::constraints, "rk4", 2, 130), 3, wide);
+    expect_each_as_alone(fan(Model::angles, "taylor", 2, 70), 2, 1);
+    expect_each_as_alone(fan(Model::constraints, "rattle", 2, 70), 1, 1);
+}
+
+TEST(MotionBatch, CountsTurns) {
+    // fast enough for full turns in both directions; the turns of single motions are tested against angles
+    auto specs = fan(Model::constraints, "euler", 2, 30);
+    for (std::size_t k = 0; k < specs.size(); ++k) specs[k].chain->rate = {Quad(15 - static_cast<int>(k)), Quad(0)};
+    expect_each_as_alone(specs, 1, register_widths().back(), 200);
+    for (auto& spec : specs) spec.follows_turns = false;
+    expect_each_as_alone(specs, 1, register_widths().back(), 200);
+}
+
+TEST(MotionBatch, StepsOneByOneWhatIsNotSteppedAlike) {
+    const auto specs = fan(Model::constraints, "euler", 2, 20);
+    const auto expect_alone = [&](auto change) {
+        auto changed = specs;
+        change(changed[7]);
+        expect_each_as_alone(changed, 2, 1, 3);
+    };
+    expect_alone([](MotionSpec& spec) { spec.model = Model::angles; });
+    expect_alone([](MotionSpec& spec) { spec.method = "rk4"; });
+    expect_alone([](MotionSpec& spec) { spec.precision = Precision::in_quad; });
+    expect_alone([](MotionSpec& spec) { spec.stabilise = Stabilise::projection; });
+    expect_alone([](MotionSpec& spec) { spec.steps_per_sample = 100; });
+    expect_alone([](MotionSpec& spec) { spec.sample_interval = {1, 60}; });
+    expect_alone([](MotionSpec& spec) { spec.follows_turns = false; });
+    expect_alone([&](MotionSpec& spec) { spec.chain = fan(Model::constraints, "euler", 3, 1)[0].chain; });
+}
+
+TEST(MotionBatch, NamesTheFailedMotion) {
+    // two of them fail in the same sample, in different groups: the error always names the first
+    auto specs = fan(Model::constraints, "rattle", 2, 200);
+    for (auto& spec : specs) spec.steps_per_sample = 1;
+    for (const std::size_t k : {100u, 180u}) specs[k].chain->rate = {Quad(4000), Quad(-4000)};
+    std::atomic<bool> stop = false;
+    for (const int jobs : {1, 4}) {
+        MotionBatch batch(specs, jobs);
+        const auto [code, words] = test::thrown_by([&] { batch.advance(stop); });
+        EXPECT_EQ(code, ExitCode::method_failed);
+        EXPECT_EQ(words.find("pendulum 101 of 200: rattle: "), 0u) << words;
+    }
+    specs[50].method = "ruler";
+    EXPECT_EQ(test::thrown_by([&] { MotionBatch(specs, 2); }),
+              test::Thrown(ExitCode::bad_input, "pendulum 51 of 200: there is no method \"ruler\""));
+    EXPECT_EQ(test::thrown_by([&] { MotionBatch({}, 2); }).first, ExitCode::bad_input);
+}
+
+TEST(MotionBatch, StopsWhenAsked) {
+    std::atomic<bool> stop = true;
+    for (const char* method : {"euler", "taylor"}) {
+        MotionBatch batch(fan(Model::angles, method, 2, 10), 1);
+        EXPECT_EQ(test::thrown_by([&] { batch.advance(stop); }), test::Thrown(ExitCode::interrupted, "interrupted"));
+    }
+}
+
+}  // namespace doppel::batch_test

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace doppel {
-namespace {
+namespace doppel::coulomb_test {
 
 /// `method` with this number of steps per second, or with the tolerance; one sample each 1/100 s.
 MotionSpec spec_of(const PhysicalPendulum<double>& p, std::string_view method, long steps_per_s, double tolerance) {
@@ -103,6 +102,21 @@ TEST(Coulomb, AHeldJointIsReleasedByThePeakOfADrive) {
         EXPECT_NEAR(angles_after(spec_of(p, method, 0, 1e-12), 1000)[0], exact[0], 1e-10) << method;
 }
 
+TEST(Coulomb, AStickingJointStaysExactly) {
+    auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {pi / 3, pi / 3}, {0, 0}});
+    p.friction.coulomb = {3, 1};
+    for (const auto* method : {"taylor", "rk4", "euler", "dopri5", "dop853", "semi-implicit-euler"}) {
+        Course course(spec_of(p, method, 30'000, 1e-15));
+        const auto stuck = course.advance(900), later = course.advance(500);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(later.bobs[i].omega, 0) << method;
+            EXPECT_EQ(later.bobs[i].theta, stuck.bobs[i].theta) << method;
+            EXPECT_LT(std::abs(stuck.bobs[i].theta), 0.2) << method;
+        }
+        EXPECT_LT(later.energy - later.work, p.potential_range());
+    }
+}
+
 /// A state that changes its direction again and again at one time.
 struct Restless {
     using State = doppel::State<double, Eigen::Dynamic>;
@@ -127,5 +141,4 @@ TEST(Coulomb, EventsThatDoNotEndAreAFailureOfTheMethod) {
     }
 }
 
-}  // namespace
-}  // namespace doppel
+}  // namespace doppel::coulomb_test

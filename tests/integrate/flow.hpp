@@ -1,7 +1,9 @@
 #pragma once
 
+#include "integrate/dormand_prince.hpp"
 #include "numeric/quad.hpp"
 #include "physics/bob.hpp"
+#include "physics/canonical.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +28,44 @@ typename Model::State after(const System& system, const typename Model::State& s
     return stepper.state();
 }
 
+/// The state after `seconds` by an adaptive method.
+template <class Which, class Model, class System, class... More>
+typename Model::State end_of(const System& system, const typename Model::Scalar& seconds,
+                             const typename Model::Scalar& tolerance, More... more) {
+    Model model(system);
+    typename Which::template Stepper<Model> stepper(model, Model::start(system), tolerance, more...);
+    stepper.advance(seconds);
+    return stepper.state();
+}
+
+/// An adaptive pair with fixed steps.
+template <System Model, const auto& pair>
+struct AtFixedStep {
+    using State = typename Model::State;
+
+    Model& model;
+    State y;
+    Quad h;
+    Slopes<Model, pair> slopes{y};
+
+    AtFixedStep(Model& m, const State& start, const Quad& step) : model(m), y(start), h(step) {}
+    void advance(long steps) {
+        for (long i = 0; i < steps; ++i) {
+            model.rate(y, slopes[0]);
+            slopes.template evaluate<1, pair.stages>(model, y, h);
+            slopes.finish(y, h, y);
+        }
+    }
+    const State& state() const { return y; }
+};
+
+template <class Adaptive>
+struct Fixed {
+    static constexpr Method method = Adaptive::method;
+    template <System Model>
+    using Stepper = AtFixedStep<Model, Adaptive::pair>;
+};
+
 template <class State>
 double distance(const State& a, const State& b) {
     return static_cast<double>((a - b).cwiseAbs().maxCoeff());
@@ -44,12 +84,12 @@ double way_back(double step, long steps) {
     return distance<typename Model::State>(end, start);
 }
 
-/// The errors of a run: energy (J) and rods (m), the largest in its first and its last tenth.
+/// The largest errors of a run: energy (J), also in its first and its last tenth, rods (m), and J v (m²/s).
 struct Errors {
-    double early = 0, late = 0, rod = 0;
+    double energy = 0, early = 0, late = 0, rod = 0, slip = 0;
 };
 template <class Which, class Model>
-Errors errors_of(const Pendulum<double>& p, double step, long steps) {
+Errors errors_of(const Pendulum<double>& p, double step, long steps, int samples = 1000) {
     Model model(p);
     typename Which::template Stepper<Model> stepper(model, Model::start(p), step);
     const auto bobs_now = [&] {
@@ -59,21 +99,27 @@ Errors errors_of(const Pendulum<double>& p, double step, long steps) {
     };
     const double start = energy(bobs_now(), p.gravity);
     Errors errors;
-    for (int part = 0; part < 1000; ++part) {
-        stepper.advance(steps / 1000);
+    for (int sample = 0; sample < samples; ++sample) {
+        stepper.advance(steps / samples);
         const auto bobs = bobs_now();
         const double error = std::abs(energy(bobs, p.gravity) - start);
-        if (part < 100) errors.early = std::max(errors.early, error);
-        if (part >= 900) errors.late = std::max(errors.late, error);
+        errors.energy = std::max(errors.energy, error);
+        if (sample < samples / 10) errors.early = std::max(errors.early, error);
+        if (sample >= samples - samples / 10) errors.late = std::max(errors.late, error);
         errors.rod = std::max(errors.rod, length_error(p, bobs));
+        if constexpr (requires { model.w; }) {
+            typename Model::Multipliers slip = model.w;
+            const auto& y = stepper.state();
+            model.constraint_velocity(y.head(y.size() / 2), y.tail(y.size() / 2), slip);
+            errors.slip = std::max(errors.slip, slip.cwiseAbs().maxCoeff());
+        }
     }
     return errors;
 }
 
 /// The order of the error at 0.5 s in the step, from three step sizes.
-template <class Which, class Model>
-double measured_order(std::size_t links, long steps) {
-    const auto p = unequal<Quad>(links);
+template <class Which, class Model, class System>
+double measured_order(const System& p, long steps) {
     const auto run = [&](long n) { return after<Which, Model>(p, Model::start(p), Quad(0.5) / Quad(n), n); };
     const auto coarse = run(steps), middle = run(2 * steps), fine = run(4 * steps);
     return std::log2(distance(coarse, middle) / distance(middle, fine));
@@ -96,6 +142,32 @@ double symplecticity_error(const Map& map, const State<Quad, 4>& z) {
         j(i + 2, i) = Quad(-1);
     }
     return static_cast<double>(Quad((s.transpose() * j * s - j).cwiseAbs().maxCoeff()));
+}
+
+/// The same for one step of two links without friction; their angles and rates begin the halves of the state.
+template <class Which, class Model, class System>
+double symplecticity_error(const System& p, const Quad& step) {
+    Model model(p);
+    Canonical<Model> form(model);
+    const typename Model::State start = Model::start(p);
+    const auto half = start.size() / 2;
+    typename Model::State z = start;
+    form.momenta(start, z);
+    const auto links = [&](const auto& state) {
+        State<Quad, 4> both;
+        both << state.head(2), state.segment(half, 2);
+        return both;
+    };
+    const auto one = [&](const State<Quad, 4>& from) {
+        typename Model::State at = z, y = z;
+        at.head(2) = from.head(2);
+        at.segment(half, 2) = from.tail(2);
+        form.velocities(at, y);
+        y = after<Which, Model>(p, y, step, 1);
+        form.momenta(y, at);
+        return links(at);
+    };
+    return symplecticity_error(one, links(z));
 }
 
 }  // namespace doppel

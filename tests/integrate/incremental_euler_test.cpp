@@ -1,12 +1,11 @@
 #include "integrate/euler.hpp"
-#include "integrate/pendulums.hpp"
+#include "physics/pendulums.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace doppel {
-namespace incremental_euler_test {
+namespace doppel::incremental_euler_test {
 
 constexpr double step = 1.0 / 30000;  // s
 
@@ -72,22 +71,4 @@ TEST(IncrementalEuler, StartsExactlyWhereItIsReleased) {
     EXPECT_EQ((after<Rods, IncrementalEuler<Rods>>(p, step, 0)), Rods::start(p));
 }
 
-TEST(IncrementalEuler, LanesDoNotDependOnTheirNeighbours) {
-    // one fast lane and three slow ones: the slow lanes still use the series
-    using Side = Lanes<4>;
-    const double h = 1e-3;
-    auto p = released(40, 60).cast<Side>();
-    p.rate[0].set(2, 30);
-    DoublePendulum<Side> model(p);
-    IncrementalEuler<DoublePendulum<Side>> sides(model, model.start(p), Side(h));
-    sides.advance(1000);
-    for (int lane = 0; lane < 4; ++lane) {
-        auto q = released(40, 60);
-        q.rate[0] = lane == 2 ? 30 : 0;
-        const auto alone = after<DoublePendulum<double>, IncrementalEuler<DoublePendulum<double>>>(q, h, 1000);
-        for (Eigen::Index i = 0; i < 4; ++i) EXPECT_EQ(sides.state()[i][lane], alone[i]) << lane;
-    }
-}
-
-}  // namespace incremental_euler_test
-}  // namespace doppel
+}  // namespace doppel::incremental_euler_test

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
-#include "integrate/pendulums.hpp"
+#include "physics/pendulums.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,16 @@ inline MotionSpec stepping(Model model, std::string_view method, const Pendulum<
     spec.sample_interval = {1, rate};
     spec.steps_per_sample = 1;
     return spec;
+}
+
+/// Calls visit(model, method) for every method and each of the two models of chains that it supports.
+template <class Visit>
+void for_each_combination(const Visit& visit) {
+    for (const auto& method : methods()) {
+        SCOPED_TRACE(method.name);
+        if (method.angles) visit(Model::angles, method);
+        if (method.constraints) visit(Model::constraints, method);
+    }
 }
 
 /// The motion of a spec, and its samples.

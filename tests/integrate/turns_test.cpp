@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace doppel {
-namespace turns_test {
+namespace doppel::turns_test {
 
 /// Two rods of lengths 1 and 0.5 m at these angles, rad, and rates, rad/s.
 Pendulum<double> chain(double first, double second, double rate1 = 0, double rate2 = 0) {
@@ -97,5 +96,4 @@ TEST(Turns, AreUpdatedMoreOftenForFasterRods) {
     EXPECT_DOUBLE_EQ(turns.longest_interval(), Turns::largest_turn / 2000);
 }
 
-}  // namespace turns_test
-}  // namespace doppel
+}  // namespace doppel::turns_test

@@ -6,8 +6,7 @@
 #include <random>
 #include <string>
 
-namespace doppel {
-namespace ball_test {
+namespace doppel::ball_test {
 
 /// Planted faults.
 struct NoRounding : Counted {
@@ -164,5 +163,4 @@ TEST(Ball, ContainsSinesAndCosines) {
     EXPECT_EQ(SinCos<Ball<double>>(Ball<double>(1e9)).sin.radius, 1) << "too large to reduce: all there is";
 }
 
-}  // namespace ball_test
-}  // namespace doppel
+}  // namespace doppel::ball_test

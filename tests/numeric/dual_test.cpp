@@ -5,16 +5,17 @@
 #include "integrate/runge_kutta.hpp"
 #include "numeric/solvers.hpp"
 #include "numeric/quad.hpp"
+#include "numeric/tape.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
 
-namespace doppel {
-namespace dual_test {
+namespace doppel::dual_test {
 
 /// The model's start with each entry as an independent variable.
 template <class Model, class Scalar>
@@ -22,15 +23,6 @@ typename Model::State as_variables(const State<Scalar, Model::State::SizeAtCompi
     typename Model::State variables(y.size());
     for (Eigen::Index i = 0; i < y.size(); ++i) variables[i] = Model::Scalar::variable(y[i], i);
     return variables;
-}
-
-template <class Model, class Which>
-typename Model::State flow(const Pendulum<typename Model::Scalar>& p, const typename Model::State& start, int steps,
-                           const typename Model::Scalar& step) {
-    Model model(p);
-    typename Which::template Stepper<Model> stepper(model, start, step);
-    stepper.advance(steps);
-    return stepper.state();
 }
 
 /// The largest difference between the Jacobian of a flow from duals and from central differences in quad. The latter
@@ -42,8 +34,8 @@ double jacobian_error(std::size_t links) {
     constexpr int steps = 200;
     const auto start = Exact::start(unequal<Quad>(links));
     const State<Scalar, Exact::State::SizeAtCompileTime> rounded = start.template cast<Scalar>();
-    const auto end = flow<SweptKeys, Which>(unequal<Scalar>(links).template cast<Dual<Scalar, N>>(),
-                                            as_variables<SweptKeys, Scalar>(rounded), steps, Scalar(1) / Scalar(400));
+    const auto end = after<Which, SweptKeys>(unequal<Scalar>(links).template cast<Dual<Scalar, N>>(),
+                                             as_variables<SweptKeys, Scalar>(rounded), Scalar(1) / Scalar(400), steps);
     const Quad h(1e-11);
     double worst = 0;
     for (int j = 0; j < N; ++j) {
@@ -51,8 +43,8 @@ double jacobian_error(std::size_t links) {
         up[j] += h;
         down[j] -= h;
         const typename Exact::State slope =
-            (flow<Exact, Which>(unequal<Quad>(links), up, steps, Quad(1) / Quad(400)) -
-             flow<Exact, Which>(unequal<Quad>(links), down, steps, Quad(1) / Quad(400))) /
+            (after<Which, Exact>(unequal<Quad>(links), up, Quad(1) / Quad(400), steps) -
+             after<Which, Exact>(unequal<Quad>(links), down, Quad(1) / Quad(400), steps)) /
             Quad(2 * h);
         for (int i = 0; i < N; ++i)
             worst = std::max(worst, std::abs(static_cast<double>(Quad(Quad(end[i].tangent[j]) - slope[i]))));
@@ -81,7 +73,7 @@ TEST(Dual, ParametersVaryToo) {
     auto p = unequal<D>(2);
     p.rate = {D(0), D(0)};
     for (auto& l : p.length) l.tangent[0] = l.value;
-    const auto end = flow<DoublePendulum<D>, Rk4>(p, DoublePendulum<D>::start(p), 2000, D(5e-4));
+    const auto end = after<Rk4, DoublePendulum<D>>(p, DoublePendulum<D>::start(p), D(5e-4), 2000);
     for (int i = 0; i < 2; ++i)
         EXPECT_NEAR(end[i].tangent[0], -0.5 * end[2 + i].value, 2e-11);  // measured 4e-12, the error of the method
 }
@@ -163,5 +155,20 @@ TEST(Dual, SolvesLinearSystems) {
     EXPECT_LT((along + value.inverse() * slope * at).norm(), 2e-15);  // measured 4e-16
 }
 
-}  // namespace dual_test
-}  // namespace doppel
+TEST(Taped, OfBytesThatAreAllZeroIsTheConstantZero) {
+    // Eigen 5 sets vectors to zero by memset
+    Tape<double> tape(1);
+    const auto first = Taped<double>::argument(5, tape), x = Taped<double>::argument(3, tape);
+    Taped<double> zero(7);
+    std::memset(static_cast<void*>(&zero), 0, sizeof zero);
+    EXPECT_EQ(zero.node(), Taped<double>().node());
+    zero += x;
+    tape.finish();
+    tape.term(first.node(), 0) = 5;
+    tape.term(x.node(), 0) = 3;
+    tape.compute(0);
+    EXPECT_EQ(zero.value, 3);
+    EXPECT_EQ(tape.term(zero.node(), 0), 3);  // 8 if `zero` counted as the first argument
+}
+
+}  // namespace doppel::dual_test

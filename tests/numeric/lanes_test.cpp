@@ -7,8 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace doppel {
-namespace lanes_test {
+namespace doppel::lanes_test {
 
 TEST(Lanes, RoundLikeDouble) {
     std::mt19937_64 random(1);
@@ -64,5 +63,4 @@ TEST(Lanes, TheLargerIsNaNIfEitherIs) {
     }
 }
 
-}  // namespace lanes_test
-}  // namespace doppel
+}  // namespace doppel::lanes_test

@@ -9,8 +9,7 @@
 #include <limits>
 #include <random>
 
-namespace doppel {
-namespace portable_math_test {
+namespace doppel::portable_math_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -81,5 +80,4 @@ TEST(PortableMath, AngleOfZerosAndInfinitiesIsThatOfTheCLibrary) {
     EXPECT_TRUE(std::isnan(portable_atan2(std::nan(""), 1)));
 }
 
-}  // namespace portable_math_test
-}  // namespace doppel
+}  // namespace doppel::portable_math_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace rational_test {
+namespace doppel::rational_test {
 
 TEST(Rational, ReadsWhatItsDigitsMean) {
     EXPECT_EQ(parse_rational("1/30000"), (Rational{1, 30000}));
@@ -37,5 +36,4 @@ TEST(Rational, MultipliesAndDividesExactlyOrNotAtAll) {
     EXPECT_EQ(product({big, 7}, {7, big}), (Rational{1, 1}));  // cancels before it overflows
 }
 
-}  // namespace rational_test
-}  // namespace doppel
+}  // namespace doppel::rational_test

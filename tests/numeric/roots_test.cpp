@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace doppel {
-namespace roots_test {
+namespace doppel::roots_test {
 
 /// The coefficients of factor · Π (t − root) by powers of t.
 std::vector<double> with_roots(const std::vector<double>& roots, double factor) {
@@ -87,5 +86,4 @@ TEST(Root, IsFoundWithinTheBracketWhereverNewtonsMethodWouldGo) {
     EXPECT_EQ(root({-1, 1}, [](double t) { return Now{t, 1}; }), 0);
 }
 
-}  // namespace roots_test
-}  // namespace doppel
+}  // namespace doppel::roots_test

@@ -9,8 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace doppel {
-namespace sin_cos_test {
+namespace doppel::sin_cos_test {
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -136,5 +135,4 @@ TEST(LanesRoughLog2, IsWithinAStraightLineOfTheLogarithm) {
     EXPECT_NEAR(rough_log2(Lanes<4>(0))[0], -1023, 0.05);
 }
 
-}  // namespace sin_cos_test
-}  // namespace doppel
+}  // namespace doppel::sin_cos_test

@@ -4,8 +4,7 @@
 
 #include <limits>
 
-namespace doppel {
-namespace subnormals_test {
+namespace doppel::subnormals_test {
 
 TEST(NoSubnormals, TreatsThemAsZeroDuringItsLifetime) {
     volatile double minimum = std::numeric_limits<double>::min(), tiny = std::numeric_limits<double>::denorm_min();
@@ -20,5 +19,4 @@ TEST(NoSubnormals, TreatsThemAsZeroDuringItsLifetime) {
     EXPECT_GT(minimum / 2, 0);
 }
 
-}  // namespace subnormals_test
-}  // namespace doppel
+}  // namespace doppel::subnormals_test

@@ -1,18 +1,13 @@
 #include "physics/canonical.hpp"
 
-#include "allocations.hpp"
 #include "errors.hpp"
 #include "numeric/quad.hpp"
 #include "physics/oracles.hpp"
 #include "physics/pendulums.hpp"
-#include "physics/physical_pendulums.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-namespace doppel {
-namespace canonical_test {
+namespace doppel::canonical_test {
 
 using Angles = AngleChain<Quad, Eigen::Dynamic>;
 using Bodies = PhysicalChain<Quad>;
@@ -131,19 +126,6 @@ TEST(Canonical, RefusesJointsThatStick) {
     EXPECT_NE(message.find("Coulomb"), std::string::npos) << message;
 }
 
-TEST(Canonical, AsksForNoMemory) {
-    using Plain = PhysicalChain<double>;
-    const auto p = driven_bodies<double>(4);
-    Plain model(p);
-    Canonical<Plain> form(model);
-    Canonical<Plain>::Angles angles;
-    Plain::State z = Plain::start(p), dzdt = z;
-    form.rate(z, angles, dzdt);
-    const long before = allocations();
-    for (int i = 0; i < 10; ++i) form.rate(z, angles, dzdt);
-    EXPECT_EQ(allocations() - before, 0);
-}
-
 /// The largest error of a changing angle over steps of `step`, in units of ε.
 template <class Scalar>
 double error_of_turning(double step) {
@@ -170,5 +152,4 @@ TEST(CachedSinCos, IsSineAndCosineToRounding) {
     EXPECT_EQ(down.at(0.0).cos, 1.0);
 }
 
-}  // namespace canonical_test
-}  // namespace doppel
+}  // namespace doppel::canonical_test

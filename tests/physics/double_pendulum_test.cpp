@@ -3,24 +3,16 @@
 #include "physics/force.hpp"
 #include "physics/oracles.hpp"
 #include "physics/pendulums.hpp"
+#include "physics/physical_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
-namespace doppel {
-namespace double_pendulum_test {
-
-template <class Model>
-typename Model::State start_rate(const Pendulum<double>& p) {
-    Model model(p);
-    const auto y = Model::start(p);
-    typename Model::State dydt = y;
-    model.rate(y, dydt);
-    return dydt;
-}
+namespace doppel::double_pendulum_test {
 
 template <class Model>
 void expect_solves_the_mass_matrix(std::size_t links, double tolerance) {
@@ -28,7 +20,7 @@ void expect_solves_the_mass_matrix(std::size_t links, double tolerance) {
     for (int i = 0; i < 100; ++i) {
         const auto p = random_pendulum(random, links);
         const auto expected = by_elimination(physical(p));
-        const Eigen::VectorXd rate = start_rate<Model>(p);
+        const Eigen::VectorXd rate = rate_at_start<Model>(p);
         const auto n = static_cast<long>(links);
         EXPECT_LT((rate.tail(n) - expected).norm(), tolerance * (1 + expected.norm())) << links;
         EXPECT_EQ(rate.head(n), Eigen::Map<const Eigen::VectorXd>(p.rate.data(), n));
@@ -47,7 +39,7 @@ void expect_falls_as_the_angles_do(std::size_t links) {
     for (int i = 0; i < 100; ++i) {
         const auto p = random_pendulum(random, links);
         const auto expected = accelerations_of_bobs(p);
-        const Eigen::VectorXd rate = start_rate<RodChain<double, N>>(p);
+        const Eigen::VectorXd rate = rate_at_start<RodChain<double, N>>(p);
         for (std::size_t link = 0; link < links; ++link) {
             const Eigen::Vector2d found = rate.segment<2>(2 * static_cast<long>(links + link));
             EXPECT_LT((found - expected[link]).norm(), 1e-12 * (1 + expected[link].norm())) << links;  // measured 7e-14
@@ -89,9 +81,9 @@ TEST(Models, StagesReuseTheAnglesOfTheStep) {
 TEST(Models, StayExactlyInEquilibrium) {
     const Pendulum<double> p{{1, 2, 3}, {1, 2, 0.5}, {0, 0, 0}, {0, 0, 0}, 9.8},
         two{{1, 2}, {1, 3}, {0, 0}, {0, 0}, 9.8};
-    EXPECT_EQ(start_rate<DoublePendulum<double>>(two), (State<double, 4>::Zero()));
-    EXPECT_EQ((start_rate<AngleChain<double, 3>>(p)), (State<double, 6>::Zero()));
-    EXPECT_EQ((start_rate<RodChain<double, 2>>(two)), (State<double, 8>::Zero()));
+    EXPECT_EQ(rate_at_start<DoublePendulum<double>>(two), (State<double, 4>::Zero()));
+    EXPECT_EQ((rate_at_start<AngleChain<double, 3>>(p)), (State<double, 6>::Zero()));
+    EXPECT_EQ((rate_at_start<RodChain<double, 2>>(two)), (State<double, 8>::Zero()));
 }
 
 TEST(RodChain, BothModelsReportTheSameBobs) {
@@ -143,5 +135,82 @@ TEST(Bobs, OfAChainAreFoundWhereFurtherParticlesFollow) {
     }
 }
 
-}  // namespace double_pendulum_test
-}  // namespace doppel
+/// Every pattern of light and unit masses, with links 1e-3 rad from aligned that rotate at different rates.
+template <class Check>
+void for_each_pattern(std::size_t links, double light, const Check& check) {
+    for (unsigned pattern = 0; pattern < 1u << links; ++pattern) {
+        Pendulum<double> p{{}, {}, {}, {}, 9.8};
+        for (std::size_t i = 0; i < links; ++i) {
+            p.mass.push_back((pattern >> i & 1u) == 1 ? light : 1);
+            p.length.push_back(1 - 0.1 * static_cast<double>(i));
+            p.angle.push_back(0.7 + (i % 2 == 0 ? 0 : 1e-3));
+            p.rate.push_back(1 + 0.5 * static_cast<double>(i));
+        }
+        check(p);
+    }
+}
+
+/// The error of the accelerations of `model` against quad at the same state, relative to the largest one.
+template <template <class> class Model, class Description>
+double error_of(const Description& description) {
+    Model<double> model(description);
+    const auto exactly = description.template cast<Quad>();
+    Model<Quad> truth(exactly);
+    const auto y = Model<double>::start(description);
+    typename Model<double>::State found = y;
+    typename Model<Quad>::State exact_y = y.template cast<Quad>(), expected = exact_y;
+    model.rate(y, found);
+    truth.rate(exact_y, expected);
+    double worst = 0, size = 0;
+    for (Eigen::Index i = y.size() / 2; i < y.size(); ++i) {
+        worst = std::max(worst, std::abs(static_cast<double>(Quad(Quad(found[i]) - expected[i]))));
+        size = std::max(size, std::abs(static_cast<double>(expected[i])));
+    }
+    return worst / size;
+}
+
+template <class S>
+using Double = DoublePendulum<S>;
+template <class S>
+using Angles = AngleChain<S, Eigen::Dynamic>;
+template <class S>
+using Rods2 = RodChain<S, 2>;
+template <class S>
+using Rods3 = RodChain<S, 3>;
+template <class S>
+using Rods = RodChain<S, Eigen::Dynamic>;
+
+TEST(LightMasses, KeepTheirAccelerations) {
+    for (const double light : {1e-2, 1e-4, 1e-6, 1e-8}) {
+        double angles = 0, rods = 0;
+        const auto note = [](double& worst, double error) { worst = std::max(worst, error); };
+        for (const std::size_t links : {2u, 3u, 5u})
+            for_each_pattern(links, light, [&](const auto& p) {
+                note(angles, error_of<Angles>(p)), note(rods, error_of<Rods>(p));
+                if (links == 2) note(angles, error_of<Double>(p)), note(rods, error_of<Rods2>(p));
+                if (links == 3) note(rods, error_of<Rods3>(p));
+            });
+        EXPECT_LT(angles, 5e-15) << light;  // measured 7e-16
+        EXPECT_LT(rods, 5e-15) << light;    // measured 1.1e-15
+    }
+}
+
+TEST(LightMasses, KeepTheirAccelerationsAsBodies) {
+    for (const double light : {1e-2, 1e-4, 1e-6, 1e-8})
+        for (const double share : {1.0, 0.5}) {  // centre of mass at the end, or in the middle of a uniform rod
+            for (const std::size_t links : {2u, 3u, 5u}) {
+                double worst = 0;
+                for_each_pattern(links, light, [&](const auto& chain) {
+                    auto p = physical(chain);
+                    for (std::size_t i = 0; i < links; ++i) {
+                        p.center[i] *= share;
+                        if (share < 1) p.inertia[i] = chain.mass[i] * chain.length[i] * chain.length[i] / 12;
+                    }
+                    worst = std::max(worst, error_of<PhysicalChain>(p));
+                });
+                EXPECT_LT(worst, links == 5 ? 5e-14 : 1e-14) << light << ' ' << share;  // measured 1.7e-14 and 4e-15
+            }
+        }
+}
+
+}  // namespace doppel::double_pendulum_test

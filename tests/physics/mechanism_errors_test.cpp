@@ -7,8 +7,7 @@
 #include <cmath>
 #include <variant>
 
-namespace doppel {
-namespace mechanism_errors_test {
+namespace doppel::mechanism_errors_test {
 
 using namespace counted;
 
@@ -135,14 +134,6 @@ TEST(MechanismErrors, OfAStartThatLeavesTheConstraints) {
     EXPECT_EQ(error_of(parts), no_fault);
 }
 
-/// A parallelogram of cranks of 1 m and a coupler of 2 m, which passes a position with all three aligned.
-/// There it could continue as a parallelogram or crossed, and the equations do not decide.
-Assembly<double> parallelogram() {
-    return {.particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
-            .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
-            .forces = {Gravity<double>{}}};
-}
-
 TEST(MechanismErrors, OfASingularConfigurationHoweverLongTheSteps) {
     check(parallelogram());
     for (const double step : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
@@ -194,5 +185,4 @@ TEST(MechanismErrors, IsNotReportedForAValidStart) {
               no_fault);
 }
 
-}  // namespace mechanism_errors_test
-}  // namespace doppel
+}  // namespace doppel::mechanism_errors_test

@@ -1,34 +1,29 @@
 #include "physics/mechanism.hpp"
 
-#include "allocations.hpp"
+#include "errors.hpp"
 #include "numeric/quad.hpp"
 #include "physics/mechanisms.hpp"
+#include "physics/oracles.hpp"
+#include "physics/pendulums.hpp"
+#include "physics/rod_chain.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
-namespace doppel {
-namespace mechanism_test {
+namespace doppel::mechanism_test {
 
 using namespace counted;
 
 static_assert(Constrained<Mechanism<double>> && Constrained<Mechanism<Quad>>);
 
-template <class S>
-State<S, Eigen::Dynamic> rate_at_start(const Assembly<S>& assembly) {
-    Mechanism<S> model(assembly);
-    const auto y = model.start(assembly);
-    auto dydt = y;
-    model.rate(y, dydt);
-    return dydt;
-}
-
 TEST(Mechanism, ConstraintsMakePendulumsAndSlopesOfClosedForm) {
     const auto expect_acceleration = [](const Assembly<double>& parts, const P& expected) {
         check(parts);
-        const auto dydt = rate_at_start(parts);
+        const auto dydt = rate_at_start<Mechanism<double>>(parts);
         EXPECT_LT((dydt.tail<2>() - expected).norm(), 1e-14) << parts.particles.size();  // measured 1.6e-15
         if (parts.particles.size() == 2) {
             EXPECT_LT(dydt.segment<2>(4).norm(), 1e-15);  // the anchored particle does not move
@@ -78,7 +73,7 @@ TEST(Mechanism, AttractionKeepsACircularOrbit) {
                                  .constraints = {},
                                  .forces = {Attraction<double>{one, two, G}}};
     check(parts);
-    const auto dydt = rate_at_start(parts);
+    const auto dydt = rate_at_start<Mechanism<double>>(parts);
     EXPECT_LT((dydt.tail<4>() - omega2 * State<double, 4>(0.5, 0, -1.5, 0)).norm(), 1e-15);  // measured 0
     EXPECT_NEAR(Mechanism<double>(parts).energy(Mechanism<double>::start(parts)), -G * m1 * m2 / d, 1e-15);
 }
@@ -93,7 +88,7 @@ Assembly<S> beside_a_droplet() {
 
 TEST(Mechanism, DropletHasAnEffectOnlyInQuad) {
     // G M / r² = 6.674e-11 · 3.4e-5 / 1609²
-    const auto dydt = rate_at_start(beside_a_droplet<Quad>());
+    const auto dydt = rate_at_start<Mechanism<Quad>>(beside_a_droplet<Quad>());
     const Quad expected = parse_quad("6.674e-11") * parse_quad("3.4e-5") / (Quad(1609) * Quad(1609));
     EXPECT_NEAR(static_cast<double>(expected), 8.8e-22, 0.05e-22);
     EXPECT_LT(static_cast<double>(abs(Quad(dydt[2] / expected - 1))), 2e-33);  // measured 0
@@ -101,8 +96,8 @@ TEST(Mechanism, DropletHasAnEffectOnlyInQuad) {
     // exactly above, it reduces the weight, but not in double
     auto above = beside_a_droplet<Quad>();
     std::get<Droplet<Quad>>(above.forces[1]).place = At<Quad>(Quad(0), Quad(1609));
-    EXPECT_NE(rate_at_start(above)[3], Quad(-98) / Quad(10));
-    EXPECT_EQ(rate_at_start(above.cast<double>())[3], -9.8);
+    EXPECT_NE(rate_at_start<Mechanism<Quad>>(above)[3], Quad(-98) / Quad(10));
+    EXPECT_EQ(rate_at_start<Mechanism<double>>(above.cast<double>())[3], -9.8);
 }
 
 TEST(Mechanism, ForceIsTheSlopeOfTheEnergy) {
@@ -113,7 +108,7 @@ TEST(Mechanism, ForceIsTheSlopeOfTheEnergy) {
         .forces = {Gravity<S>{}, Spring<S>{two, one, S(5), S(1)}, Spring<S>{one, At<S>(S(2), S(2)), S(3), S(4)},
                    Attraction<S>{one, two, S(2)}, Droplet<S>{At<S>(S(-1), S(1)), S(4), S(1)}}};
     Mechanism<S> model(parts);
-    const auto y = model.start(parts), dydt = rate_at_start(parts);
+    const auto y = model.start(parts), dydt = rate_at_start<Mechanism<S>>(parts);
     const S h(1e-10);
     for (Eigen::Index i = 0; i < 4; ++i) {
         auto up = y, down = y;
@@ -164,48 +159,101 @@ TEST(Mechanism, ErrorsOfASlotAreDistancesFromIt) {
     }
 }
 
-TEST(Mechanism, SolvesForMultipliersBetweenTwoPositions) {
-    // J(q1) M⁻¹ Jᵀ(q0) x, from pull() and constraint_velocity(); solving must return x
-    auto parts = four_bars();
-    parts.particles.push_back({1, P(1.5, 2)});  // braced: the factorisation adds entries to the matrix
-    for (const std::size_t corner : {two, three}) parts.constraints.push_back(Rod<double>{5 - 1, corner, 1});
-    Mechanism<double> model(parts);
-    const State<double, Eigen::Dynamic> q0 = model.start(parts).head(10);
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> number(-0.1, 0.1);
-    for (int i = 0; i < 50; ++i) {
-        auto q1 = q0, v = q0;
-        State<double, Eigen::Dynamic> x(model.constraints()), image(model.constraints());
-        for (auto& c : q1) c += number(random);
-        for (auto& c : x) c = number(random);
-        v.setZero();
-        model.apply_multipliers(q0, x, v);
-        model.constraint_velocity(q1, v, image);
-        model.solve(q1, q0, image);
-        EXPECT_LT((image - x).norm(), 2e-15);  // measured 4e-16
+/// A zigzag chain of rods from the origin. `shuffled`: its rods are listed in random order; `looped`: two more rods
+/// hold its end.
+Assembly<double> zigzag(std::size_t links, bool shuffled, bool looped) {
+    Assembly<double> made{.particles = {}, .constraints = {}, .forces = {Gravity<double>{}}};
+    std::vector<std::size_t> order(links);
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    for (const auto i : order)
+        made.particles.push_back(
+            {1 + 0.1 * static_cast<double>(i % 7), P(0.8 * static_cast<double>(i + 1), i % 2 ? 0 : 0.6)});
+    if (shuffled) std::shuffle(order.begin(), order.end(), std::mt19937(3));
+    for (const auto i : order) {
+        const End<double> above = i == 0 ? End<double>(P(0, 0)) : End<double>(i - 1);
+        made.constraints.push_back(Rod<double>{i, above, 1});
+    }
+    if (looped && links > 3) {
+        const auto& last = made.particles.back().place;
+        made.constraints.push_back(Rod<double>{links - 1, last + P(3, 4), 5});
+        made.constraints.push_back(
+            Rod<double>{links / 2, std::size_t{1}, (made.particles[links / 2].place - made.particles[1].place).norm()});
+    }
+    return made;
+}
+
+State<double, Eigen::Dynamic> inverse_masses(const Assembly<double>& parts) {
+    State<double, Eigen::Dynamic> w(static_cast<Eigen::Index>(parts.particles.size()));
+    for (Eigen::Index i = 0; i < w.size(); ++i) w[i] = 1 / parts.particles[static_cast<std::size_t>(i)].mass;
+    return w;
+}
+
+TEST(ConstraintOrder, KeepsAFewNumbersForEachOfTenThousandLinks) {
+    for (const bool looped : {false, true}) {
+        const auto parts = zigzag(10000, false, looped);
+        const ConstraintSet<double> set(parts.constraints, inverse_masses(parts));
+        // the diagonal and its neighbours on both sides; a loop adds the distance of its ends
+        EXPECT_LE(set.blank_matrix().entries(), (looped ? 8 : 4) * set.constraints()) << looped;
     }
 }
 
-TEST(Mechanism, StepsWithoutAllocating) {
-    auto parts = four_bars();
-    parts.forces.push_back(Spring<double>{two, P(0, 2), 5, 0.5, 0.1});
-    parts.forces.push_back(Attraction<double>{two, three, 1});
-    parts.forces.push_back(Droplet<double>{P(5, 5), 1});
-    parts.constraints.push_back(SlotLine<double>{two, P(0.6, 0.8), P(1, 0)});
-    Mechanism<double> model(parts);
-    const auto y = model.start(parts);
-    auto dydt = y;
-    const State<double, Eigen::Dynamic> q = y.head(8);
-    State<double, Eigen::Dynamic> v = q, c(model.constraints());
-    const long before = allocations();
-    model.rate(y, dydt);
-    model.free_acceleration(q, q, v);
-    model.residual(q, c);
-    model.constraint_velocity(q, v, c);
-    model.jdot_v(q, v, c);
-    model.apply_multipliers(q, c, v);
-    model.solve(q, q, c);
-    EXPECT_EQ(allocations() - before, 0);
+TEST(ConstraintOrder, StillNamesWhatDependsOnOthers) {
+    auto parts = zigzag(60, true, false);
+    parts.constraints.insert(parts.constraints.begin() + 7, Anchor<double>{30, parts.particles[30].place});
+    parts.constraints.push_back(Anchor<double>{30, parts.particles[30].place});
+    const auto message = test::thrown_by([&] { check(parts); }).second;
+    EXPECT_NE(message.find("anchor of particle 31"), std::string::npos) << message;
+}
+
+/// J(q1) M⁻¹ Jᵀ(q0) x by the model's gradients, for random x and q1 near its start q0: solve() must return x. Its
+/// errors.
+template <class Model, class Description>
+Eigen::VectorXd errors_of_solving(Model& model, const Description& description, std::mt19937& random) {
+    std::uniform_real_distribution<double> number(-0.1, 0.1);
+    const auto start = Model::start(description);
+    const typename Model::Half q0 = start.head(start.size() / 2);
+    typename Model::Half q1 = q0, v = q0;
+    typename Model::Multipliers x(model.constraints()), image(model.constraints());
+    for (auto& c : q1) c += number(random);
+    for (auto& c : x) c = number(random);
+    v.setZero();
+    model.apply_multipliers(q0, x, v);
+    model.constraint_velocity(q1, v, image);
+    model.solve(q1, q0, image);
+    return image - x;
+}
+
+TEST(Mechanism, SolvesForMultipliersBetweenTwoPositions) {
+    auto braced = four_bars();
+    braced.particles.push_back({1, P(1.5, 2)});  // the factorisation adds entries to the matrix
+    for (const std::size_t corner : {two, three}) braced.constraints.push_back(Rod<double>{5 - 1, corner, 1});
+    std::mt19937 random(3);
+    for (const auto& [parts, maximum] :
+         {std::pair{braced, 2e-15}, {zigzag(40, true, false), 1e-11}, {zigzag(40, true, true), 1e-11}}) {
+        Mechanism<double> model(parts);
+        for (int i = 0; i < 50; ++i)
+            EXPECT_LT(errors_of_solving(model, parts, random).norm(), maximum);  // measured 4e-16
+    }
+}
+
+template <int N>
+void expect_rods_solved(std::size_t links) {
+    std::mt19937 random(5);
+    for (int i = 0; i < 100; ++i) {
+        const auto p = random_pendulum(random, links);
+        RodChain<double, N> model(p);
+        RodChain<double, Eigen::Dynamic> any(p);
+        auto same = random;
+        const auto errors = errors_of_solving(model, p, random);
+        EXPECT_LT(errors.norm(), 1e-13) << links;
+        EXPECT_EQ(errors_of_solving(any, p, same), errors) << links;  // bit-identical for any number of rods
+    }
+}
+
+TEST(RodChain, SolvesForMultipliersBetweenTwoPositions) {
+    expect_rods_solved<2>(2);
+    expect_rods_solved<3>(3);
+    for (const std::size_t links : {1u, 4u, 5u, 8u, 33u}) expect_rods_solved<Eigen::Dynamic>(links);
 }
 
 TEST(Mechanism, SizeIsThatOfWhatItIsMadeOf) {
@@ -224,5 +272,4 @@ TEST(Mechanism, SizeIsThatOfWhatItIsMadeOf) {
     EXPECT_DOUBLE_EQ(size({Anchor<double>{one, P(0, 0)}}, {Gravity<double>{}}), 1);
 }
 
-}  // namespace mechanism_test
-}  // namespace doppel
+}  // namespace doppel::mechanism_test

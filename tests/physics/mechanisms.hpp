@@ -31,4 +31,14 @@ inline Assembly<double> four_bars() {
             .forces = {Gravity<double>{}}};
 }
 
+/// A parallelogram of cranks of 1 m and a coupler of 2 m, which passes a position with all three aligned
+/// after about 0.09 s.
+/// There it could continue as a parallelogram or crossed, and the equations do not decide.
+inline Assembly<double> parallelogram() {
+    using namespace counted;
+    return {.particles = {{1, P(0.6, -0.8), P(6.4, 4.8)}, {1.5, P(2.6, -0.8), P(6.4, 4.8)}},
+            .constraints = {Rod<double>{one, P(0, 0), 1}, Rod<double>{two, P(2, 0), 1}, Rod<double>{one, two, 2}},
+            .forces = {Gravity<double>{}}};
+}
+
 }  // namespace doppel

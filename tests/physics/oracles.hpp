@@ -21,6 +21,16 @@ Energies<Scalar> energies_at(const PhysicalPendulum<Scalar>& p, const PhysicalCh
     return energies(p, bobs, {Scalar(0), place.x, place.y, velocity.x, velocity.y});
 }
 
+/// The rates of the state at the start.
+template <class Model, class Description>
+typename Model::State rate_at_start(const Description& description) {
+    Model model(description);
+    const typename Model::State y = Model::start(description);
+    auto rate = y;
+    model.rate(y, rate);
+    return rate;
+}
+
 /// Lagrange's equations of rigid bodies: M_ij = K_ij cos(θ_i − θ_j), with S_i = m_i a_i + l_i Σ_{k>i} m_k,
 /// K_ij = l_i S_j (i < j), K_ii = I_i + m_i a_i² + l_i² Σ_{k>i} m_k.
 struct Lagrange {

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace physical_chain_test {
+namespace doppel::physical_chain_test {
 
 using Chain = PhysicalChain<double>;
 
@@ -23,11 +22,8 @@ PhysicalPendulum<double> random_bodies(std::mt19937& random, std::size_t links) 
 
 /// θ″ of the links.
 Eigen::VectorXd accelerations(const PhysicalPendulum<double>& p) {
-    Chain chain(p);
-    const auto y = Chain::start(p);
-    auto rate = y;
-    chain.rate(y, rate);
-    return rate.segment(chain.layout.half, chain.layout.coordinates);
+    const Chain chain(p);
+    return rate_at_start<Chain>(p).segment(chain.layout.half, chain.layout.coordinates);
 }
 
 TEST(PhysicalChain, OfBodiesSolvesLagrangesEquations) {
@@ -42,15 +38,10 @@ TEST(PhysicalChain, OfBodiesSolvesLagrangesEquations) {
 TEST(PhysicalChain, AtRestBelowCoulombsTorqueStaysAtRestExactly) {
     auto p = physical(Pendulum<double>{{1, 1}, {1, 1}, {0.3, 0.2}, {0, 0}});
     p.friction.coulomb = {10, 5};  // at rest they need 7.7 and 1.9 N m
-    Chain chain(p);
-    const auto y = Chain::start(p);
-    auto rate = y;
-    chain.rate(y, rate);
-    EXPECT_EQ(rate.norm(), 0);
+    EXPECT_EQ(rate_at_start<Chain>(p).norm(), 0);
 
     p.friction.coulomb = {10, 1.9};
-    Chain slips(p);
-    slips.rate(y, rate);
+    const auto rate = rate_at_start<Chain>(p);
     EXPECT_EQ(rate[2 + 1], 0);  // the first joint sticks
     EXPECT_LT(rate[3 + 1], 0);
 }
@@ -111,9 +102,7 @@ TEST(PhysicalChain, WorkIsTheChangeOfEnergy) {
         p.pivot = {0.1, 0.2, 3, 0.4};
         p.torques = {{1, 0.7, 2, 0.3}};
         Chain chain(p);
-        const auto y = Chain::start(p);
-        auto rate = y;
-        chain.rate(y, rate);
+        const auto y = Chain::start(p), rate = rate_at_start<Chain>(p);
         const auto energy = [&](double h) {
             const auto parts = energies_at(p, chain, y + h * rate);
             return parts.kinetic + parts.potential;
@@ -123,5 +112,4 @@ TEST(PhysicalChain, WorkIsTheChangeOfEnergy) {
     }
 }
 
-}  // namespace physical_chain_test
-}  // namespace doppel
+}  // namespace doppel::physical_chain_test

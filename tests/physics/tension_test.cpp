@@ -12,8 +12,7 @@
 #include <cmath>
 #include <random>
 
-namespace doppel {
-namespace tension_test {
+namespace doppel::tension_test {
 
 using Forces = std::vector<double>;
 
@@ -114,5 +113,4 @@ TEST(Tension, IsNoNumberWhereItIsNotDetermined) {
     EXPECT_TRUE(std::isnan(forces[0]) && std::isnan(forces[1]));
 }
 
-}  // namespace tension_test
-}  // namespace doppel
+}  // namespace doppel::tension_test
