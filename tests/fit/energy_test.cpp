@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace energy_test {
+namespace doppel::energy_test {
 
 using namespace test;
 
@@ -15,7 +14,7 @@ double errors_from_zero(const Track& track, const Parameters& guess) {
 }
 
 /// The result of the fit of a track, or of the track with time reversed.
-std::pair<int, std::string> ending_of(const Track& track, bool backwards, Bodies bodies = Bodies::automatic) {
+Thrown ending_of(const Track& track, bool backwards, Bodies bodies = Bodies::automatic) {
     return ending([&] { return backwards ? reversed(track) : track; }, bodies);
 }
 
@@ -32,10 +31,10 @@ TEST(FitEnergy, TracksPlayedBackwardsAreRefused) {
     viscous[viscous_1] = 0.02, viscous[viscous_2] = 0.01;
     for (const auto& truth : {lab_arms(), viscous}) {
         const auto track = simulated(truth, Drag::carried, {.noise = 1e-3});
-        EXPECT_EQ(ending_of(track, false).first, 0);
+        EXPECT_EQ(ending_of(track, false).first, ExitCode::done);
         for (const auto bodies : {Bodies::automatic, Bodies::rigid}) {
             const auto [code, words] = ending_of(track, true, bodies);
-            EXPECT_EQ(code, 3);
+            EXPECT_EQ(code, ExitCode::method_failed);
             EXPECT_NE(words.find("gains energy"), std::string::npos) << words;
         }
     }
@@ -55,7 +54,7 @@ TEST(FitEnergy, TracksWithoutFrictionAreTaken) {
     for (unsigned seed = 1; seed <= 2; ++seed)
         for (const bool backwards : {false, true}) {
             const Measuring measuring{.noise = seed % 2 == 0 ? 1e-3 : 1e-5, .seed = seed};
-            EXPECT_EQ(ending_of(simulated(truth, Drag::own, measuring), backwards).second, "");
+            EXPECT_EQ(ending_of(simulated(truth, Drag::own, measuring), backwards).second, "no error");
         }
 }
 
@@ -72,5 +71,4 @@ TEST(FitEnergy, ALagIsNotTakenForEnergy) {
         }
 }
 
-}  // namespace energy_test
-}  // namespace doppel
+}  // namespace doppel::energy_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace model_test {
+namespace doppel::model_test {
 
 using namespace test;
 
@@ -90,5 +89,4 @@ TEST(FitPhysical, PointMassesStayPoints) {
     }
 }
 
-}  // namespace model_test
-}  // namespace doppel
+}  // namespace doppel::model_test

@@ -9,8 +9,7 @@
 #include <map>
 #include <sstream>
 
-namespace doppel {
-namespace program_test {
+namespace doppel::program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -208,5 +207,4 @@ TEST(FitProgram, ItsPresetSwingsAsTheTrackDid) {
     EXPECT_LT(worst_of_preset(folder, "points", track.pieces[0], "100"), 2e-3);  // measured 5e-4
 }
 
-}  // namespace program_test
-}  // namespace doppel
+}  // namespace doppel::program_test

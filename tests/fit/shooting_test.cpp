@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace doppel {
-namespace shooting_test {
+namespace doppel::shooting_test {
 
 using namespace test;
 
@@ -167,5 +166,4 @@ TEST(FitHorizon, TakesTheMedianOfCensoredTimes) {
     EXPECT_EQ(median_of({{1, true}, {2, false}, {3, true}, {4, true}, {5, false}}), 4);
 }
 
-}  // namespace shooting_test
-}  // namespace doppel
+}  // namespace doppel::shooting_test

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace start_test {
+namespace doppel::start_test {
 
 using namespace test;
 
@@ -49,5 +48,4 @@ TEST(FitStart, OfAModelThatCannotFollow) {
     EXPECT_LT(start.rms, 0.1);
 }
 
-}  // namespace start_test
-}  // namespace doppel
+}  // namespace doppel::start_test

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "errors.hpp"
 #include "fit/flow.hpp"
 #include "fit/initial_fit.hpp"
 #include "fit/result.hpp"
@@ -155,15 +156,10 @@ inline FitResult answered(const Track& track, Bodies bodies = Bodies::automatic)
     return analyse(track, {.bodies = bodies, .jobs = 2}, no_stop, [](const Progress&) {});
 }
 
-/// The exit code and the message of the fit of a track from work(); 0 if it succeeds.
+/// How the fit of a track from work() ends.
 template <class Work>
-std::pair<int, std::string> ending(const Work& work, Bodies bodies = Bodies::automatic) {
-    try {
-        answered(work(), bodies);
-    } catch (const Error& error) {
-        return {static_cast<int>(error.code()), error.what()};
-    }
-    return {0, ""};
+Thrown ending(const Work& work, Bodies bodies = Bodies::automatic) {
+    return thrown_by([&] { answered(work(), bodies); });
 }
 
 }  // namespace doppel::test

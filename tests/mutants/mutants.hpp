@@ -70,48 +70,34 @@ constexpr auto either(const Is& is, const Other& other) {
     }
 }
 
-#define DOPPEL_BINARY(number, op, other)                                              \
+/// `near` takes the place of `op` in half of the mutants of integers, `other` in the others and in all of floating-point
+/// numbers: a comparison's bound moves by one, or it is reversed.
+#define DOPPEL_OPERATOR(number, op, near, other)                                      \
     template <class A, int id>                                                        \
     constexpr Left<A, number, id> operator op(const A& a, M<id>) {                    \
         return {a};                                                                   \
     }                                                                                 \
     template <class A, int id, class B>                                               \
     constexpr auto operator op(Left<A, number, id> l, const B& b) {                   \
-        if constexpr (requires { l.a other b; }) {                                    \
+        if constexpr (id % 2 == 0 && std::integral<A> && std::integral<B>) {          \
+            return either<id>([&] { return l.a op b; }, [&] { return l.a near b; });  \
+        } else if constexpr (requires { l.a other b; }) {                             \
             return either<id>([&] { return l.a op b; }, [&] { return l.a other b; }); \
         } else {                                                                      \
             if (!std::is_constant_evaluated()) cannot_be(id);                         \
             return l.a op b;                                                          \
         }                                                                             \
     }
-DOPPEL_BINARY(1, +, -)
-DOPPEL_BINARY(2, -, +)
-DOPPEL_BINARY(3, *, /)
-DOPPEL_BINARY(4, /, *)
-DOPPEL_BINARY(5, ==, !=)
-DOPPEL_BINARY(6, !=, ==)
-
-/// For integers, half of the mutants move the bound by one; the others, and all of floating-point numbers, reverse it.
-#define DOPPEL_COMPARE(number, op, near, opposite)                                       \
-    template <class A, int id>                                                           \
-    constexpr Left<A, number, id> operator op(const A& a, M<id>) {                       \
-        return {a};                                                                      \
-    }                                                                                    \
-    template <class A, int id, class B>                                                  \
-    constexpr auto operator op(Left<A, number, id> l, const B& b) {                      \
-        if constexpr (id % 2 == 0 && std::integral<A> && std::integral<B>) {             \
-            return either<id>([&] { return l.a op b; }, [&] { return l.a near b; });     \
-        } else if constexpr (requires { l.a opposite b; }) {                             \
-            return either<id>([&] { return l.a op b; }, [&] { return l.a opposite b; }); \
-        } else {                                                                         \
-            if (!std::is_constant_evaluated()) cannot_be(id);                            \
-            return l.a op b;                                                             \
-        }                                                                                \
-    }
-DOPPEL_COMPARE(7, <, <=, >=)
-DOPPEL_COMPARE(8, <=, <, >)
-DOPPEL_COMPARE(9, >, >=, <=)
-DOPPEL_COMPARE(10, >=, >, <)
+DOPPEL_OPERATOR(1, +, -, -)
+DOPPEL_OPERATOR(2, -, +, +)
+DOPPEL_OPERATOR(3, *, /, /)
+DOPPEL_OPERATOR(4, /, *, *)
+DOPPEL_OPERATOR(5, ==, !=, !=)
+DOPPEL_OPERATOR(6, !=, ==, ==)
+DOPPEL_OPERATOR(7, <, <=, >=)
+DOPPEL_OPERATOR(8, <=, <, >)
+DOPPEL_OPERATOR(9, >, >=, <=)
+DOPPEL_OPERATOR(10, >=, >, <)
 
 /// Not<id>{} ^ b is b or its negation.
 template <int id>
