@@ -99,34 +99,29 @@ double rate_there(double theta, double omega, double length, double gravity) {
 }
 
 TEST(Flips, AreForbiddenBelowTheEnergyOfAnUprightRod) {
+    // below the limit of an angle or a rate, not above
+    const auto expect_limit = [](Pendulum<double> p, std::vector<double> Pendulum<double>::*numbers, std::size_t link,
+                                 double limit) {
+        double& number = (p.*numbers)[link];
+        number = limit * (1 - 1e-9);
+        EXPECT_TRUE(flip_is_forbidden(p)) << limit;
+        number = limit * (1 + 1e-9);
+        EXPECT_FALSE(flip_is_forbidden(p)) << limit;
+    };
+    const auto angle = &Pendulum<double>::angle, rate = &Pendulum<double>::rate;
+    const auto hanging = released({}, {0, 0});
     // −2 cosθ1 − cosθ2 < −2 + 1 for equal masses: at θ1 = 90° and θ2 = 180°, and at θ2 = 0 and θ1 = 90°
-    constexpr double little = 1e-9;
-    EXPECT_TRUE(flip_is_forbidden(released({}, {pi / 2 - little, 0})));
-    EXPECT_FALSE(flip_is_forbidden(released({}, {pi / 2 + little, 0})));
+    expect_limit(hanging, angle, 0, pi / 2);
     // W = 8 g, 1.5 g:  −8 cosθ1 − 1.5 = −9.5 + 3
-    const double heavy = std::acos(5.0 / 8);
-    EXPECT_TRUE(flip_is_forbidden(released(uneven(), {-heavy + little, 0})));
-    EXPECT_FALSE(flip_is_forbidden(released(uneven(), {-heavy - little, 0})));
+    expect_limit(released(uneven(), {0, 0}), angle, 0, -std::acos(5.0 / 8));
     // the upper rod flips more easily: W = 0.2 g, 1 g:  −0.2 − cosθ2 = −1.2 + 0.4
-    Pendulum<double> upper;
+    auto upper = hanging;
     upper.length = {0.1, 1};
-    const double far = std::acos(0.6);
-    EXPECT_TRUE(flip_is_forbidden(released(upper, {0, far - little})));
-    EXPECT_FALSE(flip_is_forbidden(released(upper, {0, far + little})));
+    expect_limit(upper, angle, 1, std::acos(0.6));
     // three links, W = 3 g, 2 g, 1 g:  −3 − 2 cosθ2 − 1 = −6 + 2
-    Pendulum<double> triple;
-    triple.mass = triple.length = {1, 1, 1};
-    triple.rate = {0, 0, 0};
-    triple.angle = {0, pi / 2 - little, 0};
-    EXPECT_TRUE(flip_is_forbidden(triple));
-    triple.angle[1] = pi / 2 + little;
-    EXPECT_FALSE(flip_is_forbidden(triple));
+    expect_limit({{1, 1, 1}, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}}, angle, 1, pi / 2);
     // hanging, the lower rod with a rate:  ½ m l² ω² = 2 m g l
-    Pendulum<double> struck;
-    struck.rate = {0, 2 * std::sqrt(struck.gravity) - little};
-    EXPECT_TRUE(flip_is_forbidden(struck));
-    struck.rate[1] += 2 * little;
-    EXPECT_FALSE(flip_is_forbidden(struck));
+    expect_limit(Pendulum<double>{.angle = {0, 0}}, rate, 1, 2 * std::sqrt(9.8));
 }
 
 /// The kernel itself, without the energy bound.

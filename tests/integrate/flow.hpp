@@ -144,9 +144,9 @@ double symplecticity_error(const Map& map, const State<Quad, 4>& z) {
     return static_cast<double>(Quad((s.transpose() * j * s - j).cwiseAbs().maxCoeff()));
 }
 
-/// The same for one step of two links without friction; their angles and rates begin the halves of the state.
-template <class Which, class Model, class System>
-double symplecticity_error(const System& p, const Quad& step) {
+/// The same for a map of the states of two links in angles; their angles and rates begin the halves of the state.
+template <class Model, class System, class Map>
+double symplecticity_error_in_angles(const System& p, const Map& map) {
     Model model(p);
     Canonical<Model> form(model);
     const typename Model::State start = Model::start(p);
@@ -163,11 +163,18 @@ double symplecticity_error(const System& p, const Quad& step) {
         at.head(2) = from.head(2);
         at.segment(half, 2) = from.tail(2);
         form.velocities(at, y);
-        y = after<Which, Model>(p, y, step, 1);
+        y = map(y);
         form.momenta(y, at);
         return links(at);
     };
     return symplecticity_error(one, links(z));
+}
+
+/// The same for one step of a method.
+template <class Which, class Model, class System>
+double symplecticity_error(const System& p, const Quad& step) {
+    return symplecticity_error_in_angles<Model>(
+        p, [&](const typename Model::State& y) { return after<Which, Model>(p, y, step, 1); });
 }
 
 }  // namespace doppel

@@ -196,21 +196,6 @@ auto end_by_series(const Assembly<S>& parts, const S& seconds, const S& toleranc
     return end_of<Taylor, Mechanism<S>>(parts, seconds, tolerance);
 }
 
-/// Springs with damping, attraction, a near droplet, straight and circular slots, and a loop.
-Assembly<double> of_everything() {
-    auto parts = four_bars();
-    parts.particles.push_back({0.7, P(3.5, 2)});
-    parts.particles.push_back({0.4, P(-1, 2), P(-1, 0.5)});
-    parts.constraints.push_back(SlotCircle<double>{5 - 1, P(3.5, 1), 1});
-    parts.constraints.push_back(SlotLine<double>{6 - 1, P(-1, 2), P(2, -1)});
-    parts.forces.push_back(Spring<double>{two, P(0, 2), 15, 0.5, 0.4});
-    parts.forces.push_back(Spring<double>{5 - 1, three, 9, 1});
-    parts.forces.push_back(Spring<double>{6 - 1, two, 4, 1.5, 0.1});
-    parts.forces.push_back(Attraction<double>{6 - 1, two, 1.5});
-    parts.forces.push_back(Droplet<double>{P(1, 3), 2, 3});
-    return parts;
-}
-
 TEST(TaylorMechanism, FollowsDop853) {
     const auto parts = of_everything();
     check(parts);

@@ -31,6 +31,22 @@ inline Assembly<double> four_bars() {
             .forces = {Gravity<double>{}}};
 }
 
+/// Springs with damping, attraction, a near droplet, straight and circular slots, and a loop.
+inline Assembly<double> of_everything() {
+    using namespace counted;
+    auto parts = four_bars();
+    parts.particles.push_back({0.7, P(3.5, 2)});
+    parts.particles.push_back({0.4, P(-1, 2), P(-1, 0.5)});
+    parts.constraints.push_back(SlotCircle<double>{5 - 1, P(3.5, 1), 1});
+    parts.constraints.push_back(SlotLine<double>{6 - 1, P(-1, 2), P(2, -1)});
+    parts.forces.push_back(Spring<double>{two, P(0, 2), 15, 0.5, 0.4});
+    parts.forces.push_back(Spring<double>{5 - 1, three, 9, 1});
+    parts.forces.push_back(Spring<double>{6 - 1, two, 4, 1.5, 0.1});
+    parts.forces.push_back(Attraction<double>{6 - 1, two, 1.5});
+    parts.forces.push_back(Droplet<double>{P(1, 3), 2, 3});
+    return parts;
+}
+
 /// A parallelogram of cranks of 1 m and a coupler of 2 m, which passes a position with all three aligned
 /// after about 0.09 s.
 /// There it could continue as a parallelogram or crossed, and the equations do not decide.
