@@ -11,7 +11,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -27,10 +26,10 @@ Scene butterfly() {
     return make_scene(read_preset(find_preset("butterfly")));
 }
 
-/// Calls visit(composer) for each of the frames, in order.
+/// Calls visit(composer) for each of `frames` frames, in order.
 template <class Visit>
-void for_each_frame(const Scene& scene, Visit&& visit) {
-    Recording recording(scene, {first + count}, true, never);
+void for_each_frame(const Scene& scene, long frames, Visit&& visit) {
+    Recording recording(scene, {first + frames}, true, never);
     Composer composer(scene, recording.bounds());
     recording.play([&](const Snapshot& snapshot) {
         composer.add(snapshot);
@@ -40,10 +39,9 @@ void for_each_frame(const Scene& scene, Visit&& visit) {
 
 void compose(benchmark::State& state) {
     const auto scene = butterfly();
-    Recording recording(scene, {first}, true, never);
-    Composer composer(scene, recording.bounds());
-    recording.play([&](const Snapshot& snapshot) { composer.add(snapshot); });
-    for (auto _ : state) benchmark::DoNotOptimize(composer.frame());
+    for_each_frame(scene, 0, [&](Composer& composer) {
+        for (auto _ : state) benchmark::DoNotOptimize(composer.frame());
+    });
 }
 BENCHMARK(compose)->Unit(benchmark::kMillisecond);
 
@@ -53,7 +51,7 @@ void draw(benchmark::State& state, Size size, bool converts) {
     preset.video.size = size;
     const auto scene = make_scene(preset);
     std::vector<DisplayList> lists;
-    for_each_frame(scene, [&](const Composer& composer) { lists.push_back(composer.frame()); });
+    for_each_frame(scene, count, [&](Composer& composer) { lists.push_back(composer.frame()); });
     Renderer renderer(size, Composer(scene, Recording(scene, {1}, true, never).bounds()).backdrop());
     SampledAreas converted;
     std::size_t k = 0;
@@ -68,18 +66,12 @@ void draw(benchmark::State& state, Size size, bool converts) {
     state.counters["wall ms"] = 1e3 * (seconds_of(CLOCK_MONOTONIC) - begun) / static_cast<double>(state.iterations());
     state.counters["px changed"] = pixels / static_cast<double>(state.iterations());
 }
-BENCHMARK_CAPTURE(draw, alone, Size{1920, 1080}, false)
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(count)
-    ->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(draw, alone_4k, Size{3840, 2160}, false)
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(count)
-    ->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(draw, and_convert_what_changed, Size{1920, 1080}, true)
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(count)
-    ->MeasureProcessCPUTime();
+void in_ms(benchmark::internal::Benchmark* drawn) {
+    drawn->Unit(benchmark::kMillisecond)->Iterations(count)->MeasureProcessCPUTime();
+}
+BENCHMARK_CAPTURE(draw, alone, Size{1920, 1080}, false)->Apply(in_ms);
+BENCHMARK_CAPTURE(draw, alone_4k, Size{3840, 2160}, false)->Apply(in_ms);
+BENCHMARK_CAPTURE(draw, and_convert_what_changed, Size{1920, 1080}, true)->Apply(in_ms);
 
 Picture one_frame(const Scene& scene) {
     Recording recording(scene, {first + 1}, true, never);

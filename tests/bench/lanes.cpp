@@ -1,7 +1,9 @@
 #include "integrate/batch.hpp"
 #include "integrate/widths.hpp"
+#include "physics/pendulums.hpp"
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 // A thousand steps of 64 trials in batches at 30 kHz, for each register width of this processor; `ns` is for one step
 // of one trial.
@@ -13,13 +15,8 @@ constexpr std::size_t trials = 64;
 
 /// Released between 60° and 120°, so that neighbours move differently.
 std::vector<Pendulum<double>> released(std::size_t links) {
-    std::vector<Pendulum<double>> all(trials);
-    for (std::size_t i = 0; i < trials; ++i) {
-        all[i].mass.assign(links, 1);
-        all[i].length.assign(links, 1);
-        all[i].angle.assign(links, radians(60 + static_cast<double>(i)));
-        all[i].rate.assign(links, 0);
-    }
+    std::vector<Pendulum<double>> all;
+    for (std::size_t i = 0; i < trials; ++i) all.push_back(from_rest(std::vector(links, 60 + static_cast<double>(i))));
     return all;
 }
 
@@ -47,8 +44,7 @@ const bool registered = [] {
             for (const auto& [name, model] :
                  {std::pair("angles", Model::angles), std::pair("constraints", Model::constraints)})
                 for (const std::size_t links : {2u, 3u}) {
-                    const auto title = std::string("lanes/") + method + "/" + name + "_" + std::to_string(links) +
-                                       "/width_" + std::to_string(width);
+                    const auto title = fmt::format("lanes/{}/{}_{}/width_{}", method, name, links, width);
                     benchmark::RegisterBenchmark(title.c_str(), thousand_steps, model, links, method, width)
                         ->Unit(benchmark::kMicrosecond);
                 }

@@ -3,37 +3,18 @@
 #include "base/error.hpp"
 
 #include <benchmark/benchmark.h>
+#include <fmt/chrono.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
+#include <sstream>
 #include <thread>
 
 namespace doppel {
 namespace {
-
-std::string standard_output_of(const std::string& command) {
-    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-    if (!pipe) throw io_failed("this cannot be run: {}", command);
-    std::string text;
-    for (int c = 0; (c = std::fgetc(pipe.get())) != EOF;) text += static_cast<char>(c);
-    return text;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines{""};
-    for (const char c : text)
-        if (c == '\n')
-            lines.emplace_back();
-        else
-            lines.back() += c;
-    lines.pop_back();
-    return lines;
-}
 
 /// The value in a line `name : value` or `NAME="value"` of a file.
 std::string said_in(const char* path, const std::string& name) {
@@ -66,6 +47,13 @@ public:
     std::map<std::string, double> counters;
 };
 
+void set_flag(std::string flag) {
+    std::string program = "bench";
+    char* words[] = {program.data(), flag.data(), nullptr};
+    int count = 2;
+    benchmark::Initialize(&count, words);
+}
+
 Result result_of(const std::string& name) {
     std::string exactly = "^";
     for (const char c : name) {
@@ -78,21 +66,19 @@ Result result_of(const std::string& name) {
     return result;
 }
 
-std::string month() {
-    char text[32];
-    const std::time_t now = std::time(nullptr);
-    std::tm parts{};
-    gmtime_r(&now, &parts);
-    std::strftime(text, sizeof text, "%B %Y", &parts);
-    return text;
-}
-
 }  // namespace
 
 std::vector<std::string> benchmark_names() {
-    const auto self = std::filesystem::read_symlink("/proc/self/exe").string();
+    // Google Benchmark lists the names where its reporter prints
+    std::ostringstream list;
+    Result reporter;
+    reporter.SetOutputStream(&list);
+    set_flag("--benchmark_list_tests=true");
+    benchmark::RunSpecifiedBenchmarks(&reporter, nullptr, ".");
+    set_flag("--benchmark_list_tests=false");
     std::vector<std::string> names;
-    for (const auto& line : lines_of(standard_output_of("'" + self + "' --benchmark_list_tests=true")))
+    std::istringstream lines(list.str());
+    for (std::string line; std::getline(lines, line);)
         if (line != "reference") names.push_back(line);
     return names;
 }
@@ -106,10 +92,7 @@ std::string key_of(const std::string& name) {
 
 Performance measure(const std::vector<std::string>& names, int rounds) {
     constexpr double long_s = 2;
-    std::string program = "bench", shortly = "--benchmark_min_time=0.05";
-    char* words[] = {program.data(), shortly.data(), nullptr};
-    int count = 2;
-    benchmark::Initialize(&count, words);
+    set_flag("--benchmark_min_time=0.05");
 
     std::map<std::string, std::vector<Round>> all;
     std::map<std::string, std::map<std::string, double>> counters;
@@ -138,7 +121,7 @@ Performance measure(const std::vector<std::string>& names, int rounds) {
                                             said_in("/proc/cpuinfo", "model name")),
                      .system = said_in("/etc/os-release", "PRETTY_NAME="),
                      .compiler = fmt::format("GCC {}", __VERSION__),
-                     .date = month(),
+                     .date = fmt::format("{:%B %Y}", fmt::gmtime(std::time(nullptr))),
                      .reference_ns = 0,
                      .reference_spread = 0,
                      .benchmarks = {}};

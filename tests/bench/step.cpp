@@ -2,12 +2,15 @@
 #include "integrate/runge_kutta.hpp"
 #include "peers/chain_rate.hpp"
 #include "physics/angle_chain.hpp"
+#include "physics/pendulums.hpp"
 #include "physics/physical_chain.hpp"
 #include "physics/rod_chain.hpp"
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
-#include <string>
+#include <type_traits>
+#include <vector>
 
 // A thousand steps of one pendulum at 30 kHz, every link released at 90°: the µs shown equal ns per step.
 
@@ -15,22 +18,10 @@ namespace doppel {
 namespace {
 
 template <class Model>
-constexpr bool is_of_bodies = false;
-template <>
-constexpr bool is_of_bodies<PhysicalChain<double>> = true;
-
-/// Rigid bodies: uniform rods in place of point masses, with viscous friction.
-template <class Model>
 auto released(std::size_t links) {
-    Pendulum<double> p;
-    p.mass.assign(links, 1);
-    p.length.assign(links, 1);
-    p.angle.assign(links, radians(90));
-    p.rate.assign(links, 0);
-    if constexpr (is_of_bodies<Model>) {
-        auto bodies = physical(p);
-        bodies.center.assign(links, 0.5);
-        bodies.inertia.assign(links, 1.0 / 12);
+    const auto p = from_rest(std::vector(links, 90.0));
+    if constexpr (std::is_same_v<Model, PhysicalChain<double>>) {
+        auto bodies = rods(p);
         bodies.friction.viscous.assign(links, 0.01);
         return bodies;
     } else {
@@ -40,7 +31,7 @@ auto released(std::size_t links) {
 
 template <class Stepper, class Model>
 void thousand_steps(const char* method, const char* model, std::size_t links) {
-    const auto title = std::string(model) + "_" + std::to_string(links) + "/" + method;
+    const auto title = fmt::format("{}_{}/{}", model, links, method);
     benchmark::RegisterBenchmark(title.c_str(), [links](benchmark::State& state) {
         const auto p = released<Model>(links);
         Model pendulum(p);

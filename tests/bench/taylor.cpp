@@ -1,6 +1,7 @@
 #include "integrate/taylor.hpp"
 
-#include "numeric/quad.hpp"
+#include "integrate/flow.hpp"
+#include "physics/pendulums.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -13,29 +14,14 @@
 namespace doppel {
 namespace {
 
-Pendulum<double> from_rest(const std::vector<double>& degrees) {
-    const std::vector<double> ones(degrees.size(), 1.0);
-    Pendulum<double> p{.mass = ones, .length = ones, .angle = {}, .rate = std::vector<double>(degrees.size(), 0.0)};
-    for (double angle : degrees) p.angle.push_back(radians(angle));
-    return p;
-}
-
-template <class Model, class Scalar = typename Model::Scalar>
-typename Model::State end_of(const Pendulum<Scalar>& p, const Scalar& seconds, const Scalar& tolerance) {
-    Model model(p);
-    TaylorStepper<Model> stepper(model, Model::start(p), tolerance);
-    stepper.advance(seconds);
-    return stepper.state();
-}
-
 /// The loosest tolerance, of eight per decade, whose error is within the target, as are those of the next two: a single
 /// one could be luck.
 template <int N>
 double tolerance_for(const Pendulum<double>& p, double seconds, double target) {
-    const auto exact = end_of<AngleChain<Quad, N>>(p.cast<Quad>(), Quad(seconds), Quad(1e-26));
+    const auto exact = end_of<Taylor, AngleChain<Quad, N>>(p.cast<Quad>(), seconds, 1e-26);
     int good = 0;
     for (int eighth = -16; eighth >= -120; --eighth) {
-        const auto end = end_of<AngleChain<double, N>>(p, seconds, std::pow(10, eighth / 8.0));
+        const auto end = end_of<Taylor, AngleChain<double, N>>(p, seconds, std::pow(10, eighth / 8.0));
         double error = 0;
         for (int i = 0; i < N; ++i)
             error = greater(error, std::abs(static_cast<double>(Quad(Quad(end[i]) - exact[i]))));
@@ -49,7 +35,7 @@ template <int N>
 void reach(benchmark::State& state, const std::vector<double>& degrees, double seconds, double target) {
     const auto p = from_rest(degrees);
     const double tolerance = tolerance_for<N>(p, seconds, target);
-    for (auto _ : state) benchmark::DoNotOptimize(end_of<AngleChain<double, N>>(p, seconds, tolerance));
+    for (auto _ : state) benchmark::DoNotOptimize(end_of<Taylor, AngleChain<double, N>>(p, seconds, tolerance));
     state.counters["tolerance"] = tolerance;
 }
 
@@ -75,7 +61,7 @@ BENCHMARK(step_of_chain)->RangeMultiplier(2)->Range(8, 1024)->Complexity()->Unit
 const bool registered = [] {
     for (double target : {1e-3, 1e-6, 1e-9, 1e-12}) {
         const auto add = [&](const std::string& name, auto run) {
-            benchmark::RegisterBenchmark((name + fmt::format("/{:.0e}", target)).c_str(), run)
+            benchmark::RegisterBenchmark(fmt::format("{}/{:.0e}", name, target).c_str(), run)
                 ->Unit(benchmark::kMicrosecond);
         };
         add("P1_90_90_10s", [target](benchmark::State& state) { reach<2>(state, {90, 90}, 10, target); });

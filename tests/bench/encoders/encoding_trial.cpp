@@ -14,7 +14,6 @@ extern "C" {
 #include <limits>
 #include <new>
 #include <span>
-#include <string>
 
 namespace doppel {
 namespace {

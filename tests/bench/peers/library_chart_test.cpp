@@ -7,8 +7,7 @@
 #include <fstream>
 #include <set>
 
-namespace doppel {
-namespace library_chart_test {
+namespace doppel::library_chart_test {
 
 /// The chart of a film of one second that is released from these angles.
 FigurePreset chart(const std::string& angles, const std::string& models_and_methods,
@@ -25,12 +24,12 @@ FigurePreset chart(const std::string& angles, const std::string& models_and_meth
     return figure;
 }
 
-/// Computes nothing, slowly.
-class Idle final : public Motion {
+/// Has no motion, at a given cost.
+class Resting final : public Motion {
 public:
-    explicit Idle(double setting) : setting_(setting) {}
+    Resting(double setting, Effort effort) : setting_(setting), effort_(effort) {}
     void advance(const std::atomic<bool>& /*stop*/) override {
-        if (setting_ < 1e-3) throw method_failed("idle: it gives up");
+        if (setting_ < minimum) throw method_failed("resting: it gives up");
     }
     void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) override {}
     Observation observe() const override {
@@ -38,18 +37,25 @@ public:
         seen.bobs.resize(2);
         return seen;
     }
-    Effort effort() const override { return {.steps = 3, .evaluations = 7}; }
+    Effort effort() const override { return effort_; }
 
 private:
+    static constexpr double minimum = 1e-3;
     double setting_;
+    Effort effort_;
 };
+
+/// A method with settings from 1e-4 to 1e-2, which gives up below 1e-3.
+ExternalMethod resting(const std::string& name, long steps, long evaluations, bool gives_up) {
+    return {name, true, 1e-4, 1e-2, [=](const Pendulum<double>&, double, double setting) {
+                return std::make_unique<Resting>(gives_up ? setting : 1,
+                                                 Effort{.steps = steps, .evaluations = evaluations});
+            }};
+}
 
 TEST(LibraryChart, HasAllSettings) {
     const auto figure =
-        chart("[90, 90]", "models = [\"angles\"]\nmethods = [\"taylor\"]\n",
-              {{"idle", true, 1e-4, 1e-2,
-                [](const Pendulum<double>&, double, double setting) { return std::make_unique<Idle>(setting); }}},
-              {});
+        chart("[90, 90]", "models = [\"angles\"]\nmethods = [\"taylor\"]\n", {resting("idle", 3, 7, true)}, {});
     const Table table(table_text(figure, computed(figure)));
     int given_up = 0, done = 0;
     const auto cell = [&](const auto& row, const char* column) {
@@ -65,30 +71,11 @@ TEST(LibraryChart, HasAllSettings) {
     EXPECT_EQ(given_up, 2);  // 3.16e-4, 1e-4
 }
 
-/// Has the exact result at a given cost.
-class Oracle final : public Motion {
-public:
-    explicit Oracle(long evaluations) : evaluations_(evaluations) {}
-    void advance(const std::atomic<bool>& /*stop*/) override {}
-    void advance_within(double /*share*/, const std::atomic<bool>& /*stop*/) override {}
-    Observation observe() const override {
-        Observation seen;
-        seen.bobs.resize(2);
-        return seen;
-    }
-    Effort effort() const override { return {.steps = 1, .evaluations = evaluations_}; }
-
-private:
-    long evaluations_;
-};
-
 TEST(LibraryChart, HasTheirFiveBestAndDoppelsBest) {
     // all report no motion, which is correct within 1e-8 for a pendulum almost at rest
     std::vector<ExternalMethod> libraries;
     for (const int cost : {70, 10, 60, 20, 50, 30, 40})
-        libraries.push_back(
-            {fmt::format("at {}", cost), true, 1e-4, 1e-2,
-             [cost](const Pendulum<double>&, double, double) { return std::make_unique<Oracle>(cost); }});
+        libraries.push_back(resting(fmt::format("at {}", cost), 1, cost, false));
     const auto figure = chart("[1e-7, 0]", "methods = [\"rk4\", \"taylor\", \"euler\"]\n", libraries,
                               {"work_precision.most_evaluations=5000", "work_precision.models=[\"angles\"]"});
     Figure page;
@@ -105,5 +92,4 @@ TEST(LibraryChart, HasTheirFiveBestAndDoppelsBest) {
     EXPECT_TRUE(page.captions[0].starts_with("In colour the five best methods of other libraries")) << page.captions[0];
 }
 
-}  // namespace library_chart_test
-}  // namespace doppel
+}  // namespace doppel::library_chart_test
