@@ -1,7 +1,7 @@
 #include "base/error.hpp"
 #include "cli/options.hpp"
 #include "film/film.hpp"
-#include "film/recording_file.hpp"
+#include "film/recording.hpp"
 #include "fit/start.hpp"
 #include "scene/resolved.hpp"
 

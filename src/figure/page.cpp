@@ -6,7 +6,6 @@
 #include "base/threads.hpp"
 #include "embedded/figure.hpp"
 #include "film/page.hpp"
-#include "film/page_json.hpp"
 #include "output/page.hpp"
 #include "output/png.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "figure/preset.hpp"
-#include "film/shards.hpp"
+#include "film/parts.hpp"
 #include "output/blocks.hpp"
 
 #include <atomic>

@@ -24,8 +24,7 @@ struct Heading {
 };
 
 std::vector<Heading> headings_of(const Scene& scene) {
-    const auto layout = scene.preset.video.layout;
-    const bool side_by_side = layout == Arrangement::side_by_side || layout == Arrangement::portrait;
+    const bool side_by_side = has_panel_for_each(scene.preset.video);
     const auto said = side_captions(scene, wording_of(scene));
     if (scene.is_single()) return {{0, 0, said[0]}};
     return {{0, 0, said[0]}, {side_by_side ? 1u : 0u, 1, said[1], side_by_side ? Align::left : Align::right}};

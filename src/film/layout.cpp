@@ -101,15 +101,14 @@ std::size_t panel_count(const VideoSpec& video) {
 
 /// Chooses the pendulums that each panel shows, and the axes of the phase portrait.
 void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& areas, const MotionBounds& seen) {
-    const auto kind = scene.preset.video.layout;
-    if (kind == Arrangement::side_by_side || kind == Arrangement::portrait) {
+    if (has_panel_for_each(scene.preset.video)) {
         for (std::size_t side = 0; side < 2; ++side) layout.panels.push_back({.area = areas[side], .shown = {side}});
         return;
     }
     std::vector<std::size_t> all(std::max(scene.members.size(), scene.letters().size()));
     std::iota(all.begin(), all.end(), std::size_t{0});
     layout.panels.push_back({.area = areas[0], .shown = std::move(all)});
-    if (kind != Arrangement::phase) return;
+    if (scene.preset.video.layout != Arrangement::phase) return;
     const Area& area = areas[1];
     const float em = px(layout.style.font.axis);
     const double fastest = 1.08 * std::max(seen.fastest, 1e-6) * 180 / pi;
@@ -143,12 +142,13 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     const float link =
         view.is_circle ? radius / static_cast<float>(std::max(scene.a.mass.size(), scene.b.mass.size())) : radius;
     // a mechanism has more parts to show; many members share the space of a few
-    const float size = view.is_circle ? size_of_many(scene.members.size()) : 0.6f;
+    const float of_many = size_of_many(scene.members.size()), size = view.is_circle ? of_many : 0.6f;
     // many thin rods remain separate; a few are at least as wide as lines
-    const float thinnest = size_of_many(scene.members.size()) < 1 ? 0.5f : 0.8f;
+    const float thinnest = of_many < 1 ? 0.5f : 0.8f;
     layout.rod_radius = std::max(std::min(0.0115f * size * radius, 0.2f * link), thinnest);
     layout.bob_radius = std::max(std::min(0.068f * size * radius, 0.3f * link), 1.6f * layout.rod_radius);
     if (link < 0.1f * radius) layout.last_bob_radius = std::max(layout.bob_radius, 0.02f * radius);
+    layout.style.width.trail = px(style.width.trail) * std::max(of_many, 0.4f);
     if (style.width.rod) layout.rod_radius = px(*style.width.rod / 2);
     if (style.width.bob) layout.bob_radius = px(*style.width.bob);
     if (style.width.bob) layout.last_bob_radius = std::min(layout.last_bob_radius, layout.bob_radius);
@@ -185,6 +185,76 @@ Layout make_tile(const Scene& scene, const MotionBounds& seen) {
     place_panels(layout, scene, regions.panels, seen);
     place_pendulums(layout, scene, seen);
     return layout;
+}
+
+// in units of the picture's height: curves of a strip; circles of a pair for which strips still go below
+constexpr float min_curves = 0.2f, max_curves = 0.34f, min_circle = 0.45f;
+// in units of the area: all strips below panels; a column of strips
+constexpr float max_below = 0.62f, min_column = 0.285f;
+
+constexpr std::size_t max_in_row = 3;  // strips in a row below panels
+
+/// Panels side by side, or one above the other, each below its heading.
+std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool stacked) {
+    const auto n = static_cast<float>(needs.panels);
+    const float gaps = (n - 1) * needs.gap;
+    const float width = stacked ? room.width() : std::floor((room.width() - gaps) / n);
+    const float height = std::floor(stacked ? (room.height() - gaps) / n : room.height());
+    std::vector<Area> areas;
+    for (std::size_t k = 0; k < needs.panels; ++k) {
+        const auto i = static_cast<float>(k);
+        const float left = room.left + (stacked ? 0 : i * (width + needs.gap)),
+                    top = room.top + (stacked ? i * (height + needs.gap) : 0);
+        areas.push_back({left, std::round(top + needs.heading), left + width, std::round(top + height)});
+    }
+    return areas;
+}
+
+/// Strips in columns, row by row, with curves of equal height.
+std::vector<Area> strip_cells(const Area& room, const RegionNeeds& needs, std::size_t columns) {
+    const auto rows = static_cast<float>((needs.strips + columns - 1) / columns), n = static_cast<float>(columns);
+    const float width = std::floor((room.width() - (n - 1) * needs.gap) / n);
+    const float height = (room.height() - needs.numbers) / rows;
+    std::vector<Area> cells;
+    for (std::size_t k = 0; k < needs.strips; ++k) {
+        const auto row = static_cast<float>(k / columns);
+        const float left = room.left + static_cast<float>(k % columns) * (width + needs.gap),
+                    top = room.top + row * height;
+        const float below = row + 1 < rows ? 0 : needs.numbers;
+        cells.push_back({left, std::round(top), left + width, std::round(top + height + below)});
+    }
+    return cells;
+}
+
+/// Diameter of the panels' circles, px.
+float circle_in(const Regions& regions) {
+    const auto& panel = regions.panels.front();
+    return std::min(panel.width(), panel.height()) / around_circle;
+}
+
+/// Strips get the height they need, and what the panels leave of the rest.
+Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_t columns, bool stacked) {
+    const auto rows = static_cast<float>((needs.strips + columns - 1) / columns), n = static_cast<float>(needs.panels),
+               across = static_cast<float>(columns);
+    const float words = rows * needs.caption((room.width() - (across - 1) * needs.gap) / across) + needs.numbers;
+    const float gap = needs.gap / 3, gaps = (n - 1) * needs.gap;
+    const float squares =
+        stacked ? n * (room.width() + needs.heading) + gaps : (room.width() - gaps) / n + needs.heading;
+    const float minimum = words + rows * min_curves * needs.height, maximum = words + rows * max_curves * needs.height;
+    const float strips =
+        std::min(std::clamp(room.height() - gap - squares, minimum, maximum), max_below * room.height());
+    const float part = std::round(room.bottom - strips);
+    return {panel_areas({room.left, room.top, room.right, part - gap}, needs, stacked),
+            strip_cells({room.left, part, room.right, room.bottom}, needs, columns)};
+}
+
+/// A single panel is a square; strips get the rest.
+Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
+    const float square = room.height() - needs.heading, minimum = min_column * room.width();
+    const float column = needs.panels == 1 ? std::max(room.width() - square - needs.gap, minimum) : minimum;
+    const float part = std::round(room.right - column);
+    return {panel_areas({room.left, room.top, part - needs.gap, room.bottom}, needs, false),
+            strip_cells({part, room.top, room.right, room.bottom}, needs, 1)};
 }
 
 }  // namespace
@@ -228,7 +298,7 @@ double ShownPendulum::least_bob() const {
     return thickest > 1 ? 0.5 * thickest : 1.6;
 }
 
-std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style) {
+std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style, bool share_panel) {
     std::vector<ShownPendulum> shown;
     const auto& theme = style.theme;
     const auto& listed = scene.preset.video.members.releases;
@@ -240,12 +310,37 @@ std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& styl
                                         : listed[k].color.value_or(theme.palette[k % theme.palette.size()])});
         ++k;
     }
-    if (!shown.empty()) return shown;
-    for (const char letter : scene.letters()) {
+    const bool is_ensemble = !shown.empty();
+    for (const char letter : is_ensemble ? "" : scene.letters()) {
         const auto& side = scene.side(letter);
         shown.push_back({side.motion, side, side.mass, theme.sides[shown.size()]});
     }
+    // if several share a panel, each has its own hue; many are more transparent
+    const bool is_alone = !is_ensemble && (shown.size() == 1 || !share_panel);
+    for (auto& one : shown) {
+        const auto hued = [&](Color color, float share) { return is_alone ? color : mixed(color, one.color, share); };
+        const auto clear = [&](float opacity) {
+            if (size_of_many(shown.size()) == 1) return one.color;
+            return one.color.with_alpha(
+                std::clamp(opacity * 14 / std::sqrt(static_cast<float>(shown.size())), 0.16f, 0.9f));
+        };
+        one.rod = is_ensemble ? clear(0.43f) : hued(theme.rod, 0.55f);
+        one.bob = hued(theme.bob, 0.4f);
+        one.trail = clear(0.5f);
+        one.ghost = scene.preset.video.transparent ? one.color.with_alpha(0.4f) : mixed(theme.panel, one.color, 0.26f);
+    }
     return shown;
+}
+
+std::vector<Place<double>> pivots_of(const Side& side) {
+    using Kind = MechanismLine::Kind;
+    std::vector<Place<double>> places;
+    for (const auto& line : side.lines) {
+        if (line.kind == Kind::slot_line || line.kind == Kind::slot_circle) continue;
+        for (const auto* end : {&line.from, line.kind == Kind::anchor ? nullptr : &line.to})
+            if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr) places.push_back(*place);
+    }
+    return places;
 }
 
 Point PendulumPanel::at(double x_m, double y_m) const {
@@ -283,6 +378,21 @@ Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind kin
     place_panels(layout, scene, regions.panels, seen);
     place_pendulums(layout, scene, seen);
     return layout;
+}
+
+Regions split(const Area& room, const RegionNeeds& needs) {
+    if (needs.panels == 0) return {{}, strip_cells(room, needs, needs.strips > max_in_row ? 2 : 1)};
+    const bool can_stack = needs.tall && needs.panels > 1;
+    if (needs.strips == 0) return {panel_areas(room, needs, can_stack), {}};
+    if (needs.tall) {
+        auto beside = with_strips_below(room, needs, 1, false), stacked = with_strips_below(room, needs, 1, true);
+        return can_stack && circle_in(stacked) > circle_in(beside) ? stacked : beside;
+    }
+    if (needs.panels > 1 && needs.strips <= max_in_row) {
+        auto below = with_strips_below(room, needs, needs.strips, false);
+        if (circle_in(below) >= min_circle * needs.height) return below;
+    }
+    return with_strips_beside(room, needs);
 }
 
 }  // namespace doppel

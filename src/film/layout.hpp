@@ -43,14 +43,19 @@ Color member_color(const Style& style, double share);
 struct ShownPendulum {
     const MotionSpec& motion;
     const Side& side;
-    std::vector<double> mass;  // kg
-    Color color;
+    std::vector<double> mass;     // kg
+    Color color;                  // of its last bob
+    Color rod{}, bob{}, trail{};  // of its rods, its other bobs, and its trail
+    Color ghost{};                // of all, where it is faint behind the other pendulum
 
     /// Radius of its lightest bobs, in units of the rods'.
     double least_bob() const;
 };
-/// From the first or front one on. `style`: for their colours.
-std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style = {});
+/// From the first or front one on. `style` and whether those of two sides share a panel: for their colours.
+std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style = {}, bool share_panel = false);
+
+/// The fixed ends of its rods and springs, m from its pivot.
+std::vector<Place<double>> pivots_of(const Side& side);
 
 /// A panel of pendulums and its map from metres to pixels.
 struct PendulumPanel {
@@ -81,6 +86,10 @@ struct StripLayout {
 /// Upright, for telephones.
 inline bool is_tall(const VideoSpec& video) {
     return video.size.height > video.size.width;
+}
+
+inline bool has_panel_for_each(const VideoSpec& video) {
+    return video.layout == Arrangement::side_by_side || video.layout == Arrangement::portrait;
 }
 
 /// The layout of a film's picture: a function of the scene and the bounds of its motion.

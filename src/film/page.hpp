@@ -1,6 +1,7 @@
 #pragma once
 
 #include "film/bounds.hpp"
+#include "film/layout.hpp"
 #include "film/recording.hpp"
 #include "output/page.hpp"
 #include "output/transaction.hpp"
@@ -8,6 +9,7 @@
 #include "scene/scene.hpp"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace doppel {
@@ -46,5 +48,15 @@ std::optional<HtmlPage> film_player(Scene scene);
 
 /// The approximate size in bytes of a scene's page.
 double estimated_page_bytes(const Scene& scene);
+
+/// An axis for the scripts of pages: its label, the values `from` … `to`, and the pixels `start` … `end`.
+Json axis_json(const Axis& axis, const std::string& label = "");
+
+/// The numbers in double of a motion's ideal chain of one to three links. Includes its method and steps if
+/// src/film/page/chain.js computes the motion bit for bit. null for any other motion.
+Json chain_json(const MotionSpec& motion);
+
+/// Whether the page computes all of these motions.
+bool page_computes(const Scene& scene);
 
 }  // namespace doppel

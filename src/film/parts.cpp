@@ -4,11 +4,29 @@
 #include "base/error.hpp"
 #include "film/film.hpp"
 #include "output/blocks.hpp"
+#include "output/files.hpp"
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 namespace doppel {
 namespace {
+
+namespace fs = std::filesystem;
+
+/// "2/8, 5/8": the missing parts, or the first ones.
+std::string missing_parts(const std::vector<fs::path>& parts) {
+    constexpr std::size_t max_named = 5;
+    std::vector<std::string> missing;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (parts[i].empty()) missing.push_back(fmt::format("{}/{}", i + 1, parts.size()));
+    const auto count = missing.size();
+    missing.resize(std::min(count, max_named));
+    return fmt::format("{}{}", fmt::join(missing, ", "), count > max_named ? fmt::format(" … {} in all", count) : "");
+}
 
 namespace fs = std::filesystem;
 
@@ -31,6 +49,59 @@ Shard shard_in(const BlockFile& part, const fs::path& path, const Scene& scene) 
 }
 
 }  // namespace
+
+std::optional<Shard> shard_of(const Json& header) {
+    const auto number = [&](const char* key) { return header.is_object() ? header.value(key, Json()) : Json(); };
+    const auto shard = number("shard"), of = number("of");
+    if (!shard.is_number_integer() || !of.is_number_integer() || shard < 1 || of < shard || of > max_parts)
+        return std::nullopt;
+    return Shard{shard, of};
+}
+
+void check_identity(const fs::path& path, const Json& header, const Json& wanted, const Shard& shard,
+                    std::string_view verb) {
+    constexpr std::size_t hash_digits = 12;
+    for (const auto& [key, ours] : wanted.items()) {
+        const auto theirs = header.value(key, Json());
+        if (theirs == ours) continue;
+        const bool is_hash = key == "preset_sha256";
+        const auto text = [&](const Json& value) {
+            const auto words = value.is_string() ? value.get<std::string>() : value.dump();
+            return words.substr(0, is_hash ? hash_digits : words.size());
+        };
+        throw bad_input("{} was made with another {}: {}, not {}; {} it again with --shard {}/{}", path.string(),
+                        is_hash ? "preset, --set, --size or --format" : key, text(theirs), text(ours), verb,
+                        shard.number, shard.of);
+    }
+}
+
+std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
+                                const std::function<Shard(const fs::path&)>& take) {
+    std::vector<fs::path> parts;  // by number; empty if not seen yet
+    fs::path first;
+    if (type_of(folder) == fs::file_type::directory)
+        for (const auto& file : names_in(folder)) {
+            if (!file.starts_with(name + ".") || !file.ends_with(".shard")) continue;
+            const auto path = folder / file;
+            const auto shard = take(path);
+            const auto of = static_cast<std::size_t>(shard.of);
+            if (parts.empty()) first = path, parts.resize(of);
+            if (of != parts.size())
+                throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong",
+                                path.string(), of, first.string(), parts.size());
+            auto& seen = parts[static_cast<std::size_t>(shard.number) - 1];
+            if (!seen.empty())
+                throw bad_input("{} and {} are both part {}/{}; remove one of them", seen.string(), path.string(),
+                                shard.number, of);
+            seen = path;
+        }
+    if (parts.empty())
+        throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
+                        folder.string(), name);
+    if (const auto missing = missing_parts(parts); !missing.empty())
+        throw try_again("{}: missing parts: {}", folder.string(), missing);
+    return parts;
+}
 
 long max_shards(const Scene& scene) {
     return scene.preset.video.format_row().has_parts() ? video_options(scene).segments() : 1;

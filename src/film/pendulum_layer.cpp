@@ -23,11 +23,9 @@ void add_line(Point from, Point to, float radius, Color color, const Area& area,
 class PendulumLayer final : public Layer {
 public:
     PendulumLayer(const FilmState& state, const PendulumPanel& panel) : Layer(state), panel_(panel) {
-        const float thinner = std::max(size_of_many(pendulums_.size()), 0.4f);
         for (const auto& pendulum : pendulums_) {
             heaviest_ = std::max(heaviest_, std::ranges::max(pendulum.mass));
-            paths_.push_back(
-                {{state.scene, style_, hue(pendulum, 0.5f), px(style_.width.trail) * thinner}, std::nullopt});
+            paths_.push_back({{state.scene, style_, pendulum.trail, px(style_.width.trail)}, std::nullopt});
         }
     }
 
@@ -48,8 +46,7 @@ private:
     void extend(Path& path, const Bob<double>& bob) const;
     void draw_trail(std::size_t k, DisplayList& list) const;
     bool coincide() const;
-    void draw_bobs(std::size_t k, Color of_others, DisplayList& list) const;
-    Color hue(const ShownPendulum& pendulum, float opacity) const;
+    void draw_bobs(std::size_t k, DisplayList& list) const;
     void draw_lines(std::size_t k, float radius, Color color, DisplayList& list) const;
     Point place_at(const Side& side, const Place<double>& place) const;
     void draw_slots(const Side& side, DisplayList& list) const;
@@ -77,7 +74,7 @@ private:
 
     const PendulumPanel& panel_;
     const VideoSpec& video_ = state_.scene.preset.video;
-    const std::vector<ShownPendulum>& pendulums_ = state_.pendulums;
+    const std::vector<ShownPendulum> pendulums_ = shown_pendulums(state_.scene, style_, panel_.shown.size() > 1);
     const bool is_ensemble_ = !state_.scene.members.empty(), is_many_ = size_of_many(pendulums_.size()) < 1;
     double heaviest_ = 1e-300;  // kg
     std::vector<Path> paths_;
@@ -132,8 +129,7 @@ void PendulumLayer::draw_trail(std::size_t k, DisplayList& list) const {
     ahead.trail.draw(panel_.area, state_.time(), still_at(bob), list, shift());
 }
 
-/// The last pendulum behind: trails, rods, pivots and bobs. If several pendulums share a panel, each has its own hue.
-/// Many are transparent, with their last bobs on top.
+/// The last pendulum behind: trails, rods, pivots and bobs; of many, the last bobs are on top.
 void PendulumLayer::frame(DisplayList& list) const {
     if (video_.view.follow > 0) draw_surroundings(list);
     const auto& shown = panel_.shown;
@@ -141,8 +137,7 @@ void PendulumLayer::frame(DisplayList& list) const {
     // the other pendulum, faint and behind; this side hides it as long as both move together
     if (alone && shows("twin") && !state_.scene.is_single() && !coincide()) {
         const std::size_t other = 1 - shown.front();
-        const Color color = pendulums_[other].color;
-        const Color ghost = video_.transparent ? color.with_alpha(0.4f) : mixed(theme_.panel, color, 0.26f);
+        const Color ghost = pendulums_[other].ghost;
         draw_lines(other, 0.7f * layout_.rod_radius, ghost, list);
         for (std::size_t i = 0; shows("bobs") && layout_.bob_radius > 0 && i < bobs(other).size(); ++i)
             draw_disc(at(bobs(other)[i]), bob_radius(other, i), ghost, list);
@@ -150,10 +145,9 @@ void PendulumLayer::frame(DisplayList& list) const {
     for (auto k = shown.rbegin(); k != shown.rend(); ++k) draw_trail(*k, list);
     for (auto k = shown.rbegin(); k != shown.rend(); ++k) {
         const auto& pendulum = pendulums_[*k];
-        const auto hued = [&](Color color, float share) { return alone ? color : mixed(color, pendulum.color, share); };
-        draw_lines(*k, layout_.rod_radius, is_ensemble_ ? hue(pendulum, 0.43f) : hued(theme_.rod, 0.55f), list);
+        draw_lines(*k, layout_.rod_radius, pendulum.rod, list);
         if (!is_ensemble_) draw_pivots(pendulum.side, list);
-        if (!is_many_) draw_bobs(*k, hued(theme_.bob, 0.4f), list);
+        if (!is_many_) draw_bobs(*k, list);
     }
     if (is_ensemble_) draw_pivots(state_.scene.a, list);
     if (!is_many_ || !shows("bobs") || !(layout_.bob_radius > 0)) return;
@@ -173,22 +167,15 @@ bool PendulumLayer::coincide() const {
 }
 
 /// Bobs with a contrasting rim. The last one of a long chain is visible, except in an ensemble.
-void PendulumLayer::draw_bobs(std::size_t k, Color of_others, DisplayList& list) const {
+void PendulumLayer::draw_bobs(std::size_t k, DisplayList& list) const {
     if (!shows("bobs") || !(layout_.bob_radius > 0)) return;
     for (std::size_t i = 0; i < bobs(k).size(); ++i) {
         const bool last = i + 1 == bobs(k).size();
         const float radius = std::max(bob_radius(k, i), last && !is_ensemble_ ? layout_.last_bob_radius : 0);
         const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
         if (!video_.transparent) draw_disc(at(bobs(k)[i]), radius + rim, theme_.panel, list);
-        draw_disc(at(bobs(k)[i]), radius, last ? pendulums_[k].color : of_others, list, last ? style_.glow : 0);
+        draw_disc(at(bobs(k)[i]), radius, last ? pendulums_[k].color : pendulums_[k].bob, list, last ? style_.glow : 0);
     }
-}
-
-/// The colour of a pendulum; many are more transparent, few are opaque.
-Color PendulumLayer::hue(const ShownPendulum& pendulum, float opacity) const {
-    if (!is_many_) return pendulum.color;
-    return pendulum.color.with_alpha(
-        std::clamp(opacity * 14 / std::sqrt(static_cast<float>(pendulums_.size())), 0.16f, 0.9f));
 }
 
 /// Rods, and springs as thin zigzags.
@@ -247,14 +234,7 @@ Point PendulumLayer::place_at(const Side& side, const Place<double>& place) cons
 void PendulumLayer::draw_pivots(const Side& side, DisplayList& list) const {
     if (!shows("rods") || !(layout_.rod_radius > 0)) return;
     const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
-    for (const auto& line : side.lines) {
-        using Kind = MechanismLine::Kind;
-        if (line.kind == Kind::slot_line || line.kind == Kind::slot_circle) continue;
-        const bool one_end = line.kind == Kind::anchor;
-        for (const auto* end : {&line.from, one_end ? nullptr : &line.to})
-            if (const auto* place = end ? std::get_if<Place<double>>(end) : nullptr)
-                draw_disc(place_at(side, *place), radius, theme_.pivot, list);
-    }
+    for (const auto& place : pivots_of(side)) draw_disc(place_at(side, place), radius, theme_.pivot, list);
 }
 
 /// A disc; it is not drawn if the run diverges and it leaves the panel.

@@ -7,7 +7,6 @@
 #include "film/pair_table.hpp"
 #include "film/parts.hpp"
 #include "film/recording.hpp"
-#include "film/recording_file.hpp"
 #include "output/transaction.hpp"
 #include "scene/scene.hpp"
 

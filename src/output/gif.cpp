@@ -1,5 +1,3 @@
-#include "output/gif.hpp"
-
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/shared_library.hpp"

@@ -1,6 +1,5 @@
 #include "film/page.hpp"
 
-#include "film/page_json.hpp"
 #include "film/runs.hpp"
 #include "numeric/state.hpp"
 #include "output/packed.hpp"

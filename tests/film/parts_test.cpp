@@ -1,7 +1,7 @@
 // Films in parts, recordings, events and chapters.
 #include "errors.hpp"
 #include "film/film.hpp"
-#include "film/recording_file.hpp"
+#include "film/recording.hpp"
 #include "film/runs.hpp"
 #include "output/decoded.hpp"
 

@@ -180,8 +180,8 @@ canvas.onpointercancel = canvas.onpointerup;
 // Controls
 
 const playOrPause = () => play(!isPlaying);
-const [toStart, toEnd] = [() => go(0), () => go(film.duration_s)];
-onKeys({ " ": playOrPause, ArrowLeft: goBy(-1), ArrowRight: goBy(1), Home: toStart, End: toEnd });
+onKeys({ " ": playOrPause, ArrowLeft: goBy(-1), ArrowRight: goBy(1), Home: () => go(0),
+  End: () => go(film.duration_s) });
 const clicks = {
   play: playOrPause,
   close: () => { play(false); $(".player").hidden = true; },

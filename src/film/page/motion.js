@@ -63,13 +63,13 @@ function motionOf(of, states) {
   return { of, pendulums, computed, phase, drift: mostOf(energy.map(mostOf)) };
 }
 
-// Adds the curves of strips: computed ones, and those that the page holds: floats, of a phase panel at the end.
+// Adds the curves of strips: computed ones, of the film also those that the page holds: floats, of a phase panel at the
+// end.
 async function withCurves(motion, isOriginal) {
   const held = film.curves && isOriginal ? new Float32Array((await unpacked(film.curves, 4, 1)).buffer) : [];
   let at = 0;
   const next = () => isOriginal ? held.subarray(at, at += count) : numbers(() => NaN);
-  motion.curves = strips.map(({ kind, pens, isHeld }) =>
-    (isHeld && isOriginal ? null : motion.computed?.[kind]) ?? pens.map(next));
+  motion.curves = strips.map(({ kind, pens }) => motion.computed?.[kind] ?? pens.map(next));
   if (film.phase) motion.phase ??= [0, 1].map(() => [next(), next(), next()]);
   motion.distance = motion.curves[strips.findIndex(strip => strip.kind === "distance")]?.[0];
   motion.since = motion.distance ? divergence(motion.distance) : NaN;

@@ -1,5 +1,5 @@
 // player.js: draws the film at any time. What is drawn, and in what order, is what src/film/pendulum_layer.cpp,
-// strip_layer.cpp and phase_layer.cpp draw; lengths are pixels of the film's picture.
+// strips.cpp and phase_layer.cpp draw; lengths are pixels of the film's picture.
 "use strict";
 const canvas = $("canvas"), g = canvas.getContext("2d");
 const isEnsemble = layout === "ensemble", isMany = bodies.length > 8, shows = part => film.show.includes(part);
@@ -7,15 +7,9 @@ let picture = film.pictures[0];
 let motion = null, original = null;  // what is shown, and the film's own
 let time = 0;                        // s
 
-// Colours, "#rrggbb" or "#rrggbbaa"
+// What pictures are made of; colours are "#rrggbb" or "#rrggbbaa".
 
-const hex = byte => Math.round(byte).toString(16).padStart(2, "0");
-const byteOf = (color, i) => parseInt(color.slice(2 * i - 1, 2 * i + 1), 16);
-const mixed = (a, b, u) => "#" + [1, 2, 3].map(i => hex((1 - u) * byteOf(a, i) + u * byteOf(b, i))).join("");
-const faded = (color, alpha) => color.slice(0, 7) + hex(255 * clamp(alpha, 0, 1));
-
-// What pictures are made of
-
+const faded = (color, alpha) => color.slice(0, 7) + Math.round(255 * alpha).toString(16).padStart(2, "0");
 function paint(style, trace) {
   Object.assign(g, style);
   g.beginPath();
@@ -103,7 +97,8 @@ function trailOf(at, lists) {
 
 // Rods, springs as zigzags, and pivots where ends are fixed.
 function drawLines(k, { bobs, pivot }, at, radius, color, hasPivots = true) {
-  const lines = shows("rods") && radius > 0 ? bodies[k].lines : [], { bob, last_bob, reach } = picture;
+  if (!shows("rods") || !(radius > 0)) return;
+  const { lines, pivots } = bodies[k], { bob, last_bob, reach } = picture;
   const place = end => at(end.length ? [end[0] + pivot[0], end[1] + pivot[1]] : bobs[end]);
   for (const [kind, from, to, width] of lines) {
     const [a, b] = [place(from), place(to)], [x, y] = [b[0] - a[0], b[1] - a[1]];
@@ -112,54 +107,47 @@ function drawLines(k, { bobs, pivot }, at, radius, color, hasPivots = true) {
       return [a[0] + share * x - aside * y, a[1] + share * y + aside * x];
     });
     if (kind === "rod") line(a, b, width * radius, color);
-    if (kind === "spring") stroke(color, 0.9 * radius, () => polyline([a, ...turns, b]));
+    else stroke(color, 0.9 * radius, () => polyline([a, ...turns, b]));
   }
-  const fixed = { rod: 2, spring: 2, anchor: 1 };
-  const pivots = lines.flatMap(([kind, ...ends]) => ends.slice(0, fixed[kind] ?? 0));
-  for (const end of hasPivots ? pivots.filter(end => end.length) : [])
+  for (const end of hasPivots ? pivots : [])
     disc(place(end), Math.max(0.4 * bob, 0.5 * last_bob, 0.012 * reach), theme.pivot);
 }
 
-// Bobs from `first` on, the last one in a colour of its own, where they are in the panel.
-function drawBobs(k, poses, at, [left, top, right, bottom], { first = 0, last, others, least = 0, glow = 0, rim = 0 }) {
-  const { bobs, mass } = poses[k], end = bobs.length - 1;
-  const heaviest = mostOf([1e-300, ...poses.flatMap(pose => pose.mass)]);
+// Bobs, the last one in a colour of its own, where they are in the panel; of many pendulums only the last one.
+function drawBobs(k, poses, at, [left, top, right, bottom], ghost) {
+  const { bobs, mass } = poses[k], { color, bob, least_bob } = bodies[k], end = bobs.length - 1;
+  const heaviest = mostOf([1e-300, ...poses.flatMap(pose => pose.mass)]), first = isMany ? end : 0;
   for (let i = shows("bobs") && picture.bob > 0 ? first : end + 1; i <= end; ++i) {
-    const smallest = Math.max(bodies[k].least_bob * picture.rod, i === end ? least : 0), [x, y] = at(bobs[i]);
-    const radius = Math.max(picture.bob * Math.sqrt(mass[i] / heaviest), smallest), edge = film.view ? radius : 0;
+    const isLast = i === end && !ghost, least = isLast && !isEnsemble ? picture.last_bob : 0, [x, y] = at(bobs[i]);
+    const radius = Math.max(picture.bob * Math.sqrt(mass[i] / heaviest), least_bob * picture.rod, least);
+    const edge = film.view ? radius : 0, rim = Math.min(Math.max(2 * picture.unit, 0.75), 0.3 * radius);
     if (!isIn([x, y], [left + edge, top + edge, right - edge, bottom - edge])) continue;
-    if (rim > 0 && !film.transparent) disc([x, y], radius + Math.min(rim, 0.3 * radius), theme.panel);
-    disc([x, y], radius, i === end ? last : others, i === end ? glow : 0);
+    if (!ghost && !isMany && !film.transparent) disc([x, y], radius + rim, theme.panel);
+    disc([x, y], radius, ghost ?? (isLast ? color : bob), isLast ? picture.glow : 0);
   }
 }
 
-// The pendulums of a panel; of one alone the other as a shadow behind it. The more members an ensemble has, the more
-// they let through.
+// The pendulums of a panel; of one alone the other as a ghost behind it.
 function drawPanel(panel, poses) {
-  const at = viewOf(panel, poses), { area, shown } = panel, fromBehind = [...shown].reverse(), { rod, glow } = picture;
-  const isAlone = !isEnsemble && shown.length === 1, other = 1 - shown[0], root = Math.sqrt(bodies.length);
-  const hue = (k, opacity) => isMany ? faded(bodies[k].color, clamp(opacity * 14 / root, 0.16, 0.9)) : bodies[k].color;
-  const hued = (k, color, share) => isAlone ? color : mixed(color, bodies[k].color, share);
+  const at = viewOf(panel, poses), { area, shown } = panel, fromBehind = [...shown].reverse(), { rod } = picture;
+  const isAlone = !isEnsemble && shown.length === 1, other = 1 - shown[0];
   g.save();
   g.beginPath();
   g.rect(area[0], area[1], area[2] - area[0], area[3] - area[1]);
   g.clip();
   if (film.follow && picture.reach > 0 && shows("circle")) ring(at([0, 0]), picture.reach, picture.grid, theme.grid);
   if (isAlone && poses.length > 1 && shows("twin")) {
-    const { color } = bodies[other], shadow = film.transparent ? faded(color, 0.4) : mixed(theme.panel, color, 0.26);
-    drawLines(other, poses[other], at, 0.7 * rod, shadow, false);
-    drawBobs(other, poses, at, area, { last: shadow, others: shadow });
+    const { ghost } = bodies[other];
+    drawLines(other, poses[other], at, 0.7 * rod, ghost, false);
+    drawBobs(other, poses, at, area, ghost);
   }
-  const trail = picture.trail * (isMany ? clamp(Math.sqrt(8) / root, 0.4, 1) : 1);
-  for (const k of film.trail_s > 0 && trail > 0 ? fromBehind : [])
-    fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), trail, hue(k, 0.5));
+  for (const k of film.trail_s > 0 && picture.trail > 0 ? fromBehind : [])
+    fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), picture.trail, bodies[k].trail);
   for (const k of fromBehind) {
-    const { color: last } = bodies[k], others = hued(k, theme.bob, 0.4), least = isEnsemble ? 0 : picture.last_bob;
-    drawLines(k, poses[k], at, rod, isEnsemble ? hue(k, 0.43) : hued(k, theme.rod, 0.55));
-    if (!isMany) drawBobs(k, poses, at, area, { last, others, least, glow, rim: Math.max(2 * picture.unit, 0.75) });
+    drawLines(k, poses[k], at, rod, bodies[k].rod);
+    if (!isMany) drawBobs(k, poses, at, area);
   }
-  for (const k of isMany ? fromBehind : [])
-    drawBobs(k, poses, at, area, { first: poses[k].bobs.length - 1, last: bodies[k].color });
+  for (const k of isMany ? fromBehind : []) drawBobs(k, poses, at, area);
   g.restore();
 }
 
