@@ -1,9 +1,9 @@
 #include "track/regression.hpp"
 
 #include "base/error.hpp"
-#include "numeric/solvers.hpp"
 #include "numeric/portable_math.hpp"
 #include "numeric/sin_cos.hpp"
+#include "numeric/solvers.hpp"
 
 #include <algorithm>
 #include <cmath>
