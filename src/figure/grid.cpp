@@ -352,12 +352,14 @@ Preset Grid::pair_at(const Cell& cell) const {
     return pair;
 }
 
-/// The number of links comes first: it makes equal links.
+/// In an order for which neither changes what the other has set: numbers of links, which make equal links; keys of both
+/// sides; those of one side, and ratios, which depend on others.
 void Grid::put(const Cell& cell, Preset& pair) const {
     const auto& x = groups_[cell.group].x;
-    if (y_.is_whole()) y_.put(pair, cell.row);
-    x.put(pair, cell.column, difference_);
-    if (!y_.is_whole()) y_.put(pair, cell.row);
+    const bool is_x_first = x.rank() < y_.rank();
+    if (is_x_first) x.put(pair, cell.column, difference_);
+    y_.put(pair, cell.row);
+    if (!is_x_first) x.put(pair, cell.column, difference_);
 }
 
 /// The first cell of a trial, and the number of its cells.

@@ -68,8 +68,10 @@ void GridAxis::fields(KeyVisitor& visit) {
     const Condition even{
         are_even, exists() ? "is for even values; give it, or values" : "is for an axis, and this one has no key",
         visit.from_command_line("values")};
-    visit({.key = "from", .help = "the first value; for a map the lower edge", .only = even}, from);
-    visit({.key = "to", .help = "the last value; for a map the upper edge", .only = even}, to);
+    visit({.key = "from", .help = "the first value; for a map the lower edge, or the first whole number", .only = even},
+          from);
+    visit({.key = "to", .help = "the last value; for a map the upper edge, or the last whole number", .only = even},
+          to);
     visit({.key = "spacing", .help = "by equal differences, or by equal ratios", .only = even}, spacing);
     visit({"points", "number of values; for a map number of cells, each computed at its centre", "",
            from_to(2, max_points), "given by `step`",
@@ -212,12 +214,12 @@ void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
     if (values) {
         for (const auto& text : values->texts) require(table, "values", numbers_.emplace_back(parse_quad(text)));
         count = numbers_.size();
-        if (are_cells) find_spacing(table);
     } else {
         find_even_values(table);
     }
     if (number_)
         for (auto& number : numbers_) number = number_->taken(number, pair);
+    if (are_cells && are_centers()) find_spacing(table, values ? "values" : "points");
 }
 
 void GridAxis::find_even_values(const TomlReader& table) {
@@ -235,22 +237,21 @@ void GridAxis::find_even_values(const TomlReader& table) {
     for (std::size_t i = 0; i < count; ++i) numbers_.push_back(even_value(i));
 }
 
-void GridAxis::find_spacing(const TomlReader& table) {
+void GridAxis::find_spacing(const TomlReader& table, std::string_view of) {
     constexpr double slack = 1e-9;  // of decimals
     const auto is_even = [&](Spacing by) {
         const auto at = [&](std::size_t i) {
-            return by == Spacing::linear ? static_cast<double>(numbers_[i])
-                                         : std::log(static_cast<double>(numbers_[i]));
+            const auto number = static_cast<double>(numbers_[i]);
+            return by == Spacing::linear ? number : std::log(number);
         };
         const double step = (at(count - 1) - at(0)) / static_cast<double>(count - 1);
         for (std::size_t i = 0; i < count; ++i)
             if (!(std::abs(at(i) - at(0) - step * static_cast<double>(i)) <= slack * step)) return false;
-        return true;
+        return by == Spacing::logarithmic || !bounds_.has_low() || at(0) - step / 2 >= bounds_.low;
     };
-    if (count < 2 || (!is_even(Spacing::linear) && !is_even(Spacing::logarithmic)))
-        throw table.error("values",
-                          "must increase by equal steps or by equal ratios, as centres of the cells of a map");
-    spacing = is_even(Spacing::linear) ? Spacing::linear : Spacing::logarithmic;
+    if (values) spacing = is_even(Spacing::linear) ? Spacing::linear : Spacing::logarithmic;
+    if (count < 2 || !is_even(spacing))
+        throw table.error(of, "must increase by equal steps or by equal ratios, as centres of the cells of a map");
 }
 
 std::size_t GridAxis::even_steps(const TomlReader& table) const {
@@ -326,6 +327,11 @@ void GridAxis::put(Preset& pair, std::size_t i, const Quad& difference) const {
     if (!release_) return;
     release_->set(pair.a, value(i));
     release_->set(pair.b, value(i) + difference);
+}
+
+int GridAxis::rank() const {
+    const bool is_ratio = release_ && release_->is_ratio;
+    return is_whole() ? 0 : is_ratio || (number_ && number_->sides != NumericKey::Sides::both) ? 2 : 1;
 }
 
 void GridAxis::put_both(Preset& pair) const {

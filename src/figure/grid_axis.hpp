@@ -50,6 +50,8 @@ struct GridAxis {
     bool is_setting() const { return key == "setting"; }
     /// Whether the key takes whole numbers only, as `links` does.
     bool is_whole() const { return number_ && number_->is_whole; }
+    /// Values of lower rank are set first: numbers of links, keys of both sides, and those of one side or ratios.
+    int rank() const;
     void fields(KeyVisitor& visit);
 
     /// `table` = that of the axis. Throws Error (exit 2) if the pair has no such key, or cannot take a value.
@@ -86,8 +88,8 @@ private:
     /// Of a map: whether `values`, or whole numbers from `from` to `to`, are the centres of its cells. Otherwise `from`
     /// and `to` are its edges.
     bool are_centers() const { return values || is_whole(); }
-    /// Whether the values of a map increase by equal steps or by equal ratios. Throws Error (exit 2) if by neither.
-    void find_spacing(const TomlReader& table);
+    /// Throws Error (exit 2) at the table's key `of` unless the values of a map increase by equal steps or ratios.
+    void find_spacing(const TomlReader& table, std::string_view of);
     double middle_of_cell(std::size_t i) const;
     std::size_t even_steps(const TomlReader& table) const;
 

@@ -28,8 +28,6 @@ std::string missing_parts(const std::vector<fs::path>& parts) {
     return fmt::format("{}{}", fmt::join(missing, ", "), count > max_named ? fmt::format(" … {} in all", count) : "");
 }
 
-namespace fs = std::filesystem;
-
 /// What a part must agree on with the film.
 Json identity(const Scene& scene) {
     return {{"film", scene.preset.name},

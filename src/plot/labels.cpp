@@ -449,6 +449,14 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
     const float small = style.on_paper ? style.text : 0.8f * style.text;  // on paper, the size that is asked for
     bool dense = given.small || std::ranges::count_if(curves, [](const Curve& c) { return !c.label.empty(); }) > many;
     std::vector<std::size_t> others;
+    if (given.legend > 0) {  // beside the panel, with all names
+        for (std::size_t i = 0; i < curves.size(); ++i)
+            if (!curves[i].label.empty() && !is_empty(drawn[i])) others.push_back(i);
+        const Area& held = panel.held;
+        const Area beside{held.right - given.legend, panel.area.top, held.right, held.bottom};
+        if (!others.empty()) draw_legend(legend_in(beside, curves, others, style.text), panel);
+        return given;
+    }
     const auto tried = [&](float size, const LabelPlacer& left) {
         return place_labels(drawn, size, dense, others, panel, left);
     };
@@ -472,26 +480,13 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
         if (legend) left.add_text(legend->box);
         made = tried(size, left);
     }
-    // where a legend is beside the panel, it has all names
-    if (given.legend > 0 || (!others.empty() && !legend)) {
-        others.clear();
-        for (std::size_t i = 0; i < curves.size(); ++i)
-            if (!curves[i].label.empty() && !is_empty(drawn[i])) others.push_back(i);
-        legend.reset();
-        made = {};
-    }
-    const LabelNeeds needs{given.small || is_small,
-                           others.empty() || legend ? given.legend : legend_gutter(curves, size)};
-    const Area& held = panel.held;
-    if (!others.empty() && !legend && given.legend > 0)
-        legend = legend_in({held.right - given.legend, panel.area.top, held.right, held.bottom}, curves, others, size);
     if (legend) draw_legend(*legend, panel);
     const Color background = (panel.is_map() ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
     for (const Area& g : made.backgrounds)
         list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
     for (const Capsule& leader : made.leaders) list.push_back(leader);
     for (const Label& label : made.labels) write(label, panel);
-    return needs;
+    return {given.small || is_small, others.empty() || legend ? 0 : legend_gutter(curves, style.text)};
 }
 
 void label_rules(const Panel& panel, LabelPlacer& placer) {

@@ -27,7 +27,7 @@ struct PlotStyle {
 /// The space that the labels of curves need; it is the same for all panels of a figure.
 struct LabelNeeds {
     bool small = false;  // smaller labels, on the curves
-    float legend = 0;    // width at the right of the panel for names that do not fit inside, px
+    float legend = 0;    // width at the right of the panel for all names, where some do not fit inside, px
 
     friend bool operator==(const LabelNeeds&, const LabelNeeds&) = default;
 };

@@ -370,6 +370,40 @@ TEST(Grid, MapsOfLinksSetTheirNumberFirst) {
     EXPECT_NE(message.find("is beyond the array, whose last element is [1]"), std::string::npos) << message;
 }
 
+/// A ratio holds whatever the other axis changes; a side keeps what is its own.
+TEST(Grid, MapsSetRatiosAndSidesLast) {
+    const std::string top =
+        "[scene]\nkind = \"grid\"\nduration_s = 2\n[system]\nintegrator = \"rk4\"\n[b]\nangle_deg = [90.01, 90]\n"
+        "[grid]\nquantity = \"distance_at_end\"\n";
+    const std::string ratio = "key = \"mass_ratio\"\nvalues = [1, 2]\n";
+    const std::string mass = "key = \"system.mass_kg[1]\"\nvalues = [1, 3]\n";
+    const auto columns = table_of(figure_from(top + "[grid.x]\n" + ratio + "[grid.y]\n" + mass));
+    const auto rows = table_of(figure_from(top + "[grid.x]\n" + mass + "[grid.y]\n" + ratio));
+    for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(columns.rows[2 * k + i][2], rows.rows[2 * i + k][2]) << i << k;
+    // the motion of ideal links depends on the ratio alone
+    EXPECT_NEAR(columns.rows[0][2], columns.rows[2][2], 1e-12);
+    EXPECT_GT(std::abs(columns.rows[0][2] - columns.rows[1][2]), 1e-6);
+    const std::string of_b = "key = \"b.mass_kg[1]\"\nvalues = [1, 3]\n",
+                      of_both = "key = \"system.mass_kg[1]\"\nvalues = [2, 4]\n";
+    EXPECT_EQ(table_of(figure_from(top + "[grid.x]\n" + of_b + "[grid.y]\n" + of_both)).rows[1][2],
+              table_of(figure_from(top + "[grid.x]\n" + of_both + "[grid.y]\n" + of_b)).rows[2][2]);
+}
+
+/// Two values far apart are spaced by ratios, so that no mass is negative; uneven whole numbers are refused.
+TEST(Grid, MapsHaveEvenCellsWithinTheBoundsOfTheirKey) {
+    const std::string top =
+        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = "
+        "\"energy_error\"\n[grid.x]\nkey = \"links\"\nfrom = 2\nto = 4\n";
+    const auto axis =
+        page_of(figure_from(top + "[grid.y]\nkey = \"system.mass_kg\"\nvalues = [0.01, 1]\n")).panels.at(0).y;
+    EXPECT_TRUE(axis.logarithmic);
+    EXPECT_NEAR(*axis.low, 0.001, 1e-15);
+    const auto [code, message] = error_of([&] { figure_from(top + "points = 5\n[grid.y]\nkey = \"theta2_deg\"\n"); });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("[grid.x] points must increase by equal steps"), std::string::npos) << message;
+}
+
 TEST(Grid, WhatIsComparedHasOneRange) {
     for (const char* name : {"fig2-right", "fig4-right", "fig8", "true-fig2-right"}) {
         const auto axis = page_of(figure_of(name, {"grid.x.to=2", "scene.duration_s=1"})).panels.at(0).y;

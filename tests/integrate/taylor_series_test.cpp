@@ -1,3 +1,4 @@
+#include "allocations.hpp"
 #include "errors.hpp"
 #include "integrate/angle_series.hpp"
 #include "integrate/flow.hpp"
@@ -104,6 +105,25 @@ TEST(MechanismSeries, SolvesTheEquationsOfMotionOrderByOrder) {
         Mechanism<Quad> model(assembly);
         // the four bars move: their velocities must be consistent
         expect_orders(model, after(model, assembly, 10, Quad(0.005)), 8, 2e-3, 1, 0.2);  // measured within 0.1
+    }
+}
+
+TEST(MechanismSeries, AllocatesNothingOnceItIsRecorded) {
+    for (const auto& parts : {sprung(), attracted(), looped()}) {
+        const auto allocated = [](const auto& assembly) {
+            using S = std::decay_t<decltype(assembly.particles[0].mass)>;
+            MechanismSeries<S> series(assembly, 20);
+            auto y = Mechanism<S>::start(assembly), change = y;
+            series.expand(y);
+            series.move(S(0.02), change);
+            y += change;
+            const long before = allocations();
+            series.move(S(0.01), change);
+            series.expand(y);
+            return allocations() - before;
+        };
+        EXPECT_EQ(allocated(parts), 0);
+        EXPECT_EQ(allocated(parts.cast<Quad>()), 0);
     }
 }
 

@@ -109,6 +109,13 @@ TEST(Plot, ALegendCoversNoDataAndHasAllNames) {
         if (const auto* image = std::get_if<Image>(&item)) right = std::max(right, image->right);
     ASSERT_GT(right, 0);
     for (const auto& name : names) EXPECT_GT(name.anchor.x, right) << name.text;
+    // a second panel, which has space for its label, has it beside the panel as well
+    auto both = figure;
+    both.panels.push_back(panel);
+    both.panels[1].curves = {curves.back()};
+    const auto in_legends = labels_of(composed(both, size, light), "one orbit");
+    ASSERT_EQ(in_legends.size(), 5u);
+    for (const auto& name : in_legends) EXPECT_EQ(name.color, light.text) << name.text;
     // by itself the line is labelled in the panel
     panel.curves = {curves.back()};
     EXPECT_LT(labels_of(composed(figure, size, light), "one orbit").at(0).anchor.x, right);
