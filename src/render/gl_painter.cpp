@@ -170,11 +170,40 @@ void Painter::add(const Primitive& primitive, const std::vector<Rect>& regions) 
         if (seen.empty()) continue;
         const auto left = static_cast<float>(seen.left), right = static_cast<float>(seen.right);
         const auto top = static_cast<float>(seen.top), bottom = static_cast<float>(seen.bottom);
-        std::array<Point, 4> corners{{{left, top}, {right, top}, {right, bottom}, {left, bottom}}};
-        // the rotated outline covers fewer pixels than the bounds; beyond it, nothing is visible
-        if (primitive.half.x > 0 && seen == primitive.bounds) corners = outline(primitive);
-        for (const std::size_t corner : {0, 1, 2, 0, 2, 3}) vertices_.push_back({corners[corner], primitive});
+        outline_ = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
+        if (primitive.half.x > 0) {
+            // the rotated outline covers fewer pixels than the bounds
+            const auto corners = outline(primitive);
+            outline_.assign(corners.begin(), corners.end());
+            if (seen != primitive.bounds) clip(left, right, top, bottom);
+        }
+        // a fan of triangles
+        for (std::size_t i = 2; i < outline_.size(); ++i)
+            for (const std::size_t corner : {std::size_t{0}, i - 1, i})
+                vertices_.push_back({outline_[corner], primitive});
     }
+}
+
+/// Keeps the part of the convex outline inside (Sutherland & Hodgman 1974). Cuts are exactly at pixel edges.
+void Painter::clip(float left, float right, float top, float bottom) {
+    const auto cut = [&](float Point::*across, float Point::*along, float edge, float side) {
+        clipped_.clear();
+        for (std::size_t i = 0; i < outline_.size(); ++i) {
+            const Point &from = outline_[i], &to = outline_[(i + 1) % outline_.size()];
+            const float before = side * (from.*across - edge), after = side * (to.*across - edge);  // ≥ 0 inside
+            if (before >= 0) clipped_.push_back(from);
+            if ((before >= 0) == (after >= 0)) continue;
+            Point at;
+            at.*across = edge;
+            at.*along = from.*along + (to.*along - from.*along) * (before / (before - after));
+            clipped_.push_back(at);
+        }
+        std::swap(outline_, clipped_);
+    };
+    cut(&Point::x, &Point::y, left, 1);
+    cut(&Point::x, &Point::y, right, -1);
+    cut(&Point::y, &Point::x, top, 1);
+    cut(&Point::y, &Point::x, bottom, -1);
 }
 
 void Painter::upload_vertices() {

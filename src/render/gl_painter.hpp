@@ -73,6 +73,7 @@ private:
 
     static std::vector<Batch> batches_of(const RenderList& items, const std::vector<Rect>& regions);
     void add(const Primitive& primitive, const std::vector<Rect>& regions);
+    void clip(float left, float right, float top, float bottom);
     void upload_vertices();
     void upload(const GlyphAtlas& atlas);
     void draw(const Batch& batch);
@@ -87,6 +88,7 @@ private:
     Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
     std::vector<Vertex> vertices_;
+    std::vector<Point> outline_, clipped_;  // of the primitive being added
 };
 
 }  // namespace doppel::gl
