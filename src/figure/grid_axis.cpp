@@ -239,17 +239,19 @@ void GridAxis::find_even_values(const TomlReader& table) {
 
 void GridAxis::find_spacing(const TomlReader& table, std::string_view of) {
     constexpr double slack = 1e-9;  // of decimals
+    const auto number = [&](std::size_t i) { return static_cast<double>(numbers_[i]); };
     const auto is_even = [&](Spacing by) {
-        const auto at = [&](std::size_t i) {
-            const auto number = static_cast<double>(numbers_[i]);
-            return by == Spacing::linear ? number : std::log(number);
-        };
+        const auto at = [&](std::size_t i) { return by == Spacing::linear ? number(i) : std::log(number(i)); };
         const double step = (at(count - 1) - at(0)) / static_cast<double>(count - 1);
         for (std::size_t i = 0; i < count; ++i)
             if (!(std::abs(at(i) - at(0) - step * static_cast<double>(i)) <= slack * step)) return false;
-        return by == Spacing::logarithmic || !bounds_.has_low() || at(0) - step / 2 >= bounds_.low;
+        return true;
     };
-    if (values) spacing = is_even(Spacing::linear) ? Spacing::linear : Spacing::logarithmic;
+    if (values && count > 1) {  // two values are both; then no edge is out of the key's range
+        const bool fits = !bounds_.has_low() || number(0) - (number(1) - number(0)) / 2 >= bounds_.low;
+        const bool is_linear = is_even(Spacing::linear) && (fits || !is_even(Spacing::logarithmic));
+        spacing = is_linear ? Spacing::linear : Spacing::logarithmic;
+    }
     if (count < 2 || !is_even(spacing))
         throw table.error(of, "must increase by equal steps or by equal ratios, as centres of the cells of a map");
 }

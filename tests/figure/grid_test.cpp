@@ -322,11 +322,13 @@ Figure page_of(const FigurePreset& figure) {
     return page;
 }
 
+/// A grid of RK4's energy errors, without axes.
+const std::string of_energy =
+    "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = \"energy_error\"\n";
+
 /// Cells of listed values and of whole numbers have the numbers of curves, and lie around their values.
 TEST(Grid, MapsTakeValuesAndWholeNumbersAsCentres) {
-    const std::string top =
-        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = "
-        "\"energy_error\"\n[grid.x]\nkey = \"links\"\nfrom = 2\nto = 4\n";
+    const std::string top = of_energy + "[grid.x]\nkey = \"links\"\nfrom = 2\nto = 4\n";
     const std::string of_mass = "key = \"system.mass_kg\"\nvalues = [0.5, 1, 2]\n";
     const auto map = figure_from(top + "[grid.y]\n" + of_mass);
     const auto cells = table_of(map), curves = table_of(figure_from(top + "[grid.color]\n" + of_mass));
@@ -351,9 +353,7 @@ TEST(Grid, MapsTakeValuesAndWholeNumbersAsCentres) {
 
 /// Whichever axis has the number of links; and no axis is an element that the shortest chain lacks.
 TEST(Grid, MapsOfLinksSetTheirNumberFirst) {
-    const std::string top =
-        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = "
-        "\"energy_error\"\n";
+    const auto& top = of_energy;
     const std::string links = "key = \"links\"\nfrom = 2\nto = 3\n";
     const std::string mass = "key = \"system.mass_kg[1]\"\nvalues = [0.5, 1, 2]\n";
     const auto columns = table_of(figure_from(top + "[grid.x]\n" + links + "[grid.y]\n" + mass));
@@ -392,13 +392,17 @@ TEST(Grid, MapsSetRatiosAndSidesLast) {
 
 /// Two values far apart are spaced by ratios, so that no mass is negative; uneven whole numbers are refused.
 TEST(Grid, MapsHaveEvenCellsWithinTheBoundsOfTheirKey) {
-    const std::string top =
-        "[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = \"rk4\"\n[grid]\nquantity = "
-        "\"energy_error\"\n[grid.x]\nkey = \"links\"\nfrom = 2\nto = 4\n";
+    const std::string top = of_energy + "[grid.x]\nkey = \"links\"\nfrom = 2\nto = 4\n";
     const auto axis =
         page_of(figure_from(top + "[grid.y]\nkey = \"system.mass_kg\"\nvalues = [0.01, 1]\n")).panels.at(0).y;
     EXPECT_TRUE(axis.logarithmic);
     EXPECT_NEAR(*axis.low, 0.001, 1e-15);
+    // edges out of range are no fault where the values allow nothing else, and of whole numbers
+    const auto linear = page_of(figure_from(of_energy + "[grid.x]\nkey = \"links\"\nfrom = 1\nto = 2\n[grid.y]\nkey = "
+                                                        "\"system.mass_kg\"\nvalues = [0.1, 0.5, 0.9]\n"))
+                            .panels.at(0);
+    EXPECT_EQ(linear.x.low, 0.5);
+    EXPECT_FALSE(linear.y.logarithmic);
     const auto [code, message] = error_of([&] { figure_from(top + "points = 5\n[grid.y]\nkey = \"theta2_deg\"\n"); });
     EXPECT_EQ(code, ExitCode::bad_input);
     EXPECT_NE(message.find("[grid.x] points must increase by equal steps"), std::string::npos) << message;
