@@ -1,11 +1,10 @@
 #include "analysis/exponent.hpp"
 
+#include "analysis/stability.hpp"
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/physical_chain.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -120,24 +119,6 @@ TangentFlow flow_of(const PhysicalPendulum<double>& p) {
     using Chain = PhysicalChain<Dual<double, 1>>;
     const auto release = p.cast<Dual<double, 1>>();
     return tangent_flow(Chain(release, false), Chain::start(release, false));
-}
-
-/// The largest real part of a matrix's eigenvalues; 0 if it is zero within rounding.
-double largest_real_part(const Eigen::MatrixXd& matrix) {
-    constexpr double rounding = 1e-12;  // apparent growth of an undamped oscillation by rounding
-    // like Eigen's eigenvalues() without vectors, at half the compile time
-    const double scale = matrix.cwiseAbs().maxCoeff();
-    const Eigen::HessenbergDecomposition<Eigen::MatrixXd> hessenberg(matrix / scale);
-    Eigen::RealSchur<Eigen::MatrixXd> schur(matrix.rows());
-    schur.computeFromHessenberg(hessenberg.matrixH(), Eigen::MatrixXd(), false);
-    const Eigen::MatrixXd t = schur.matrixT() * scale;
-    double maximum = -std::numeric_limits<double>::infinity();
-    for (Eigen::Index i = 0; i < t.rows(); ++i) {
-        const bool is_pair = i + 1 < t.rows() && t(i + 1, i) != 0;  // of complex eigenvalues
-        maximum = std::max(maximum, is_pair ? t(i + 1, i + 1) + 0.5 * (t(i, i) - t(i + 1, i + 1)) : t(i, i));
-        i += is_pair;
-    }
-    return std::abs(maximum) < rounding * scale ? 0 : maximum;
 }
 
 /// Nothing if the release is no equilibrium, as for driven pendulums.

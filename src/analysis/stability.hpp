@@ -2,6 +2,8 @@
 
 #include "integrate/motion.hpp"
 
+#include <Eigen/Core>
+
 #include <span>
 #include <string_view>
 
@@ -32,6 +34,9 @@ std::vector<Mode> small_oscillations(const Pendulum<double>& pendulum);
 /// For a method that is stable below some z, this is above that limit, and closer to it for longer times. Euler and
 /// midpoint, which are never stable, have such a step, too. Nothing if no step size up to `seconds` reaches it.
 std::optional<double> step_limit(std::string_view method, std::span<const Mode> modes, double seconds, double times);
+
+/// The largest real part of a matrix's eigenvalues; 0 if it is zero within rounding.
+double largest_real_part(const Eigen::MatrixXd& matrix);
 
 /// Energies are compared with the release's energy above the hanging equilibrium. A larger relative error is a failure.
 inline constexpr double failure_error = 100;

@@ -210,15 +210,15 @@ concept OfBodies = requires(const Model& model) {
     model.pendulum.friction;
 };
 
-/// Short states of doubles, for which inlining is forced: otherwise the compiler's choice depends on the rest of the
-/// file. Other states gain nothing from it. Not with sanitizers, where two test files took more than six minutes each.
+/// Short states of doubles, of up to two bodies, for which inlining is forced: otherwise the compiler's choice depends on
+/// the rest of the file. Other states gain nothing from it. Not with sanitizers, where two test files took more than six
+/// minutes each.
 #ifdef __SANITIZE_ADDRESS__
 template <class Model>
 inline constexpr bool is_flattened = false;
 #else
-template <class Model>
-inline constexpr bool is_flattened =
-    is_machine_number<typename Model::Scalar>&& Model::State::RowsAtCompileTime != Eigen::Dynamic;
+template <class Model, int size = Model::State::RowsAtCompileTime>
+inline constexpr bool is_flattened = is_machine_number<typename Model::Scalar>&& size != Eigen::Dynamic&& size <= 8;
 #endif
 
 /// An explicit Runge–Kutta method with `table`, at fixed step: any system, any scalar (integrate/stepper.hpp).
