@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace doppel {
-namespace all_figure_faults_test {
+namespace doppel::all_figure_faults_test {
 
 using Lines = std::vector<std::string>;
 
@@ -62,5 +61,4 @@ TEST(AllErrorsOfAFigure, OmitErrorsThatAnotherMayCause) {
     EXPECT_EQ(faults_of("grit", "[grid]\nfoo = 1\n"), (Lines{"2:1: [scene] kind must b"}));
 }
 
-}  // namespace all_figure_faults_test
-}  // namespace doppel
+}  // namespace doppel::all_figure_faults_test

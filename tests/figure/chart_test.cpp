@@ -9,8 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace doppel {
-namespace chart_test {
+namespace doppel::chart_test {
 
 using test::bytes_of;
 using test::expect_error;
@@ -172,5 +171,4 @@ TEST(Chart, WithOnlyChaoticOrbitsSaysThatNoneIsRegular) {
     EXPECT_NE(words.find("None of 2 releases is regular. The band is the 68 % interval"), std::string::npos) << words;
 }
 
-}  // namespace chart_test
-}  // namespace doppel
+}  // namespace doppel::chart_test

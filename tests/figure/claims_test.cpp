@@ -18,8 +18,7 @@
 #include <functional>
 #include <utility>
 
-namespace doppel {
-namespace claims_test {
+namespace doppel::claims_test {
 
 const std::atomic<bool> never = false;
 
@@ -314,5 +313,4 @@ TEST(Claims, AreMeasuredAsTheTableSays) {
     if (std::getenv("DOPPEL_UPDATE_STUDY")) test::write_bytes(page, made);
 }
 
-}  // namespace claims_test
-}  // namespace doppel
+}  // namespace doppel::claims_test

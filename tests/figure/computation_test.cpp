@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <set>
 
-namespace doppel {
-namespace computation_test {
+namespace doppel::computation_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -166,5 +165,4 @@ TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
     EXPECT_EQ(Resumed(figure, header_of(figure), folder).computed_units, 9);
 }
 
-}  // namespace computation_test
-}  // namespace doppel
+}  // namespace doppel::computation_test

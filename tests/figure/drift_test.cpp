@@ -4,8 +4,7 @@
 
 #include <map>
 
-namespace doppel {
-namespace drift_test {
+namespace doppel::drift_test {
 
 const std::string kind = "[scene]\nkind = \"series\"\n";
 
@@ -137,5 +136,4 @@ TEST(Drift, RefusesImpossibleSettings) {
     expect_error_text("system.step_s=0.1", "step_s");
 }
 
-}  // namespace drift_test
-}  // namespace doppel
+}  // namespace doppel::drift_test

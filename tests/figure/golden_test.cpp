@@ -6,8 +6,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace golden_test {
+namespace doppel::golden_test {
 
 /// A figure that does not depend on the last bit: nothing chaotic beyond 3 s, no measured times.
 struct Golden {
@@ -73,5 +72,4 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-}  // namespace golden_test
-}  // namespace doppel
+}  // namespace doppel::golden_test

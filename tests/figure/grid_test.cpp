@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace grid_test {
+namespace doppel::grid_test {
 
 const std::string twins = R"(
 [scene]
@@ -472,5 +471,4 @@ TEST(Grid, TheChoiceOfItsMethodCanBeInterrupted) {
     test::expect_error(ExitCode::interrupted, {"interrupted"}, [&] { read_figure(preset, {}, stop); });
 }
 
-}  // namespace grid_test
-}  // namespace doppel
+}  // namespace doppel::grid_test

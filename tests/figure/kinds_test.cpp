@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <map>
 
-namespace doppel {
-namespace kinds_test {
+namespace doppel::kinds_test {
 
 // What the figures must show, independent of their layout.
 
@@ -289,5 +288,4 @@ TEST(Curves, CheckToleranceShowsUntilWhenTheyAgree) {
               "sample,time_s,log_ratio");
 }
 
-}  // namespace kinds_test
-}  // namespace doppel
+}  // namespace doppel::kinds_test

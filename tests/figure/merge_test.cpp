@@ -6,8 +6,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace merge_test {
+namespace doppel::merge_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -174,5 +173,4 @@ TEST(MergeOfNothing, ReportsUnknownTrials) {
     EXPECT_EQ(bytes_of(out / "x/x.csv"), table_text(figure, trials)) << any_empty;
 }
 
-}  // namespace merge_test
-}  // namespace doppel
+}  // namespace doppel::merge_test

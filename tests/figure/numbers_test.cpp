@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace numbers_test {
+namespace doppel::numbers_test {
 
 // Each kind of figure checks the numbers of its trials: impossible numbers in a file are rejected.
 
@@ -98,5 +97,4 @@ TEST(NumbersOfWork, AreThoseOfWholeSettings) {
     EXPECT_FALSE(work.fits(0, TrialNumbers{3, infinite}));
 }
 
-}  // namespace numbers_test
-}  // namespace doppel
+}  // namespace doppel::numbers_test

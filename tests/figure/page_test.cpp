@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace figure_page_test {
+namespace doppel::figure_page_test {
 
 using test::expect_error;
 using test::fresh_folder;
@@ -144,5 +143,4 @@ TEST(FigurePage, IsOneFileBesideTableAndManifest) {
                  [&] { run_figure(figure, {.out = out}); });
 }
 
-}  // namespace figure_page_test
-}  // namespace doppel
+}  // namespace doppel::figure_page_test

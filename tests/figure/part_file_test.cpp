@@ -14,8 +14,7 @@
 #include <fstream>
 #include <random>
 
-namespace doppel {
-namespace part_file_test {
+namespace doppel::part_file_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -297,5 +296,4 @@ TEST(PartHeader, IsThatOfTheNumbersAlone) {
     EXPECT_NE(header_of(figure, {1, 2}), header_of(figure));
 }
 
-}  // namespace part_file_test
-}  // namespace doppel
+}  // namespace doppel::part_file_test

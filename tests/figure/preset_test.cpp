@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace preset_test {
+namespace doppel::preset_test {
 
 std::vector<PresetText> builtin_figures() {
     std::vector<PresetText> figures;
@@ -232,5 +231,4 @@ TEST(FigureErrors, OfTheCommandLineNameTheOption) {
     EXPECT_EQ(error_of([] { figure_of("poincare", {"system.integrator=\"rk4\""}); }).first, ExitCode::bad_input);
 }
 
-}  // namespace preset_test
-}  // namespace doppel
+}  // namespace doppel::preset_test

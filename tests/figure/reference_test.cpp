@@ -14,8 +14,7 @@
 #include <set>
 #include <sstream>
 
-namespace doppel {
-namespace reference_test {
+namespace doppel::reference_test {
 
 using test::FieldTable;
 
@@ -143,5 +142,4 @@ TEST(Reference, ListsEveryKeyOfThePresets) {
     EXPECT_GT(seen, 200u);
 }
 
-}  // namespace reference_test
-}  // namespace doppel
+}  // namespace doppel::reference_test

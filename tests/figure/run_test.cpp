@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace doppel {
-namespace run_test {
+namespace doppel::run_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -259,5 +258,4 @@ TEST(Resume, OfAnotherRunStaysAsItIs) {
     EXPECT_TRUE(fs::exists(other));
 }
 
-}  // namespace run_test
-}  // namespace doppel
+}  // namespace doppel::run_test

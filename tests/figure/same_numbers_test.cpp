@@ -5,8 +5,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace same_numbers_test {
+namespace doppel::same_numbers_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -140,5 +139,4 @@ TEST(FlipMap, MirroredRowsAreThoseComputed) {
     EXPECT_EQ(table_text(figure, computed(figure)), table_text(whole, computed(whole)));
 }
 
-}  // namespace same_numbers_test
-}  // namespace doppel
+}  // namespace doppel::same_numbers_test

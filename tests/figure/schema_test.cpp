@@ -12,8 +12,7 @@
 
 #include <regex>
 
-namespace doppel {
-namespace schema_test {
+namespace doppel::schema_test {
 
 namespace fs = std::filesystem;
 
@@ -139,5 +138,4 @@ TEST(Schema, KeepsKindsApart) {
     EXPECT_FALSE(accepts("[scene]\nkind = \"work-precision\"\n[system]"));
 }
 
-}  // namespace schema_test
-}  // namespace doppel
+}  // namespace doppel::schema_test

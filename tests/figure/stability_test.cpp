@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace stability_test {
+namespace doppel::stability_test {
 
 /// One row at an angle so small that linear theory is valid while the energy grows a hundredfold.
 std::vector<std::string> small_angle(const std::string& method, double from, double to, int columns) {
@@ -122,5 +121,4 @@ TEST(Stability, SharesItsAxes) {
     EXPECT_EQ(page_of("[\"rk4\", \"taylor\"]").columns, 0);
 }
 
-}  // namespace stability_test
-}  // namespace doppel
+}  // namespace doppel::stability_test

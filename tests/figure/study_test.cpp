@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace study_test {
+namespace doppel::study_test {
 
 // The figures of the study, compared with an independent program to the digits given (Kao 2022, re-run).
 
@@ -205,5 +204,4 @@ TEST(Sweep, ExponentDistinguishesRegularFromChaotic) {
     EXPECT_NEAR(table.at(180, 2), std::sqrt(std::sqrt(2.0) * 9.8), 3e-15);  // measured 4e-16
 }
 
-}  // namespace study_test
-}  // namespace doppel
+}  // namespace doppel::study_test

@@ -9,8 +9,7 @@
 #include <filesystem>
 #include <map>
 
-namespace doppel {
-namespace tiles_test {
+namespace doppel::tiles_test {
 
 namespace fs = std::filesystem;
 using test::expect_error;
@@ -171,5 +170,4 @@ TEST(TilePage, TakesAnyNames) {
     }
 }
 
-}  // namespace tiles_test
-}  // namespace doppel
+}  // namespace doppel::tiles_test

@@ -4,8 +4,7 @@
 
 #include <set>
 
-namespace doppel {
-namespace work_precision_chart_test {
+namespace doppel::work_precision_chart_test {
 
 // Which methods a work-precision chart colours.
 
@@ -68,5 +67,4 @@ TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
     EXPECT_TRUE(page.captions[0].starts_with("Each method in its best model;")) << page.captions[0];
 }
 
-}  // namespace work_precision_chart_test
-}  // namespace doppel
+}  // namespace doppel::work_precision_chart_test

@@ -5,8 +5,7 @@
 #include <fstream>
 #include <map>
 
-namespace doppel {
-namespace work_precision_test {
+namespace doppel::work_precision_test {
 
 const std::string by_evaluations = "chart.cost=\"evaluations\"";
 
@@ -293,5 +292,4 @@ TEST(WorkPrecision, RefusesWrongSettings) {
     expect_error_text({"work_precision.tolerance=1"}, "tolerance");
 }
 
-}  // namespace work_precision_test
-}  // namespace doppel
+}  // namespace doppel::work_precision_test

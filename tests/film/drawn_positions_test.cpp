@@ -9,8 +9,7 @@
 #include <cmath>
 #include <optional>
 
-namespace doppel {
-namespace drawn_positions_test {
+namespace doppel::drawn_positions_test {
 
 // Where an exact result is known, the picture is compared with it, not with an earlier picture.
 
@@ -155,5 +154,4 @@ TEST(DrawnPositions, ADivergingRunStaysInItsPanel) {
             ASSERT_TRUE(std::equal(picture.at(x, y), picture.at(x, y) + 3, calm.at(x, y))) << x << " " << y;
 }
 
-}  // namespace drawn_positions_test
-}  // namespace doppel
+}  // namespace doppel::drawn_positions_test

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace doppel {
-namespace encoding_trial_test {
+namespace doppel::encoding_trial_test {
 
 using namespace test;
 
@@ -50,5 +49,4 @@ TEST(EncodingTrial, FindsTheNoiseOfAFileThatHoldsTheSame) {
     }
 }
 
-}  // namespace encoding_trial_test
-}  // namespace doppel
+}  // namespace doppel::encoding_trial_test

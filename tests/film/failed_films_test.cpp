@@ -6,8 +6,7 @@
 #include <fstream>
 #include <thread>
 
-namespace doppel {
-namespace failed_films_test {
+namespace doppel::failed_films_test {
 
 namespace fs = std::filesystem;
 using test::fresh_folder;
@@ -136,5 +135,4 @@ TEST(FailedFilms, RefusesFramesThatAreNotThereAndAPosterOutsideThem) {
     render(scene, {.out = out, .pictures = false, .first = 0, .last = 30});  // no picture, no poster to miss
 }
 
-}  // namespace failed_films_test
-}  // namespace doppel
+}  // namespace doppel::failed_films_test

@@ -7,8 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace font_test {
+namespace doppel::font_test {
 
 namespace fs = std::filesystem;
 
@@ -96,5 +95,4 @@ TEST(Fonts, PresetsOfDoppelLookTheSameEverywhere) {
     }
 }
 
-}  // namespace font_test
-}  // namespace doppel
+}  // namespace doppel::font_test

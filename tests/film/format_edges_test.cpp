@@ -9,8 +9,7 @@
 #include <set>
 #include <string_view>
 
-namespace doppel {
-namespace format_edges_test {
+namespace doppel::format_edges_test {
 
 struct Edge {
     Size size;
@@ -72,5 +71,4 @@ TEST(FormatEdges, WhatTheReaderTakesTheSinkWrites) {
         }
 }
 
-}  // namespace format_edges_test
-}  // namespace doppel
+}  // namespace doppel::format_edges_test

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <functional>
 
-namespace doppel {
-namespace golden_test {
+namespace doppel::golden_test {
 
 struct Golden {
     const char* name;  // of the file
@@ -136,5 +135,4 @@ TEST(GoldenPolicy, DifferencePictureShowsAllThree) {
     for (int c = 0; c < 3; ++c) EXPECT_EQ(grey.at(960 + 7, 9)[c], 80);
 }
 
-}  // namespace golden_test
-}  // namespace doppel
+}  // namespace doppel::golden_test

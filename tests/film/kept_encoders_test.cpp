@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace doppel {
-namespace kept_encoders_test {
+namespace doppel::kept_encoders_test {
 
 /// A setting on a film, at the quality of the default setting.
 struct Point {
@@ -76,5 +75,4 @@ TEST(KeptEncoders, NoSettingBeatsTheDefaultInTimeAndSize) {
     }
 }
 
-}  // namespace kept_encoders_test
-}  // namespace doppel
+}  // namespace doppel::kept_encoders_test

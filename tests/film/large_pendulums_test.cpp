@@ -11,8 +11,7 @@
 #include <array>
 #include <cmath>
 
-namespace doppel {
-namespace large_pendulums_test {
+namespace doppel::large_pendulums_test {
 
 constexpr std::array films{"butterfly", "calm",     "fan",        "horizon",     "loop",     "damped",
                            "kapitza",   "rods",     "mass-ratio", "phase-dance", "raindrop", "slow-parting",
@@ -179,5 +178,4 @@ TEST(Fan, ShowsListedMembersLargeWithALegend) {
     for (const auto* words : {"θ₁ =", "120°", "120.01°", "170.5°"}) EXPECT_TRUE(says(layout.words, words)) << words;
 }
 
-}  // namespace large_pendulums_test
-}  // namespace doppel
+}  // namespace doppel::large_pendulums_test

@@ -10,8 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace doppel {
-namespace layouts_test {
+namespace doppel::layouts_test {
 
 const std::uint8_t* pixel_at(const Picture& picture, Point at) {
     return picture.at(static_cast<int>(at.x), static_cast<int>(at.y));
@@ -256,5 +255,4 @@ TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
     }
 }
 
-}  // namespace layouts_test
-}  // namespace doppel
+}  // namespace doppel::layouts_test

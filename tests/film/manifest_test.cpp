@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace manifest_test {
+namespace doppel::manifest_test {
 
 // Released level, side b has almost no energy: the relative error of explicit Euler is meaningless there.
 TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
@@ -43,5 +42,4 @@ TEST(Manifest, ContainsThePredictabilityLimit) {
     EXPECT_LT(chosen["horizon_s"], 40);
 }
 
-}  // namespace manifest_test
-}  // namespace doppel
+}  // namespace doppel::manifest_test

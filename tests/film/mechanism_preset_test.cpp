@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace doppel {
-namespace mechanism_preset_test {
+namespace doppel::mechanism_preset_test {
 
 std::string error(const std::string& text) {
     const auto [code, message] = error_of([&] {
@@ -170,5 +169,4 @@ mass_kg = 3.4e-5
     EXPECT_NEAR(distance / (std::sqrt(2.0) * pull * std::cos(radians(79)) / 120), 1, 0.01);  // measured 1.0002
 }
 
-}  // namespace mechanism_preset_test
-}  // namespace doppel
+}  // namespace doppel::mechanism_preset_test

@@ -12,8 +12,7 @@
 #include <sstream>
 #include <tuple>
 
-namespace doppel {
-namespace page_test {
+namespace doppel::page_test {
 
 namespace fs = std::filesystem;
 
@@ -267,5 +266,4 @@ TEST(Page, HasThePicturesOfTheFilm) {
     EXPECT_EQ(data_of(page_of(text + "size = [720, 1280]\n")).at("pictures").size(), 1u);
 }
 
-}  // namespace page_test
-}  // namespace doppel
+}  // namespace doppel::page_test

@@ -7,8 +7,7 @@
 
 #include <fstream>
 
-namespace doppel {
-namespace parts_test {
+namespace doppel::parts_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -248,5 +247,4 @@ TEST(Events, OfAPartOfAFilmAreThoseThatItShows) {
         EXPECT_EQ(std::pair(frame, title), std::pair(0L, scene.preset.title));
 }
 
-}  // namespace parts_test
-}  // namespace doppel
+}  // namespace doppel::parts_test

@@ -7,8 +7,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace run_table_test {
+namespace doppel::run_table_test {
 
 TEST(RunTable, HasTheColumnsOfTheContract) {
     const auto lines = table_of(small_scene());
@@ -147,5 +146,4 @@ damping_N_s_per_m = 2
     EXPECT_EQ(manifest["b"]["conserves_energy"], false);
 }
 
-}  // namespace run_table_test
-}  // namespace doppel
+}  // namespace doppel::run_table_test

@@ -9,8 +9,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace run_test {
+namespace doppel::run_test {
 
 using test::bytes_of;
 using test::fresh_folder;
@@ -155,5 +154,4 @@ TEST(Run, SameArgumentsGiveTheSameBytesWhateverTheJobsAndCores) {
     }
 }
 
-}  // namespace run_test
-}  // namespace doppel
+}  // namespace doppel::run_test

@@ -7,8 +7,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace schedule_test {
+namespace doppel::schedule_test {
 
 Scene held() {
     return small_scene({"video.format=\"png\"", "video.hold_start_s=0.05", "video.hold_end_s=0.1",
@@ -130,5 +129,4 @@ TEST(Schedule, CardsHaveAStillOfTheOutcome) {
         std::visit([](const auto& shape) { EXPECT_LE(shape.color.a, 0.25f); }, item);
 }
 
-}  // namespace schedule_test
-}  // namespace doppel
+}  // namespace doppel::schedule_test

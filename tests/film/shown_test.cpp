@@ -6,8 +6,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace shown_test {
+namespace doppel::shown_test {
 
 TEST(Shown, IsExactlyWhatIsRequested) {
     const auto words = [](const std::string& show, long last = 0) {
@@ -57,5 +56,4 @@ TEST(Shown, StripsNameTheirCurves) {
               std::string::npos);
 }
 
-}  // namespace shown_test
-}  // namespace doppel
+}  // namespace doppel::shown_test

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace doppel {
-namespace single_test {
+namespace doppel::single_test {
 
 const std::string one = "[system]\nangle_deg = [120, 90]\n[scene]\nduration_s = 1\n[video]\nlayout = \"single\"\n";
 
@@ -159,5 +158,4 @@ TEST(Single, TrailsAlone) {
     EXPECT_EQ(capsules(R"(["rods", "bobs", "twin"])") - capsules(R"(["rods", "bobs"])"), 2 * 4);
 }
 
-}  // namespace single_test
-}  // namespace doppel
+}  // namespace doppel::single_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace still_test {
+namespace doppel::still_test {
 
 namespace fs = std::filesystem;
 Scene small(std::vector<std::string> more = {}) {
@@ -101,5 +100,4 @@ TEST(Still, RangesInSecondsAreThoseInFramesWithoutTheirEnd) {
               "--from 1.001 --to 1.002: butterfly has no frame in this interval; frames are 0.00833 s apart");
 }
 
-}  // namespace still_test
-}  // namespace doppel
+}  // namespace doppel::still_test

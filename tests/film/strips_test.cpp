@@ -16,8 +16,7 @@
 #include <variant>
 #include <vector>
 
-namespace doppel {
-namespace strips_test {
+namespace doppel::strips_test {
 
 /// The label of a picture that begins with `start`.
 std::optional<Label> label_of(const std::vector<Label>& labels, const std::string& start) {
@@ -263,5 +262,4 @@ TEST(Strips, OfATransparentFilmLetThePageThrough) {
     EXPECT_EQ(own.style.theme.grid.a, 1);
 }
 
-}  // namespace strips_test
-}  // namespace doppel
+}  // namespace doppel::strips_test

@@ -1,8 +1,7 @@
 #include "film/layer.hpp"
 #include "film/runs.hpp"
 
-namespace doppel {
-namespace trail_test {
+namespace doppel::trail_test {
 
 using namespace test;
 
@@ -17,5 +16,4 @@ TEST(Trail, IsInterruptedOnlyWhereItJumps) {
     EXPECT_EQ(list.size(), 2U);
 }
 
-}  // namespace trail_test
-}  // namespace doppel
+}  // namespace doppel::trail_test

@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace doppel {
-namespace unlike_sides_test {
+namespace doppel::unlike_sides_test {
 
 const std::atomic<bool> never = false;
 
@@ -97,5 +96,4 @@ TEST(UnlikeSides, AreDrawnInEveryLayoutThatTakesThem) {
               std::string::npos);
 }
 
-}  // namespace unlike_sides_test
-}  // namespace doppel
+}  // namespace doppel::unlike_sides_test

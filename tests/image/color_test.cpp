@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace doppel {
-namespace color_test {
+namespace doppel::color_test {
 
 using Triple = std::array<double, 3>;
 
@@ -114,5 +113,4 @@ TEST(Themes, CanBeRead) {
     }
 }
 
-}  // namespace color_test
-}  // namespace doppel
+}  // namespace doppel::color_test

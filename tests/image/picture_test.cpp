@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace picture_test {
+namespace doppel::picture_test {
 
 TEST(Rect, UnitedHoldsBoth) {
     EXPECT_EQ(united({1, 2, 3, 4}, {10, 0, 12, 3}), (Rect{1, 0, 12, 4}));
@@ -17,5 +16,4 @@ TEST(Rect, CommonIsWhatBothCover) {
     EXPECT_TRUE(intersection({0, 0, 1, 1}, {3, 3, 4, 4}).empty());
 }
 
-}  // namespace picture_test
-}  // namespace doppel
+}  // namespace doppel::picture_test

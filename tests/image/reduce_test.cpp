@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace doppel {
-namespace reduce_test {
+namespace doppel::reduce_test {
 
 using Pixel = std::array<int, 4>;
 
@@ -87,5 +86,4 @@ TEST(ContactSheet, HasEachPictureInItsPlace) {
     EXPECT_EQ(contact_sheet(std::span(pictures).first(2), 3, 0, rgb(0)).size, (Size{8, 2}));
 }
 
-}  // namespace reduce_test
-}  // namespace doppel
+}  // namespace doppel::reduce_test

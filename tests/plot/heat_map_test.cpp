@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace doppel {
-namespace heat_map_test {
+namespace doppel::heat_map_test {
 
 HeatMap strip(std::vector<float> values) {
     return {.columns = values.size(), .rows = 1, .values = values, .label = "an error", .low = 0, .high = 1};
@@ -115,5 +114,4 @@ TEST(HeatMap, SharesItsBar) {
     }
 }
 
-}  // namespace heat_map_test
-}  // namespace doppel
+}  // namespace doppel::heat_map_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace labels_test {
+namespace doppel::labels_test {
 
 constexpr Size size{400, 80};
 
@@ -86,5 +85,4 @@ TEST(Text, MovesThePenByTheAdvancesOfItsLetters) {
     EXPECT_NEAR(text_width("AVA", 20), 2 * text_width("A", 20) + text_width("V", 20), 1e-4);
 }
 
-}  // namespace labels_test
-}  // namespace doppel
+}  // namespace doppel::labels_test

@@ -10,8 +10,7 @@
 #include <cstdlib>
 #include <regex>
 
-namespace doppel {
-namespace page_test {
+namespace doppel::page_test {
 
 constexpr Size size{240, 160};
 const std::atomic<bool> never = false;
@@ -206,5 +205,4 @@ TEST(Page, ImagesAreCrispAndAsOpaqueAsTheirPixels) {
         }
 }
 
-}  // namespace page_test
-}  // namespace doppel
+}  // namespace doppel::page_test

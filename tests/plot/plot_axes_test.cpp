@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace doppel {
-namespace plot_axes_test {
+namespace doppel::plot_axes_test {
 
 // Shared axes of panels, notes beside a panel's title, line breaks of text, and line widths.
 
@@ -136,5 +135,4 @@ TEST(Text, LinesEndEvenlyAndNotWithinANumber) {
     EXPECT_GT(text_width(even[1], 18), text_width(even[0], 18) / 3);
 }
 
-}  // namespace plot_axes_test
-}  // namespace doppel
+}  // namespace doppel::plot_axes_test

@@ -6,8 +6,7 @@
 
 #include <algorithm>
 
-namespace doppel {
-namespace plot_background_test {
+namespace doppel::plot_background_test {
 
 // Curves in the background, and labels of many curves.
 
@@ -150,5 +149,4 @@ TEST(Plot, AMarkAmongManyCurvesHasALeaderLine) {
     EXPECT_EQ(thin, 1);
 }
 
-}  // namespace plot_background_test
-}  // namespace doppel
+}  // namespace doppel::plot_background_test

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace doppel {
-namespace plot_pixels_test {
+namespace doppel::plot_pixels_test {
 
 constexpr const Theme &dark = themes[0], &light = themes[1];
 
@@ -174,5 +173,4 @@ TEST(Plot, ABandIsTintedBetweenItsEdges) {
     expect_color(drawn, size.width - 6, at(0.46f), light.background, 2);  // clipped at the panel
 }
 
-}  // namespace plot_pixels_test
-}  // namespace doppel
+}  // namespace doppel::plot_pixels_test

@@ -9,8 +9,7 @@
 #include <algorithm>
 #include <random>
 
-namespace doppel {
-namespace plot_test {
+namespace doppel::plot_test {
 
 constexpr const Theme &dark = themes[0], &light = themes[1];
 
@@ -166,5 +165,4 @@ TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {
     }
 }
 
-}  // namespace plot_test
-}  // namespace doppel
+}  // namespace doppel::plot_test

@@ -7,8 +7,7 @@
 #include <random>
 #include <set>
 
-namespace doppel {
-namespace ticks_test {
+namespace doppel::ticks_test {
 
 /// The number that a label shows: "−1.5 × 10⁻⁷", "10⁻⁴", "0.30".
 double read(std::string text) {
@@ -175,5 +174,4 @@ TEST(AxisItems, HaveNumbersInTheMarginAndTheirUnitAfterTheLast) {
         EXPECT_TRUE(std::holds_alternative<Label>(item));
 }
 
-}  // namespace ticks_test
-}  // namespace doppel
+}  // namespace doppel::ticks_test

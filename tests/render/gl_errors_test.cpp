@@ -6,8 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace gl_errors_test {
+namespace doppel::gl_errors_test {
 
 constexpr Size size{480, 270};
 
@@ -84,5 +83,4 @@ TEST(GlErrors, WhileDrawingLeaveNoPicture) {
     EXPECT_EQ(renderer.draw(list).rgba, whole) << "and the next is as it should be";
 }
 
-}  // namespace gl_errors_test
-}  // namespace doppel
+}  // namespace doppel::gl_errors_test

@@ -11,8 +11,7 @@
 #include <optional>
 #include <thread>
 
-namespace doppel {
-namespace gl_test {
+namespace doppel::gl_test {
 
 using test::library_of_osmesa_or_egl;
 using test::osmesa_or_egl;
@@ -158,5 +157,4 @@ TEST(Gl, AContextThatCannotBeMadeLeavesTheOthersAlone) {
     EXPECT_EQ(egl.draw(list).rgba, before);
 }
 
-}  // namespace gl_test
-}  // namespace doppel
+}  // namespace doppel::gl_test

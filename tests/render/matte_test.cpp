@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace doppel {
-namespace matte_test {
+namespace doppel::matte_test {
 
 /// A colour with opacity over a grey background in sRGB, as viewers do it.
 int over(int color, int opacity, int ground) {
@@ -47,5 +46,4 @@ TEST(Matte, TouchesNothingOutsideItsRectangle) {
             EXPECT_EQ(found.at(x, y)[3], x >= 1 && x < 3 && y >= 1 && y < 3 ? 0 : 77) << x << ' ' << y;
 }
 
-}  // namespace matte_test
-}  // namespace doppel
+}  // namespace doppel::matte_test

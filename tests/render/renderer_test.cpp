@@ -9,8 +9,7 @@
 #include <atomic>
 #include <random>
 
-namespace doppel {
-namespace renderer_test {
+namespace doppel::renderer_test {
 
 constexpr Size size{320, 240};
 
@@ -170,5 +169,4 @@ TEST(Renderer, RefusesLettersThatFitNowhere) {
     EXPECT_THROW(renderer.draw({Label{.text = "W", .anchor = {0, 0}, .size = 3000, .color = white}}), Error);
 }
 
-}  // namespace renderer_test
-}  // namespace doppel
+}  // namespace doppel::renderer_test

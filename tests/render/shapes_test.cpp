@@ -5,8 +5,7 @@
 
 #include <numbers>
 
-namespace doppel {
-namespace shapes_test {
+namespace doppel::shapes_test {
 
 constexpr Size size{96, 80};
 
@@ -96,5 +95,4 @@ TEST(Shapes, WithoutInkDrawNothing) {
     EXPECT_EQ(ink(picture).area, 0);
 }
 
-}  // namespace shapes_test
-}  // namespace doppel
+}  // namespace doppel::shapes_test

@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <numbers>
 
-namespace doppel {
-namespace strokes_test {
+namespace doppel::strokes_test {
 
 constexpr Size size{160, 120};
 
@@ -173,5 +172,4 @@ TEST(Stroke, DoesNotChangeOthersOrTheBackdrop) {
     EXPECT_EQ(picture.at(40, 40)[2], 0);
 }
 
-}  // namespace strokes_test
-}  // namespace doppel
+}  // namespace doppel::strokes_test

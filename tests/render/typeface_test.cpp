@@ -9,8 +9,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace doppel {
-namespace typeface_test {
+namespace doppel::typeface_test {
 
 namespace fs = std::filesystem;
 /// A file with these bytes.
@@ -113,5 +112,4 @@ TEST(Typefaces, PostScriptOutlinesGrowBolderToo) {
     EXPECT_LT(ink(Weight::bold), 1.6 * ink(Weight::regular));
 }
 
-}  // namespace typeface_test
-}  // namespace doppel
+}  // namespace doppel::typeface_test
