@@ -29,12 +29,43 @@ public:
         }
     }
 
-    void backdrop(DisplayList& list) const override;
+    void backdrop(DisplayList& list) const override {
+        const float u = layout_.unit;
+        const auto& area = panel_.area;
+        if (!video_.transparent)
+            list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
+        if (video_.view.follow == 0) draw_surroundings(list);
+    }
+
     void add() override {
         for (const auto k : panel_.shown)
             if (video_.trail_s > 0) extend(paths_[k], bobs(k).back());
     }
-    void frame(DisplayList& list) const override;
+
+    /// The last pendulum behind: trails, rods, pivots and bobs; of many, the last bobs are on top.
+    void frame(DisplayList& list) const override {
+        if (video_.view.follow > 0) draw_surroundings(list);
+        const auto& shown = panel_.shown;
+        const bool alone = !is_ensemble_ && shown.size() == 1;
+        // the other pendulum, faint and behind; this side hides it as long as both move together
+        if (alone && shows("twin") && !state_.scene.is_single() && !coincide()) {
+            const std::size_t other = 1 - shown.front();
+            const Color ghost = pendulums_[other].ghost;
+            draw_lines(other, 0.7f * layout_.rod_radius, ghost, list);
+            for (std::size_t i = 0; has_bobs_ && i < bobs(other).size(); ++i)
+                draw_disc(at(bobs(other)[i]), bob_radius(other, i), ghost, list);
+        }
+        for (auto k = shown.rbegin(); k != shown.rend(); ++k) draw_trail(*k, list);
+        for (auto k = shown.rbegin(); k != shown.rend(); ++k) {
+            const auto& pendulum = pendulums_[*k];
+            draw_lines(*k, layout_.rod_radius, pendulum.rod, list);
+            if (!is_ensemble_) draw_pivots(pendulum.side, list);
+            if (!is_many_) draw_bobs(*k, list);
+        }
+        if (is_ensemble_) draw_pivots(state_.scene.a, list);
+        for (auto k = shown.rbegin(); is_many_ && has_bobs_ && k != shown.rend(); ++k)
+            draw_disc(at(bobs(*k).back()), bob_radius(0, bobs(0).size() - 1), pendulums_[*k].color, list);
+    }
 
 private:
     /// The path of a pendulum's last bob.
@@ -43,19 +74,151 @@ private:
         std::optional<std::pair<Bob<double>, double>> last{};  // the last bob and its time, s
     };
 
-    void extend(Path& path, const Bob<double>& bob) const;
-    void draw_trail(std::size_t k, DisplayList& list) const;
-    bool coincide() const;
-    void draw_bobs(std::size_t k, DisplayList& list) const;
-    void draw_lines(std::size_t k, float radius, Color color, DisplayList& list) const;
-    Point place_at(const Side& side, const Place<double>& place) const;
-    void draw_slots(const Side& side, DisplayList& list) const;
-    void draw_pivots(const Side& side, DisplayList& list) const;
-    void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const;
-    float bob_radius(std::size_t k, std::size_t bob) const;
+    /// Adds the path from the last bob to this one: a cubic through both with their velocities, in pieces of a few
+    /// pixels.
+    void extend(Path& path, const Bob<double>& bob) const {
+        const float piece = std::max(8 * layout_.unit, 2.0f), minimum = std::max(1.5f * layout_.unit, 0.5f);  // px
+        const double now = state_.time();
+        const auto go_on = [&](Point to, double time) {
+            if (const auto end = path.trail.end(); !end || distance(to, *end) >= minimum) path.trail.add(to, time, now);
+        };
+        if (path.last) {
+            const auto& [from, from_time] = *path.last;
+            const double dt = now - from_time;
+            const int pieces =
+                std::clamp(static_cast<int>(std::ceil(distance(still_at(from), still_at(bob)) / piece)), 1, 32);
+            for (int i = 1; i <= pieces; ++i) {
+                const double s = static_cast<double>(i) / pieces;
+                go_on(panel_.at(hermite(from.x, from.vx, bob.x, bob.vx, dt, s),
+                                hermite(from.y, from.vy, bob.y, bob.vy, dt, s)),
+                      from_time + s * dt);
+            }
+        } else {
+            go_on(still_at(bob), now);
+        }
+        path.last = {bob, now};
+    }
+
+    void draw_trail(std::size_t k, DisplayList& list) const {
+        const auto& bob = bobs(k).back();
+        auto ahead = paths_[k];
+        if (state_.is_between() && ahead.last) extend(ahead, bob);
+        ahead.trail.draw(panel_.area, state_.time(), still_at(bob), list, shift());
+    }
+
+    bool coincide() const {
+        const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
+            return a.mass == b.mass && distance(at(a), at(b)) < 0.1f;  // px
+        };
+        const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
+            return a.kind == b.kind && a.from == b.from && a.to == b.to;
+        };
+        return std::ranges::equal(bobs(0), bobs(1), same_bob) &&
+               std::ranges::equal(state_.scene.a.lines, state_.scene.b.lines, same_line);
+    }
+
+    /// Bobs with a contrasting rim. The last one of a long chain is visible, except in an ensemble.
+    void draw_bobs(std::size_t k, DisplayList& list) const {
+        for (std::size_t i = 0; has_bobs_ && i < bobs(k).size(); ++i) {
+            const bool last = i + 1 == bobs(k).size();
+            const float radius = std::max(bob_radius(k, i), last && !is_ensemble_ ? layout_.last_bob_radius : 0);
+            const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
+            if (!video_.transparent) draw_disc(at(bobs(k)[i]), radius + rim, theme_.panel, list);
+            draw_disc(at(bobs(k)[i]), radius, last ? pendulums_[k].color : pendulums_[k].bob, list,
+                      last ? style_.glow : 0);
+        }
+    }
+
+    /// Rods, and springs as thin zigzags.
+    void draw_lines(std::size_t k, float radius, Color color, DisplayList& list) const {
+        if (!shows("rods") || !(radius > 0)) return;
+        const auto& side = pendulums_[k].side;
+        const auto end_at = [&](const End<double>& end) {
+            if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs(k)[*bob]);
+            return place_at(side, std::get<Place<double>>(end));
+        };
+        const auto draw = [&](Point from, Point to, float width) {
+            add_line(from, to, width, color, panel_.area, list);
+        };
+        for (const auto& line : side.lines) {
+            if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), line.width * radius);
+            if (line.kind != MechanismLine::Kind::spring) continue;
+            constexpr int turns = 16;
+            const Point from = end_at(line.from), to = end_at(line.to), along{to.x - from.x, to.y - from.y};
+            const float length = std::max(distance(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
+            Point last = from;
+            for (int i = 1; i <= turns; ++i) {
+                const float share = (static_cast<float>(i) - 0.5f) / turns, aside = i % 2 == 0 ? swing : -swing;
+                const Point next{from.x + share * along.x - aside * along.y,
+                                 from.y + share * along.y + aside * along.x};
+                draw(last, next, 0.45f * radius);
+                last = next;
+            }
+            draw(last, to, 0.45f * radius);
+        }
+    }
+
+    /// The position of a fixed end; for a chain, of the pivot, which may move.
+    Point place_at(const Side& side, const Place<double>& place) const {
+        const auto& pivot = state_.seen(side).pivot;
+        return at(place[0] + pivot.x, place[1] + pivot.y);
+    }
+
+    /// Slots in which bobs slide.
+    void draw_slots(const Side& side, DisplayList& list) const {
+        const float width = px(style_.width.grid);
+        const auto& color = theme_.grid;
+        if (!(width > 0)) return;
+        for (const auto& line : side.lines) {
+            const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
+            if (!from) continue;
+            const Point start = at(*from);
+            if (line.kind == MechanismLine::Kind::slot_circle)
+                list.push_back(Ring{start, panel_.px_per_m * static_cast<float>(line.radius), width, color});
+            if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
+            // extended beyond both ends to the edges of the panel
+            const Point end = at(*to), along{end.x - start.x, end.y - start.y};
+            const float far = (panel_.area.width() + panel_.area.height()) / std::max(distance(start, end), 1e-3f);
+            add_line({start.x - far * along.x, start.y - far * along.y},
+                     {start.x + far * along.x, start.y + far * along.y}, width / 2, color, panel_.area, list);
+        }
+    }
+
+    /// Symbols at the fixed ends.
+    void draw_pivots(const Side& side, DisplayList& list) const {
+        if (!shows("rods") || !(layout_.rod_radius > 0)) return;
+        const float radius =
+            std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
+        for (const auto& place : pivots_of(side)) draw_disc(place_at(side, place), radius, theme_.pivot, list);
+    }
+
+    /// A disc; it is not drawn if the run diverges and it leaves the panel.
+    void draw_disc(Point at, float radius, Color color, DisplayList& list, float glow = 0) const {
+        // with a view set by the preset, nothing is drawn outside the panel
+        const float edge = video_.view.height_m || video_.view.center_m || video_.view.follow > 0 ? radius : 0;
+        if (panel_.area.grown(-edge, -edge).contains(at))
+            list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});
+    }
+
+    /// Radius in px: area proportional to mass, with a visible minimum.
+    float bob_radius(std::size_t k, std::size_t bob) const {
+        const auto share = px(std::sqrt(pendulums_[k].mass[bob] / heaviest_));
+        return std::max(layout_.bob_radius * share, px(pendulums_[k].least_bob()) * layout_.rod_radius);
+    }
+
     const Bobs<double>& bobs(std::size_t k) const { return state_.bobs(k); }
     bool shows(std::string_view part) const { return video_.shows(part); }
-    void draw_surroundings(DisplayList& list) const;
+    /// The circle that the outstretched chain reaches, if the panel contains it, and slots.
+    void draw_surroundings(DisplayList& list) const {
+        const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
+        const Point pivot = at(0, 0);
+        const bool is_within =
+            panel_.area.contains(Area{pivot.x - reach, pivot.y - reach, pivot.x + reach, pivot.y + reach});
+        if (reach > 0 && is_within && shows("circle") && style_.width.grid > 0)
+            list.push_back(Ring{pivot, reach, px(style_.width.grid), theme_.grid});
+        for (const auto k : panel_.shown) draw_slots(pendulums_[k].side, list);
+    }
+
     /// The shift of all that is drawn, px, if the view follows a mass.
     Point shift() const {
         if (video_.view.follow == 0) return {};
@@ -76,180 +239,10 @@ private:
     const VideoSpec& video_ = state_.scene.preset.video;
     const std::vector<ShownPendulum> pendulums_ = shown_pendulums(state_.scene, style_, panel_.shown.size() > 1);
     const bool is_ensemble_ = !state_.scene.members.empty(), is_many_ = size_of_many(pendulums_.size()) < 1;
+    const bool has_bobs_ = shows("bobs") && layout_.bob_radius > 0;
     double heaviest_ = 1e-300;  // kg
     std::vector<Path> paths_;
 };
-
-void PendulumLayer::backdrop(DisplayList& list) const {
-    const float u = layout_.unit;
-    const auto& area = panel_.area;
-    if (!video_.transparent) list.push_back(Box{area.left, area.top, area.right, area.bottom, 14 * u, theme_.panel});
-    if (video_.view.follow == 0) draw_surroundings(list);
-}
-
-/// The circle that the outstretched chain reaches, if the panel contains it, and slots.
-void PendulumLayer::draw_surroundings(DisplayList& list) const {
-    const float reach = layout_.reach * panel_.px_per_m / layout_.panels.front().px_per_m;
-    const Point pivot = at(0, 0);
-    const bool is_within =
-        panel_.area.contains(Area{pivot.x - reach, pivot.y - reach, pivot.x + reach, pivot.y + reach});
-    if (reach > 0 && is_within && shows("circle") && style_.width.grid > 0)
-        list.push_back(Ring{pivot, reach, px(style_.width.grid), theme_.grid});
-    for (const auto k : panel_.shown) draw_slots(pendulums_[k].side, list);
-}
-
-/// Adds the path from the last bob to this one: a cubic through both with their velocities, in pieces of a few pixels.
-void PendulumLayer::extend(Path& path, const Bob<double>& bob) const {
-    const float piece = std::max(8 * layout_.unit, 2.0f), minimum = std::max(1.5f * layout_.unit, 0.5f);  // px
-    const double now = state_.time();
-    const auto go_on = [&](Point to, double time) {
-        if (const auto end = path.trail.end(); !end || distance(to, *end) >= minimum) path.trail.add(to, time, now);
-    };
-    if (path.last) {
-        const auto& [from, from_time] = *path.last;
-        const double dt = now - from_time;
-        const int pieces =
-            std::clamp(static_cast<int>(std::ceil(distance(still_at(from), still_at(bob)) / piece)), 1, 32);
-        for (int i = 1; i <= pieces; ++i) {
-            const double s = static_cast<double>(i) / pieces;
-            go_on(panel_.at(hermite(from.x, from.vx, bob.x, bob.vx, dt, s),
-                            hermite(from.y, from.vy, bob.y, bob.vy, dt, s)),
-                  from_time + s * dt);
-        }
-    } else {
-        go_on(still_at(bob), now);
-    }
-    path.last = {bob, now};
-}
-
-void PendulumLayer::draw_trail(std::size_t k, DisplayList& list) const {
-    const auto& bob = bobs(k).back();
-    auto ahead = paths_[k];
-    if (state_.is_between() && ahead.last) extend(ahead, bob);
-    ahead.trail.draw(panel_.area, state_.time(), still_at(bob), list, shift());
-}
-
-/// The last pendulum behind: trails, rods, pivots and bobs; of many, the last bobs are on top.
-void PendulumLayer::frame(DisplayList& list) const {
-    if (video_.view.follow > 0) draw_surroundings(list);
-    const auto& shown = panel_.shown;
-    const bool alone = !is_ensemble_ && shown.size() == 1;
-    // the other pendulum, faint and behind; this side hides it as long as both move together
-    if (alone && shows("twin") && !state_.scene.is_single() && !coincide()) {
-        const std::size_t other = 1 - shown.front();
-        const Color ghost = pendulums_[other].ghost;
-        draw_lines(other, 0.7f * layout_.rod_radius, ghost, list);
-        for (std::size_t i = 0; shows("bobs") && layout_.bob_radius > 0 && i < bobs(other).size(); ++i)
-            draw_disc(at(bobs(other)[i]), bob_radius(other, i), ghost, list);
-    }
-    for (auto k = shown.rbegin(); k != shown.rend(); ++k) draw_trail(*k, list);
-    for (auto k = shown.rbegin(); k != shown.rend(); ++k) {
-        const auto& pendulum = pendulums_[*k];
-        draw_lines(*k, layout_.rod_radius, pendulum.rod, list);
-        if (!is_ensemble_) draw_pivots(pendulum.side, list);
-        if (!is_many_) draw_bobs(*k, list);
-    }
-    if (is_ensemble_) draw_pivots(state_.scene.a, list);
-    if (!is_many_ || !shows("bobs") || !(layout_.bob_radius > 0)) return;
-    for (auto k = shown.rbegin(); k != shown.rend(); ++k)
-        draw_disc(at(bobs(*k).back()), bob_radius(0, bobs(0).size() - 1), pendulums_[*k].color, list);
-}
-
-bool PendulumLayer::coincide() const {
-    const auto same_bob = [&](const Bob<double>& a, const Bob<double>& b) {
-        return a.mass == b.mass && distance(at(a), at(b)) < 0.1f;  // px
-    };
-    const auto same_line = [](const MechanismLine& a, const MechanismLine& b) {
-        return a.kind == b.kind && a.from == b.from && a.to == b.to;
-    };
-    return std::ranges::equal(bobs(0), bobs(1), same_bob) &&
-           std::ranges::equal(state_.scene.a.lines, state_.scene.b.lines, same_line);
-}
-
-/// Bobs with a contrasting rim. The last one of a long chain is visible, except in an ensemble.
-void PendulumLayer::draw_bobs(std::size_t k, DisplayList& list) const {
-    if (!shows("bobs") || !(layout_.bob_radius > 0)) return;
-    for (std::size_t i = 0; i < bobs(k).size(); ++i) {
-        const bool last = i + 1 == bobs(k).size();
-        const float radius = std::max(bob_radius(k, i), last && !is_ensemble_ ? layout_.last_bob_radius : 0);
-        const float rim = std::min(std::max(2 * layout_.unit, 0.75f), 0.3f * radius);
-        if (!video_.transparent) draw_disc(at(bobs(k)[i]), radius + rim, theme_.panel, list);
-        draw_disc(at(bobs(k)[i]), radius, last ? pendulums_[k].color : pendulums_[k].bob, list, last ? style_.glow : 0);
-    }
-}
-
-/// Rods, and springs as thin zigzags.
-void PendulumLayer::draw_lines(std::size_t k, float radius, Color color, DisplayList& list) const {
-    if (!shows("rods") || !(radius > 0)) return;
-    const auto& side = pendulums_[k].side;
-    const auto end_at = [&](const End<double>& end) {
-        if (const auto* bob = std::get_if<std::size_t>(&end)) return at(bobs(k)[*bob]);
-        return place_at(side, std::get<Place<double>>(end));
-    };
-    const auto draw = [&](Point from, Point to, float width) { add_line(from, to, width, color, panel_.area, list); };
-    for (const auto& line : side.lines) {
-        if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), line.width * radius);
-        if (line.kind != MechanismLine::Kind::spring) continue;
-        constexpr int turns = 16;
-        const Point from = end_at(line.from), to = end_at(line.to), along{to.x - from.x, to.y - from.y};
-        const float length = std::max(distance(from, to), 1.0f), swing = 0.5f * layout_.bob_radius / length;
-        Point last = from;
-        for (int i = 1; i <= turns; ++i) {
-            const float share = (static_cast<float>(i) - 0.5f) / turns, aside = i % 2 == 0 ? swing : -swing;
-            const Point next{from.x + share * along.x - aside * along.y, from.y + share * along.y + aside * along.x};
-            draw(last, next, 0.45f * radius);
-            last = next;
-        }
-        draw(last, to, 0.45f * radius);
-    }
-}
-
-/// Slots in which bobs slide.
-void PendulumLayer::draw_slots(const Side& side, DisplayList& list) const {
-    const float width = px(style_.width.grid);
-    const auto& color = theme_.grid;
-    if (!(width > 0)) return;
-    for (const auto& line : side.lines) {
-        const auto *from = std::get_if<Place<double>>(&line.from), *to = std::get_if<Place<double>>(&line.to);
-        if (!from) continue;
-        const Point start = at(*from);
-        if (line.kind == MechanismLine::Kind::slot_circle)
-            list.push_back(Ring{start, panel_.px_per_m * static_cast<float>(line.radius), width, color});
-        if (line.kind != MechanismLine::Kind::slot_line || !to) continue;
-        // extended beyond both ends to the edges of the panel
-        const Point end = at(*to), along{end.x - start.x, end.y - start.y};
-        const float far = (panel_.area.width() + panel_.area.height()) / std::max(distance(start, end), 1e-3f);
-        add_line({start.x - far * along.x, start.y - far * along.y}, {start.x + far * along.x, start.y + far * along.y},
-                 width / 2, color, panel_.area, list);
-    }
-}
-
-/// The position of a fixed end; for a chain, of the pivot, which may move.
-Point PendulumLayer::place_at(const Side& side, const Place<double>& place) const {
-    const auto& pivot = state_.seen(side).pivot;
-    return at(place[0] + pivot.x, place[1] + pivot.y);
-}
-
-/// Symbols at the fixed ends.
-void PendulumLayer::draw_pivots(const Side& side, DisplayList& list) const {
-    if (!shows("rods") || !(layout_.rod_radius > 0)) return;
-    const float radius = std::max({0.4f * layout_.bob_radius, 0.5f * layout_.last_bob_radius, 0.012f * layout_.reach});
-    for (const auto& place : pivots_of(side)) draw_disc(place_at(side, place), radius, theme_.pivot, list);
-}
-
-/// A disc; it is not drawn if the run diverges and it leaves the panel.
-void PendulumLayer::draw_disc(Point at, float radius, Color color, DisplayList& list, float glow) const {
-    // with a view set by the preset, nothing is drawn outside the panel
-    const float edge = video_.view.height_m || video_.view.center_m || video_.view.follow > 0 ? radius : 0;
-    if (panel_.area.grown(-edge, -edge).contains(at))
-        list.push_back(Capsule{.from = at, .to = at, .radius = radius, .color = color, .glow = glow});
-}
-
-/// Radius in px: area proportional to mass, with a visible minimum.
-float PendulumLayer::bob_radius(std::size_t k, std::size_t bob) const {
-    const auto share = px(std::sqrt(pendulums_[k].mass[bob] / heaviest_));
-    return std::max(layout_.bob_radius * share, px(pendulums_[k].least_bob()) * layout_.rod_radius);
-}
 
 }  // namespace
 

@@ -33,14 +33,39 @@ public:
     PhaseLayer(const FilmState& state, const PhasePanel& panel)
         : Layer(state), panel_(panel), trails_{trail_of(0), trail_of(1)} {}
 
-    void backdrop(DisplayList& list) const override;
+    void backdrop(DisplayList& list) const override {
+        const Area &area = panel_.area, around = panel_.panel;
+        if (!video_.transparent)
+            list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
+        auto style = axis_style();
+        add_axis(panel_.angle, area, around, style, list, 90);
+        style.edge = AxisStyle::Edge::left;
+        add_axis(panel_.rate, area, around, style, list);
+        const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
+                                         video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
+        const auto fits = fitted_text(layout_, heading, px(style_.font.strip), Weight::regular, around.width());
+        list.push_back(label(fits.text, {around.left, around.top - 12 * layout_.text}, fits.size, theme_.text));
+    }
+
     void add() override {
         for (std::size_t side = 0; side < 2; ++side)
             video_.phase == PhaseKind::rate
                 ? trails_[side].add(at(state_.bobs(side)[link_]), state_.time(), state_.time())
                 : add_to_section(side);
     }
-    void frame(DisplayList& list) const override;
+    void frame(DisplayList& list) const override {
+        const float dot = px(1.2 * style_.width.trace), head = std::max(2.3f * px(style_.width.trace), 2.0f);
+        for (std::size_t side = 2; side-- > 0;) {
+            const auto color = theme_.sides[side];
+            for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
+            if (video_.phase != PhaseKind::rate) continue;
+            const Point now = at(state_.bobs(side)[link_]);
+            auto trail = trails_[side];
+            if (state_.is_between()) trail.add(now, state_.time(), state_.time());
+            trail.draw(panel_.area, state_.time(), std::nullopt, list);
+            list.push_back(Capsule{now, now, head, color});
+        }
+    }
 
 private:
     Point at(double theta, double omega) const {
@@ -51,7 +76,20 @@ private:
         // a path that leaves at +180° continues at -180°
         return {state_.scene, style_, theme_.sides[side], px(style_.width.trail), panel_.area.width() / 2};
     }
-    void add_to_section(std::size_t side);
+    /// Adds a point if the path since the last sample crosses the section.
+    void add_to_section(std::size_t side) {
+        const auto& bobs = state_.bobs(side);
+        if (const auto& last = last_bobs_[side]) {
+            const double dt = state_.time() - last_time_;
+            if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
+                const auto &from = (*last)[link_], &to = bobs[link_];
+                const double theta = hermite(from.theta, from.omega, to.theta, to.omega, dt, *share);
+                section_[side].push_back(at(theta, std::lerp(from.omega, to.omega, *share)));
+            }
+        }
+        last_bobs_[side] = bobs;
+        if (side == 1) last_time_ = state_.time();
+    }
 
     const PhasePanel& panel_;
     const VideoSpec& video_ = state_.scene.preset.video;
@@ -61,49 +99,6 @@ private:
     std::array<std::vector<Point>, 2> section_;
     double last_time_ = 0;  // s
 };
-
-void PhaseLayer::backdrop(DisplayList& list) const {
-    const Area &area = panel_.area, around = panel_.panel;
-    if (!video_.transparent)
-        list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
-    auto style = axis_style();
-    add_axis(panel_.angle, area, around, style, list, 90);
-    style.edge = AxisStyle::Edge::left;
-    add_axis(panel_.rate, area, around, style, list);
-    const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
-                                     video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
-    const auto fits = fitted_text(layout_, heading, px(style_.font.strip), Weight::regular, around.width());
-    list.push_back(label(fits.text, {around.left, around.top - 12 * layout_.text}, fits.size, theme_.text));
-}
-
-/// Adds a point if the path since the last sample crosses the section.
-void PhaseLayer::add_to_section(std::size_t side) {
-    const auto& bobs = state_.bobs(side);
-    if (const auto& last = last_bobs_[side]) {
-        const double dt = state_.time() - last_time_;
-        if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
-            const auto &from = (*last)[link_], &to = bobs[link_];
-            const double theta = hermite(from.theta, from.omega, to.theta, to.omega, dt, *share);
-            section_[side].push_back(at(theta, std::lerp(from.omega, to.omega, *share)));
-        }
-    }
-    last_bobs_[side] = bobs;
-    if (side == 1) last_time_ = state_.time();
-}
-
-void PhaseLayer::frame(DisplayList& list) const {
-    const float dot = px(1.2 * style_.width.trace), head = std::max(2.3f * px(style_.width.trace), 2.0f);
-    for (std::size_t side = 2; side-- > 0;) {
-        const auto color = theme_.sides[side];
-        for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
-        if (video_.phase != PhaseKind::rate) continue;
-        const Point now = at(state_.bobs(side)[link_]);
-        auto trail = trails_[side];
-        if (state_.is_between()) trail.add(now, state_.time(), state_.time());
-        trail.draw(panel_.area, state_.time(), std::nullopt, list);
-        list.push_back(Capsule{now, now, head, color});
-    }
-}
 
 }  // namespace
 
