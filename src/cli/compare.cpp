@@ -258,7 +258,7 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
         throw bad_input("--at and --frames are for films; {} is a figure", text.name);
     ProgressReport progress(progress_style("auto"), text.name, is_chart ? "trials" : "frames");
     const Report report = std::ref(progress);
-    const RunOptions run_options{.out = folder, .gl = gl_named(options.gl)};
+    const RunOptions run_options{.out = folder, .gl = value_named<Gl>(options.gl)};
     std::vector<ComparedPicture> pairs;
     if (is_chart) {
         const auto figure = read_figure(text, overrides, task.stop);

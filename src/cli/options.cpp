@@ -91,7 +91,7 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
 
 CLI::Option* add_gl_option(CLI::App& command, std::string& gl) {
     return add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing",
-                      gl_names());
+                      {names_of<Gl>.begin(), names_of<Gl>.end()});
 }
 
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {

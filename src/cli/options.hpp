@@ -57,7 +57,7 @@ void add_out_options(CLI::App& command, OutOptions& options);
 /// The same, and --jobs; `jobs` = what is counted, for the help.
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
 
-/// --gl: a name for gl_named().
+/// --gl: a name of Gl.
 CLI::Option* add_gl_option(CLI::App& command, std::string& gl);
 
 /// Parses "A<separator>B" as two whole numbers; returns nothing otherwise.

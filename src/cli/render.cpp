@@ -213,7 +213,7 @@ void add_render(CLI::App& app) {
     command.callback([options] {
         RunOptions run{.pictures = true,
                        .jobs = options->jobs,
-                       .gl = gl_named(options->gl),
+                       .gl = value_named<Gl>(options->gl),
                        .columns = columns_of_option(options->columns)};
         set_range(*options, run);
         run.shard = shard_of_option(options->shard, options->merge);
@@ -256,7 +256,7 @@ void add_still(CLI::App& app) {
         if (options->list_outputs) return;
         const Destination to(options->out, scenes.size(), "." + options->format);
         const RunOptions run{.out = to.folder(),
-                             .gl = gl_named(options->gl),
+                             .gl = value_named<Gl>(options->gl),
                              .replacing = {inputs_of(options->presets, scenes), options->force}};
         const auto& stop = watch_interrupts();
         work_on_all(scenes, options->progress, "samples", to.streamed(), [&](const Scene& scene, auto& report) {

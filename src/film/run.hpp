@@ -6,13 +6,18 @@
 #include "render/renderer.hpp"
 #include "scene/scene.hpp"
 
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace doppel {
+
+template <>
+inline constexpr auto names_of<Gl> = std::to_array<std::string_view>({"auto", "osmesa", "egl"});
 
 /// What a run writes, and to which folder.
 struct RunOptions {

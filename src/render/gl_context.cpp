@@ -6,9 +6,8 @@
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 
@@ -127,18 +126,6 @@ std::unique_ptr<Context> try_library(const char* library, const char* packages,
 }
 
 }  // namespace
-
-std::vector<std::string> gl_names() {
-    return {"auto", "osmesa", "egl"};  // in the order of Gl
-}
-
-Gl gl_named(const std::string& name) {
-    const auto names = gl_names();
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
-        throw bad_input("nothing that draws is called \"{}\"; there are {}", name, fmt::join(names, ", "));
-    return static_cast<Gl>(found - names.begin());
-}
 
 Context::~Context() {
     retire();

@@ -20,12 +20,6 @@ enum class Gl {
     egl,        // EGL without a surface: on a GPU if there is one, otherwise by Mesa in software
 };
 
-/// The names for users: "auto", "osmesa", "egl".
-std::vector<std::string> gl_names();
-
-/// Throws Error (exit 2) for other names.
-Gl gl_named(const std::string& name);
-
 class Context;
 namespace gl {
 class Painter;

@@ -14,6 +14,11 @@ namespace doppel::run_test {
 using test::bytes_of;
 using test::fresh_folder;
 
+TEST(Run, NamesTheLibrariesThatDraw) {
+    for (const auto& [name, gl] : {std::pair("auto", Gl::automatic), {"osmesa", Gl::osmesa}, {"egl", Gl::egl}})
+        EXPECT_EQ(value_named<Gl>(name), gl);
+}
+
 TEST(Run, VideoHasTheFramesThatWereDrawn) {
     const auto out = fresh_folder();
     const auto scene = small_scene();

@@ -50,13 +50,7 @@ Picture drawn(Gl gl, const DisplayList& list) {
     return renderer.draw(list);
 }
 
-TEST(Gl, HasANameForEach) {
-    EXPECT_EQ(gl_names(), (std::vector<std::string>{"auto", "osmesa", "egl"}));
-    EXPECT_EQ(gl_named("auto"), Gl::automatic);
-    EXPECT_EQ(gl_named("osmesa"), Gl::osmesa);
-    EXPECT_EQ(gl_named("egl"), Gl::egl);
-    EXPECT_EQ(test::thrown_by([] { gl_named("glx"); }),
-              (test::Thrown{ExitCode::bad_input, "nothing that draws is called \"glx\"; there are auto, osmesa, egl"}));
+TEST(Gl, DrawsByTheLibraryThatIsNamed) {
     for (const Gl gl : {osmesa_or_egl(), Gl::egl, Gl::automatic})
         EXPECT_TRUE(Renderer({8, 8}, {}, gl)
                         .description()
