@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/gl_api.hpp"
+#include "render/gl_context.hpp"
 #include "render/render_list.hpp"
 
 #include <string>
