@@ -1,8 +1,7 @@
-#include "figure/computation.hpp"
-
 #include "base/clock.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
+#include "figure/run.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>

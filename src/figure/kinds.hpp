@@ -1,16 +1,166 @@
 #pragma once
 
-#include "figure/experiment.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
+#include "output/csv.hpp"
+#include "plot/plot.hpp"
+#include "scene/preset.hpp"
+#include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 namespace doppel {
+
+/// The results of one trial, at least one number; NaN if one is missing.
+using TrialNumbers = std::vector<double>;
+
+inline bool all_finite(std::span<const double> numbers) {
+    return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+}
+
+/// Whether each is finite or NaN (missing).
+inline bool finite_or_none(std::span<const double> numbers) {
+    return std::ranges::none_of(numbers, [](double x) { return std::isinf(x); });
+}
+
+/// Whether it is an integer ≥ 0 that is exact in a double.
+inline bool is_count(double x) {
+    return x >= 0 && x <= 0x1p53 && x == std::floor(x);
+}
+
+/// A struct that only consists of doubles: named numbers of a trial.
+template <class Row>
+concept NumberRow = std::is_trivially_copyable_v<Row> && sizeof(Row) % sizeof(double) == 0;
+
+template <NumberRow Row>
+inline constexpr std::size_t numbers_in = sizeof(Row) / sizeof(double);
+
+template <NumberRow Row>
+Row row_of(std::span<const double> numbers) {
+    std::array<double, numbers_in<Row>> first;
+    std::copy_n(numbers.begin(), first.size(), first.begin());
+    return std::bit_cast<Row>(first);
+}
+
+/// All rows of the numbers; their count must be a multiple of a row's.
+template <NumberRow Row>
+std::vector<Row> rows_of(std::span<const double> numbers) {
+    std::vector<Row> rows;
+    for (; !numbers.empty(); numbers = numbers.subspan(numbers_in<Row>)) rows.push_back(row_of<Row>(numbers));
+    return rows;
+}
+
+template <NumberRow Row>
+void append(TrialNumbers& numbers, const Row& row) {
+    for (const double value : std::bit_cast<std::array<double, numbers_in<Row>>>(row)) numbers.push_back(value);
+}
+
+/// Adds a row to the table: text, whole numbers and doubles. NaN gives an empty cell.
+template <class... Cells>
+void add_row(Csv& table, const Cells&... cells) {
+    const auto add = [&](const auto& cell) {
+        using Cell = std::decay_t<decltype(cell)>;
+        if constexpr (std::is_same_v<Cell, double>)
+            table.add_or_empty(cell);
+        else if constexpr (std::is_integral_v<Cell>)
+            table.add(static_cast<long>(cell));
+        else
+            table.add(std::string_view(cell));
+    };
+    (add(cells), ...);
+    table.end_row();
+}
+
+inline void add_point(Curve& curve, double x, double y) {
+    curve.x.push_back(x);
+    curve.y.push_back(y);
+}
+
+/// The numbers of cells of a map figure: in each panel, and numbers per cell.
+struct MapCells {
+    int columns, rows;
+    std::size_t panels, numbers;
+};
+
+/// What a figure computes and shows: independent trials, and the table, picture and findings made from their numbers.
+/// Trials may be computed in any order, by any thread, in several runs on several machines; their numbers are
+/// identical.
+class Experiment {
+public:
+    virtual ~Experiment() = default;
+
+    virtual std::size_t trials() const = 0;
+    /// The number of consecutive trials that one call of compute() computes best. It does not change results.
+    virtual std::size_t together() const { return 1; }
+    /// Whether trials measure time. They are then computed one after the other, without other work.
+    virtual bool measures_time() const { return false; }
+    /// The unit of progress, "pairs", and how many of them a trial counts; 0 for trials that others require first.
+    const std::string& unit() const { return unit_; }
+    virtual double units(std::size_t /*trial*/) const { return 1; }
+
+    /// Computes trials first, first + 1 …, one for each of `numbers`. Throws Error: exit 3 if a method fails and
+    /// nothing can be shown, exit 130 soon after `stop` is set.
+    virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
+        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = compute_trial(first + i, stop);
+    }
+
+    /// Whether the numbers are valid for the trial: their count, and infinity or NaN only where allowed. It checks
+    /// numbers that were read and those that were computed.
+    virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
+
+    /// The columns of the table, and its rows from the numbers of all trials.
+    const std::vector<std::string>& columns() const { return columns_; }
+    virtual void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const = 0;
+
+    /// Why nothing can be drawn, for example because every trial failed; otherwise nothing.
+    virtual std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> /*numbers*/) const { return {}; }
+
+    /// Adds the panels, and captions with results. Titles are already set.
+    virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
+    /// Results outside the table, for the manifest.
+    virtual Json findings(std::span<const TrialNumbers> numbers) const = 0;
+
+    /// The subtitle if the preset has none: the system and the integrator.
+    const std::string& subtitle() const { return subtitle_; }
+
+    /// For map figures, in which each panel shows one map; otherwise nothing.
+    const std::optional<MapCells>& map() const { return map_; }
+
+    /// For a map or a sweep over release angles of chains of one to three ideal links: the keys of the axes, x first, and one
+    /// pair of the figure.
+    struct Releases {
+        std::vector<std::string> keys;
+        Preset pair;
+    };
+    virtual std::optional<Releases> releases() const { return std::nullopt; }
+
+    /// All settings that the numbers depend on, as tables of the preset (TOML).
+    const std::string& resolved() const { return settings_; }
+    /// The keys of [chart] that the numbers depend on.
+    const std::string& resolved_chart() const { return chart_settings_; }
+
+protected:
+    // set by constructors
+    std::string unit_ = "trials", subtitle_, settings_, chart_settings_;
+    std::vector<std::string> columns_;
+    std::optional<MapCells> map_;
+
+    /// Computes one trial, for kinds that do not compute several together.
+    virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }
+};
 
 /// The kind's own table with all its keys, TOML.
 template <class Kind>

@@ -1,11 +1,123 @@
 #include "figure/preset.hpp"
 
-#include "figure/kinds.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 namespace doppel {
+namespace {
+
+constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
+constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/panel.hpp), layout px
+constexpr double paths_scale = 4;                 // for output made of paths
+constexpr double page_scale = 2;                  // for a page, whose picture may be pixels
+constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL supports, which reports its own limit
+
+/// Checks that the picture can be made, with space for its text.
+void check_chart(const TomlReader& table, const ChartSpec& chart) {
+    const auto layout = layout_of(chart);
+    const auto [width, height] = layout.picture;
+    const double height_pt = layout.width_pt * height / width;
+    // in text heights: the smallest chart with space for axes, labels and a curve
+    constexpr double min_width = 12, min_height = 10;
+    if (const double maximum = std::min(layout.width_pt / min_width, height_pt / min_height);
+        chart.width_cm && chart.font_pt > maximum)
+        throw table.error("font_pt",
+                          "is too large for a chart of {:.3g}×{:.3g} cm; at most {:.2g} pt is possible; it is {:g}",
+                          layout.width_pt / pt_per_cm, height_pt / pt_per_cm, maximum, chart.font_pt);
+    if (std::min(width, height) < smallest || std::max(width, height) > largest) {
+        const auto what = chart.width_cm
+                              ? fmt::format("{:g} cm at {} dpi", *chart.width_cm, chart.dpi)
+                              : fmt::format("{:g} times {}×{} px", chart.scale, chart.size.width, chart.size.height);
+        throw table.error(chart.width_cm ? "width_cm" : "scale",
+                          "must leave a picture of {} to {} px a side; {} is {}×{} px", smallest, largest, what, width,
+                          height);
+    }
+}
+
+}  // namespace
+
+void chart_fields(KeyVisitor& visit, ChartSpec& chart) {
+    const bool on_paper = chart.width_cm.has_value();
+    const auto of_paper = [&](std::string_view what) {
+        return Condition{on_paper, fmt::format("{}; it needs width_cm", what), true, "width_cm"};
+    };
+    visit({"format", "format of the picture: pixels, text and lines for a paper, or a page that tells the numbers"},
+          chart.format);
+    visit(size_field, chart.size);
+    visit(theme_field, chart.theme);
+    const Condition of_pixels{!on_paper, "is for a size in pixels; with width_cm, dpi sets it"};
+    const auto sizes_cm = from_to(2, 200);
+    constexpr Bounds scales{.low = 0, .high = 8, .is_open = true};
+    visit({"width_cm", "width on paper", "cm", sizes_cm, "none: as wide as `size`"}, chart.width_cm);
+    visit({"height_cm", "height on paper", "cm", sizes_cm, "in proportion, as `size`",
+           of_paper("is the height on paper")},
+          chart.height_cm);
+    visit({"font_pt", "text on paper, with `width_cm`", "pt", from_to(4, 40), "",
+           of_paper("is the size of text on paper")},
+          chart.font_pt);
+    visit({"dpi", "pixels an inch of a PNG, with `width_cm`", "", from_to(72, 1200), "",
+           of_paper("is the resolution on paper")},
+          chart.dpi);
+    visit({"scale", "picture pixels to a pixel of `size`: 2 for print", "", scales, "", of_pixels}, chart.scale);
+    visit({.key = "title",
+           .help = "text in place of title and subtitle, one or a list of both; `false`: none",
+           .is_drawn = true},
+          chart.title);
+    visit(
+        {.key = "captions", .help = "text in place of the captions below the picture; `false`: none", .is_drawn = true},
+        chart.captions);
+}
+
+ChartLayout layout_of(const ChartSpec& chart, double growth) {
+    double width = chart.size.width, height = chart.size.height, pt = pt_per_px, scale = chart.scale;
+    if (chart.width_cm) {
+        const double high = chart.height_cm.value_or(growth * *chart.width_cm * height / width);
+        pt = chart.font_pt / label_px;
+        width = *chart.width_cm * pt_per_cm / pt, height = high * pt_per_cm / pt;
+        scale = chart.dpi / cm_per_inch * *chart.width_cm / width;
+    }
+    // all formats have the same layout: the grid of paths is some times finer than that of the PNG
+    const double finest = chart.format == PictureFormat::png    ? scale
+                          : chart.format == PictureFormat::html ? page_scale
+                                                                : paths_scale;
+    const int finer = static_cast<int>(std::max(std::ceil(finest / scale), 1.0));
+    ChartLayout layout{.picture = {finer * static_cast<int>(std::lround(width * scale)),
+                                   finer * static_cast<int>(std::lround(height * scale))},
+                       .scale = static_cast<float>(finer * scale),
+                       .width_pt = width * pt};
+    if (chart.width_cm) layout.unit = 1;
+    return layout;
+}
+
+Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& theme) {
+    constexpr double most_growth = 3;
+    constexpr float readable_panel = 90, readable_text = 16;  // px, where labels have 20
+    const auto is_small = [](const PageItem& item) {
+        const auto* text = std::get_if<Label>(&item);
+        return text && text->size < readable_text;
+    };
+    std::optional<Page> with_small_text;
+    for (double growth = 1;; growth += 0.1) {
+        const auto layout = layout_of(chart, growth);
+        auto made = compose(figure, layout.picture, theme, layout.scale, layout.unit);
+        const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
+        const bool has_all = made.notes.empty() && smallest_side(made.panels) >= readable_panel;
+        if (has_all && std::ranges::none_of(made.items, is_small)) return made;
+        if (!may_grow) return std::move(with_small_text).value_or(std::move(made));
+        if (has_all && !with_small_text) with_small_text = std::move(made);
+    }
+}
+
+void read_chart(TomlReader& table, ChartSpec& chart) {
+    // the meaning of other keys depends on this one
+    table({.key = "width_cm"}, chart.width_cm.emplace(0));
+    if (!table.has("width_cm")) chart.width_cm.reset();
+    chart_fields(table, chart);
+    table.finish();
+    table.check_together([&] { check_chart(table, chart); });
+}
 
 void top_fields(KeyVisitor& visit, FigurePreset& figure) {
     visit(title_field, figure.title);

@@ -3,7 +3,6 @@
 #include "analysis/difference.hpp"
 #include "analysis/stability.hpp"
 #include "base/clock.hpp"
-#include "figure/kinds.hpp"
 #include "numeric/roots.hpp"
 #include "scene/captions.hpp"
 

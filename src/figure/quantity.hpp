@@ -2,7 +2,7 @@
 
 #include "analysis/exponent.hpp"
 #include "analysis/pair_batch.hpp"
-#include "figure/experiment.hpp"
+#include "figure/kinds.hpp"
 #include "integrate/flips.hpp"
 #include "scene/scene.hpp"
 #include "scene/toml_reader.hpp"

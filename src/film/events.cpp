@@ -1,5 +1,3 @@
-#include "film/events.hpp"
-
 #include "film/film.hpp"
 
 #include <algorithm>

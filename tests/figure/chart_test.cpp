@@ -1,5 +1,4 @@
-#include "figure/chart.hpp"
-
+#include "figure/preset.hpp"
 #include "figure/run.hpp"
 #include "figure/support.hpp"
 #include "output/png.hpp"

@@ -1,6 +1,5 @@
 // Resuming from a record.
-#include "figure/computation.hpp"
-
+#include "figure/run.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>
