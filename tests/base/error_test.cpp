@@ -4,8 +4,7 @@
 
 #include <string>
 
-namespace doppel {
-namespace error_test {
+namespace doppel::error_test {
 
 TEST(Error, IsOneLineWhateverItQuotes) {
     const std::string quoted("a\0b\nc", 5);
@@ -13,5 +12,4 @@ TEST(Error, IsOneLineWhateverItQuotes) {
     EXPECT_STREQ(Error(ExitCode::io_failed, quoted).what(), "a b c");
 }
 
-}  // namespace error_test
-}  // namespace doppel
+}  // namespace doppel::error_test

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace doppel {
-namespace machine_test {
+namespace doppel::machine_test {
 
 namespace fs = std::filesystem;
 
@@ -86,5 +85,4 @@ TEST(Machine, LimitsObjectsByItsMemory) {
     EXPECT_EQ(affordable(0, 8, bare), 8u);
 }
 
-}  // namespace machine_test
-}  // namespace doppel
+}  // namespace doppel::machine_test

@@ -10,8 +10,7 @@
 
 // The stored results of the benchmarks, and the tables made from them.
 
-namespace doppel {
-namespace performance_test {
+namespace doppel::performance_test {
 
 const std::filesystem::path docs = DOPPEL_SOURCE_DIR "/docs";
 
@@ -66,5 +65,4 @@ TEST(Performance, IsKeptAsItIs) {
     EXPECT_THROW(read_performance(path.parent_path() / "none.json"), Error);
 }
 
-}  // namespace performance_test
-}  // namespace doppel
+}  // namespace doppel::performance_test

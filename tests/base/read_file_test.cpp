@@ -10,8 +10,7 @@
 #include <fstream>
 #include <string>
 
-namespace doppel {
-namespace read_file_test {
+namespace doppel::read_file_test {
 
 namespace fs = std::filesystem;
 
@@ -40,5 +39,4 @@ TEST(ReadFile, TakesRegularFilesOfALimitedSizeAlone) {
     fs::remove_all(folder);
 }
 
-}  // namespace read_file_test
-}  // namespace doppel
+}  // namespace doppel::read_file_test

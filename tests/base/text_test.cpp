@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace doppel {
-namespace text_test {
+namespace doppel::text_test {
 
 std::vector<char32_t> characters(std::string_view text) {
     std::vector<char32_t> all;
@@ -79,5 +78,4 @@ TEST(Text, TheNearestWordIsATypingErrorAwayOrBeginsSo) {
     EXPECT_FALSE(nearest("x", {}));
 }
 
-}  // namespace text_test
-}  // namespace doppel
+}  // namespace doppel::text_test

@@ -10,8 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace doppel {
-namespace threads_test {
+namespace doppel::threads_test {
 
 TEST(Threads, AreAsManyAsRequested) {
     std::atomic<int> ran = 0;
@@ -63,5 +62,4 @@ TEST(ShareOut, ThrowsTheFirstErrorAndStops) {
     EXPECT_LT(done, 1'000'000);
 }
 
-}  // namespace threads_test
-}  // namespace doppel
+}  // namespace doppel::threads_test

@@ -7,8 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
-namespace doppel {
-namespace certify_test {
+namespace doppel::certify_test {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -152,5 +151,4 @@ TEST(Certify, TheKeyOfAPresetAddsTheProof) {
     EXPECT_NE(bytes_of(folder / "plain/calm/calm.0.5s.png"), bytes_of(folder / "proved/calm/calm.0.5s.png"));
 }
 
-}  // namespace certify_test
-}  // namespace doppel
+}  // namespace doppel::certify_test

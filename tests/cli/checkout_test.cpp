@@ -1,8 +1,7 @@
 // The script "doppel" of a checkout that cannot build.
 #include "cli/sandbox.hpp"
 
-namespace doppel {
-namespace checkout_test {
+namespace doppel::checkout_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -41,5 +40,4 @@ TEST(Checkout, ABuildThatFailsIsExit4) {
     EXPECT_EQ(result.code, 4) << result.err;
 }
 
-}  // namespace checkout_test
-}  // namespace doppel
+}  // namespace doppel::checkout_test

@@ -6,8 +6,7 @@
 
 #include <fstream>
 
-namespace doppel {
-namespace cmake_package_test {
+namespace doppel::cmake_package_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -117,5 +116,4 @@ TEST_F(CmakePackage, RefusesWhatMakesNoSense) {
     }
 }
 
-}  // namespace cmake_package_test
-}  // namespace doppel
+}  // namespace doppel::cmake_package_test

@@ -10,8 +10,7 @@ extern "C" {
 #include <libavutil/base64.h>
 }
 
-namespace doppel {
-namespace compare_page_test {
+namespace doppel::compare_page_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -106,5 +105,4 @@ TEST(ComparePage, StyleAndScriptAreSmall) {
     EXPECT_LT(bytes, 10'000u);  // measured 6500
 }
 
-}  // namespace compare_page_test
-}  // namespace doppel
+}  // namespace doppel::compare_page_test

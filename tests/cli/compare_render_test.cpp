@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace doppel {
-namespace compare_render_test {
+namespace doppel::compare_render_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -201,5 +200,4 @@ TEST_F(CompareRender, RefusesWhatMakesNoSense) {
               "a.xml\nb.html\n");
 }
 
-}  // namespace compare_render_test
-}  // namespace doppel
+}  // namespace doppel::compare_render_test

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace doppel {
-namespace compare_report_test {
+namespace doppel::compare_report_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -167,5 +166,4 @@ TEST(CompareReports, AreNotForStandardOutput) {
     }
 }
 
-}  // namespace compare_report_test
-}  // namespace doppel
+}  // namespace doppel::compare_report_test

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace doppel {
-namespace compare_test {
+namespace doppel::compare_test {
 
 namespace fs = std::filesystem;
 using test::doppel;
@@ -125,5 +124,4 @@ TEST(Compare, ComparesOpacity) {
     EXPECT_NE(result.out.find("a pixel differs by 200/255"), std::string::npos) << result.out;
 }
 
-}  // namespace compare_test
-}  // namespace doppel
+}  // namespace doppel::compare_test

@@ -10,8 +10,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace doppel {
-namespace completion_test {
+namespace doppel::completion_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -217,5 +216,4 @@ TEST(Completion, WorksOnATerminal) {
               (Lines{"figure", "poincare", "--set", "section.orbits=3"}));
 }
 
-}  // namespace completion_test
-}  // namespace doppel
+}  // namespace doppel::completion_test

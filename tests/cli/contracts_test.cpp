@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace doppel {
-namespace contracts_test {
+namespace doppel::contracts_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -268,5 +267,4 @@ TEST(Contracts, RunsReportWhenTheyDivergeAsCheckDoes) {
     EXPECT_NE(lost.err.find("side a: the accuracy is kept up to 2"), std::string::npos) << lost.err;
 }
 
-}  // namespace contracts_test
-}  // namespace doppel
+}  // namespace doppel::contracts_test

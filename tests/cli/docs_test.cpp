@@ -5,8 +5,7 @@
 
 #include <regex>
 
-namespace doppel {
-namespace docs_test {
+namespace doppel::docs_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -111,5 +110,4 @@ INSTANTIATE_TEST_SUITE_P(Docs, PageOfCommands, testing::ValuesIn(pages()), [](co
     return name;
 });
 
-}  // namespace docs_test
-}  // namespace doppel
+}  // namespace doppel::docs_test

@@ -8,8 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace doppel {
-namespace extremes_test {
+namespace doppel::extremes_test {
 
 using namespace test;
 
@@ -139,5 +138,4 @@ TEST(Extremes, EndlessRunsStopOnRequest) {
     }
 }
 
-}  // namespace extremes_test
-}  // namespace doppel
+}  // namespace doppel::extremes_test

@@ -11,8 +11,7 @@
 #include <map>
 #include <sstream>
 
-namespace doppel {
-namespace failed_runs_test {
+namespace doppel::failed_runs_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -320,5 +319,4 @@ TEST(FailedRuns, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
     }
 }
 
-}  // namespace failed_runs_test
-}  // namespace doppel
+}  // namespace doppel::failed_runs_test

@@ -3,8 +3,7 @@
 
 #include <fmt/ranges.h>
 
-namespace doppel {
-namespace few_threads_test {
+namespace doppel::few_threads_test {
 
 using namespace test;
 
@@ -64,5 +63,4 @@ TEST(FewThreads, AreEnoughForPictures) {
     EXPECT_EQ(listing(folder / "out/butterfly/frames").size(), 20u);
 }
 
-}  // namespace few_threads_test
-}  // namespace doppel
+}  // namespace doppel::few_threads_test

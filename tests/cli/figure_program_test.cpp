@@ -10,8 +10,7 @@
 #include <sstream>
 #include <thread>
 
-namespace doppel {
-namespace figure_program_test {
+namespace doppel::figure_program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -224,5 +223,4 @@ TEST(Recipe, GnuParallel) {
     expect_merged(folder);
 }
 
-}  // namespace figure_program_test
-}  // namespace doppel
+}  // namespace doppel::figure_program_test

@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace doppel {
-namespace gl_program_test {
+namespace doppel::gl_program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -91,5 +90,4 @@ TEST(GlProgram, ExitsWith4WhereNothingCanDraw) {
     }
 }
 
-}  // namespace gl_program_test
-}  // namespace doppel
+}  // namespace doppel::gl_program_test

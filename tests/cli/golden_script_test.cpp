@@ -6,8 +6,7 @@
 #include <map>
 #include <regex>
 
-namespace doppel {
-namespace golden_script_test {
+namespace doppel::golden_script_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -132,5 +131,4 @@ TEST(GoldenScript, ReportsWhatItCannotDraw) {
         EXPECT_NE(summary.find(line), std::string::npos) << summary;
 }
 
-}  // namespace golden_script_test
-}  // namespace doppel
+}  // namespace doppel::golden_script_test

@@ -10,8 +10,7 @@
 #include <set>
 #include <sstream>
 
-namespace doppel {
-namespace init_test {
+namespace doppel::init_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -198,5 +197,4 @@ TEST(Init, NamesTheSchemaThatIsThere) {
     EXPECT_FALSE(check.out.starts_with("films/mine.toml:")) << check.out;
 }
 
-}  // namespace init_test
-}  // namespace doppel
+}  // namespace doppel::init_test

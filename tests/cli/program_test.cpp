@@ -11,8 +11,7 @@
 #include <sstream>
 #include <thread>
 
-namespace doppel {
-namespace program_test {
+namespace doppel::program_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -366,5 +365,4 @@ TEST(Program, ReportsProgressForPeopleAndPrograms) {
     EXPECT_EQ(plain.err.find('\r'), std::string::npos) << "no bar where there is no terminal";
 }
 
-}  // namespace program_test
-}  // namespace doppel
+}  // namespace doppel::program_test

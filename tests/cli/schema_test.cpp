@@ -3,8 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace doppel {
-namespace schema_test {
+namespace doppel::schema_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -60,5 +59,4 @@ TEST(Schema, LineThatIsWrongIsToldInOneLine) {
     EXPECT_EQ(note("#:schema file://" + (source / "presets/preset.schema.json").string() + " "), "");
 }
 
-}  // namespace schema_test
-}  // namespace doppel
+}  // namespace doppel::schema_test

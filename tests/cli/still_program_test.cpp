@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace still_program_test {
+namespace doppel::still_program_test {
 
 namespace fs = std::filesystem;
 using test::fresh_folder;
@@ -41,5 +40,4 @@ TEST(Draft, HasAQuarterOfThePixels) {
     EXPECT_EQ(read_png(folder / "out/calm/frames/000000.png").size, (Size{960, 540}));
 }
 
-}  // namespace still_program_test
-}  // namespace doppel
+}  // namespace doppel::still_program_test

@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <csignal>
 
-namespace doppel {
-namespace streams_test {
+namespace doppel::streams_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -274,5 +273,4 @@ TEST(Streams, ShowAllErrorsOfAPresetOnePerLine) {
     }
 }
 
-}  // namespace streams_test
-}  // namespace doppel
+}  // namespace doppel::streams_test

@@ -4,8 +4,7 @@
 #include "errors.hpp"
 #include "output/fixtures.hpp"
 
-namespace doppel {
-namespace blocks_test {
+namespace doppel::blocks_test {
 
 using namespace test;
 
@@ -74,5 +73,4 @@ TEST(BlockFile, GivesNoMoreThanABlockContains) {
     EXPECT_EQ(thrown_by([&] { file(many); }).first, ExitCode::io_failed);
 }
 
-}  // namespace blocks_test
-}  // namespace doppel
+}  // namespace doppel::blocks_test

@@ -8,8 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace doppel {
-namespace csv_test {
+namespace doppel::csv_test {
 
 using namespace test;
 
@@ -99,5 +98,4 @@ TEST(OutputFile, SaysAtOnceWhatAFlushCouldNotWrite) {
     EXPECT_EQ(test::bytes_of(file.path()), "x");
 }
 
-}  // namespace csv_test
-}  // namespace doppel
+}  // namespace doppel::csv_test

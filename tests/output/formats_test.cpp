@@ -9,8 +9,7 @@
 #include <cstring>
 #include <tuple>
 
-namespace doppel {
-namespace formats_test {
+namespace doppel::formats_test {
 
 using namespace test;
 
@@ -307,5 +306,4 @@ TEST(FormatsRefusals, AMissingEncoderNamesThosePresent) {
     EXPECT_STREQ(find_encoder({"libnone", "libx264"}, "h264").name, "libx264");
 }
 
-}  // namespace formats_test
-}  // namespace doppel
+}  // namespace doppel::formats_test

@@ -9,8 +9,7 @@
 #include <cmath>
 #include <set>
 
-namespace doppel {
-namespace gif_apng_test {
+namespace doppel::gif_apng_test {
 
 using namespace test;
 
@@ -198,5 +197,4 @@ TEST(Apng, FramesTimesAndWordsAreExact) {
     EXPECT_EQ(video.metadata.at("software"), "doppel 1");
 }
 
-}  // namespace gif_apng_test
-}  // namespace doppel
+}  // namespace doppel::gif_apng_test

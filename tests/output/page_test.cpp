@@ -5,8 +5,7 @@
 #include "output/png.hpp"
 #include "output/written.hpp"
 
-namespace doppel {
-namespace page_test {
+namespace doppel::page_test {
 
 using test::fresh_folder;
 
@@ -87,5 +86,4 @@ TEST(HtmlPage, IsKnownAsDoppelsByItsSecondLine) {
     }
 }
 
-}  // namespace page_test
-}  // namespace doppel
+}  // namespace doppel::page_test

@@ -10,8 +10,7 @@
 #include <csignal>
 #include <map>
 
-namespace doppel {
-namespace publication_test {
+namespace doppel::publication_test {
 
 using namespace test;
 
@@ -315,5 +314,4 @@ TEST(Transaction, ANameWithLineBreaksIsOneName) {
     EXPECT_EQ(bytes_of(folder / name), "whole");
 }
 
-}  // namespace publication_test
-}  // namespace doppel
+}  // namespace doppel::publication_test

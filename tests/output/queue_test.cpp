@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace doppel {
-namespace queue_test {
+namespace doppel::queue_test {
 
 using namespace std::chrono_literals;
 
@@ -90,5 +89,4 @@ TEST(Workers, DestroyedTheyDiscardTheQueue) {
     EXPECT_LE(done, 2);
 }
 
-}  // namespace queue_test
-}  // namespace doppel
+}  // namespace doppel::queue_test

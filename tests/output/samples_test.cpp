@@ -13,8 +13,7 @@ extern "C" {
 #include <memory>
 #include <random>
 
-namespace doppel {
-namespace samples_test {
+namespace doppel::samples_test {
 
 using namespace test;
 
@@ -182,5 +181,4 @@ TEST(Samples, WhatChangedKeepsItsMemory) {
     EXPECT_TRUE(std::equal(second.begin(), second.end(), memory + first.size()));
 }
 
-}  // namespace samples_test
-}  // namespace doppel
+}  // namespace doppel::samples_test

@@ -1,8 +1,7 @@
 #include "output/fixtures.hpp"
 #include "output/written.hpp"
 
-namespace doppel {
-namespace sha256_test {
+namespace doppel::sha256_test {
 
 using namespace test;
 
@@ -24,5 +23,4 @@ TEST(Sha256, ErrorsNameThePath) {
     expect_error(ExitCode::io_failed, {folder.string(), "is not a regular file"}, [&] { sha256_of_file(folder); });
 }
 
-}  // namespace sha256_test
-}  // namespace doppel
+}  // namespace doppel::sha256_test

@@ -15,8 +15,7 @@
 #include <set>
 #include <thread>
 
-namespace doppel {
-namespace transaction_test {
+namespace doppel::transaction_test {
 
 using namespace test;
 
@@ -386,5 +385,4 @@ TEST(Transaction, ItsLockFileCannotNameAnotherFolder) {
     }
 }
 
-}  // namespace transaction_test
-}  // namespace doppel
+}  // namespace doppel::transaction_test

@@ -12,8 +12,7 @@ extern "C" {
 #include <ctime>
 #include <stdexcept>
 
-namespace doppel {
-namespace video_test {
+namespace doppel::video_test {
 
 using namespace test;
 
@@ -213,5 +212,4 @@ TEST(Mp4, NamesItsLibraries) {
     EXPECT_NE(libav_description().find(", libavformat "), std::string::npos);
 }
 
-}  // namespace video_test
-}  // namespace doppel
+}  // namespace doppel::video_test

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace doppel {
-namespace all_errors_test {
+namespace doppel::all_errors_test {
 
 using Lines = std::vector<std::string>;
 
@@ -104,5 +103,4 @@ TEST(AllErrors, AreReportedOnceAndAtMostTwenty) {
     EXPECT_EQ(faults_of("[video.fonts]\ntext = 1\n").size(), 1u);
 }
 
-}  // namespace all_errors_test
-}  // namespace doppel
+}  // namespace doppel::all_errors_test

@@ -9,8 +9,7 @@
 
 #include <array>
 
-namespace doppel {
-namespace captions_test {
+namespace doppel::captions_test {
 
 TEST(Captions, RoundSingleMeasurements) {
     EXPECT_EQ(two_digits(0.1234), "0.12");
@@ -187,5 +186,4 @@ TEST(Words, OfLongValuesInErrorsAreShortened) {
     EXPECT_TRUE(error(59).ends_with("it is a string (\"" + std::string(58, 'y') + "…)")) << error(59);
 }
 
-}  // namespace captions_test
-}  // namespace doppel
+}  // namespace doppel::captions_test

@@ -11,8 +11,7 @@
 #include <cstdlib>
 #include <optional>
 
-namespace doppel {
-namespace choice_study_test {
+namespace doppel::choice_study_test {
 
 const std::atomic<bool> never = false;
 
@@ -99,5 +98,4 @@ TEST(ChoiceStudy, TakesLittleMoreTimeThanTheBestMethod) {
     EXPECT_LE(sum / scenes, 1.15);
 }
 
-}  // namespace choice_study_test
-}  // namespace doppel
+}  // namespace doppel::choice_study_test

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace doppel {
-namespace forecast_test {
+namespace doppel::forecast_test {
 
 const std::atomic<bool> never = false;
 
@@ -79,5 +78,4 @@ TEST(Forecast, DistinguishesAnUnstableEquilibriumFromChaos) {
                      .exponent);
 }
 
-}  // namespace forecast_test
-}  // namespace doppel
+}  // namespace doppel::forecast_test

@@ -7,8 +7,7 @@
 
 #include <cmath>
 
-namespace doppel {
-namespace frame_times_test {
+namespace doppel::frame_times_test {
 
 const std::string slow_at_the_parting = "video.speed=[[0, 1], [6.8, 0.25], [8.4, 1]]";
 
@@ -205,5 +204,4 @@ TEST(FrameTimes, StepsThatAreTooCoarseForASpeedAreRefused) {
     EXPECT_NO_THROW(scene_of("butterfly", {"system.integrator=\"taylor\"", "video.speed=\"1/1000\"", "video.fps=60"}));
 }
 
-}  // namespace frame_times_test
-}  // namespace doppel
+}  // namespace doppel::frame_times_test

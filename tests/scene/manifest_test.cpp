@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace manifest_test {
+namespace doppel::manifest_test {
 
 using namespace test;
 
@@ -40,5 +39,4 @@ TEST(Manifest, KeepsMoreDigitsThanDouble) {
     EXPECT_EQ(resolved["b"]["angle_deg"][0], "90.0000000000000000000000001");
 }
 
-}  // namespace manifest_test
-}  // namespace doppel
+}  // namespace doppel::manifest_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace mechanism_lines_test {
+namespace doppel::mechanism_lines_test {
 
 using namespace counted;
 
@@ -28,5 +27,4 @@ TEST(MechanismLines, SayWhatToDraw) {
     EXPECT_EQ(std::get<P>(lines[7].to), P(0, 2));
 }
 
-}  // namespace mechanism_lines_test
-}  // namespace doppel
+}  // namespace doppel::mechanism_lines_test

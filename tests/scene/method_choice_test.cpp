@@ -15,8 +15,7 @@
 #include <set>
 #include <string>
 
-namespace doppel {
-namespace method_choice_test {
+namespace doppel::method_choice_test {
 
 const std::atomic<bool> never = false;
 
@@ -331,5 +330,4 @@ TEST(Choice, NamesAPossibleAccuracy) {
     EXPECT_EQ(error_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
 }
 
-}  // namespace method_choice_test
-}  // namespace doppel
+}  // namespace doppel::method_choice_test

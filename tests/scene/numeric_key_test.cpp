@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace numeric_key_test {
+namespace doppel::numeric_key_test {
 
 const std::string springs = R"(
 [system]
@@ -136,5 +135,4 @@ TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
     refused("system.", "must be a numeric key");
 }
 
-}  // namespace numeric_key_test
-}  // namespace doppel
+}  // namespace doppel::numeric_key_test

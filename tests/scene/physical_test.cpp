@@ -10,8 +10,7 @@
 
 #include <random>
 
-namespace doppel {
-namespace physical_test {
+namespace doppel::physical_test {
 
 Preset preset_from(const std::string& text) {
     return read_preset({"x", "presets/x.toml", text});
@@ -146,5 +145,4 @@ TEST(Physical, AnAccuracyIsMet) {
     }
 }
 
-}  // namespace physical_test
-}  // namespace doppel
+}  // namespace doppel::physical_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace preset_errors_test {
+namespace doppel::preset_errors_test {
 
 std::string message_of(const char* text) {
     const auto [code, message] = error_of([&] { read_preset({"x", "presets/x.toml", text}); });
@@ -92,5 +91,4 @@ TEST(FindPreset, NamesTheNearestOrWhatIsInItsPlace) {
               std::string::npos);
 }
 
-}  // namespace preset_errors_test
-}  // namespace doppel
+}  // namespace doppel::preset_errors_test

@@ -15,8 +15,7 @@
 #include <fstream>
 #include <thread>
 
-namespace doppel {
-namespace preset_text_test {
+namespace doppel::preset_text_test {
 
 namespace fs = std::filesystem;
 
@@ -225,5 +224,4 @@ TEST(PresetText, WhatIsDrawnHasLettersOfAFont) {
         EXPECT_EQ(read(fmt::format("title = \"{}\"", title)).title, title);
 }
 
-}  // namespace preset_text_test
-}  // namespace doppel
+}  // namespace doppel::preset_text_test

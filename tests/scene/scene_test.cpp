@@ -9,8 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace doppel {
-namespace scene_test {
+namespace doppel::scene_test {
 
 TEST(Presets, AreAllReadable) {
     for (const auto& source : builtin_presets()) {
@@ -474,5 +473,4 @@ damping_N_s_per_m = 2
     EXPECT_LT(last.b.energy_change, -1);               // measured -3.9 J
 }
 
-}  // namespace scene_test
-}  // namespace doppel
+}  // namespace doppel::scene_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace set_test {
+namespace doppel::set_test {
 
 using Texts = std::vector<std::string>;
 
@@ -134,5 +133,4 @@ TEST(Set, DrivesHaveFrequenciesThatAPendulumFollows) {
     }
 }
 
-}  // namespace set_test
-}  // namespace doppel
+}  // namespace doppel::set_test

@@ -10,8 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace doppel {
-namespace side_track_test {
+namespace doppel::side_track_test {
 
 namespace fs = std::filesystem;
 
@@ -162,5 +161,4 @@ TEST(Ensemble, GoesFromFrictionToFriction) {
               "center_m on both or on neither");
 }
 
-}  // namespace side_track_test
-}  // namespace doppel
+}  // namespace doppel::side_track_test

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace doppel {
-namespace video_errors_test {
+namespace doppel::video_errors_test {
 
 class VideoErrors : public testing::TestWithParam<RefusedPreset> {};
 
@@ -123,5 +122,4 @@ TEST(VideoErrors, FractionsWhoseProductsWouldLeave64BitsAreRefused) {
               "--set video.poster_s: [video] poster_s must be up to 30 s; it is 30.5");
 }
 
-}  // namespace video_errors_test
-}  // namespace doppel
+}  // namespace doppel::video_errors_test

@@ -7,8 +7,7 @@
 #include <atomic>
 #include <cmath>
 
-namespace doppel {
-namespace whip_test {
+namespace doppel::whip_test {
 
 double speed(const Bob<double>& bob) {
     return std::hypot(bob.vx, bob.vy);
@@ -65,5 +64,4 @@ TEST(Whip256, GivesTheSameNumbersOnTwoThreads) {
     EXPECT_EQ(small.other_cpu_s(), 0);
 }
 
-}  // namespace whip_test
-}  // namespace doppel
+}  // namespace doppel::whip_test
