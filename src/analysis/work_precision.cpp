@@ -1,7 +1,7 @@
 #include "analysis/work_precision.hpp"
 
 #include "analysis/watched_motion.hpp"
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "integrate/methods.hpp"
 
 #include <algorithm>

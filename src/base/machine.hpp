@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 
 namespace doppel {
@@ -29,6 +30,13 @@ struct Needs {
     long most_shards = 0;   // 0: it cannot be split
     bool at_least = false;  // the trial was too short for an estimate: a lower bound
 };
+
+/// The time of a system clock, s: CLOCK_MONOTONIC, CLOCK_PROCESS_CPUTIME_ID or CLOCK_THREAD_CPUTIME_ID.
+inline double seconds_of(clockid_t clock) {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 /// The largest memory that this process has had since reset_peak_memory(), bytes; 0 if /proc does not tell.
 double peak_memory();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <latch>
@@ -69,5 +70,23 @@ void parallel_for(std::size_t count, int jobs, Work&& work) {
     }
     if (error) std::rethrow_exception(error);
 }
+
+/// Sets its own stop flag after some seconds, or soon after another `stop` is set.
+class TimeLimit {
+public:
+    TimeLimit(double seconds, const std::atomic<bool>& other)
+        : watch_([this, &other, end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds)](
+                     const std::stop_token& quit) {
+              while (!quit.stop_requested() && !other && std::chrono::steady_clock::now() < end)
+                  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+              reached_ = true;
+          }) {}
+
+    const std::atomic<bool>& reached() const { return reached_; }
+
+private:
+    std::atomic<bool> reached_ = false;
+    std::jthread watch_;  // declared last: joined before the other members are destroyed
+};
 
 }  // namespace doppel

@@ -1,4 +1,3 @@
-#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "cli/options.hpp"

@@ -1,5 +1,5 @@
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "base/read_file.hpp"
 #include "cli/comparison.hpp"
 #include "cli/options.hpp"

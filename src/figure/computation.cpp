@@ -1,4 +1,4 @@
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
 #include "figure/run.hpp"

@@ -2,7 +2,7 @@
 
 #include "analysis/difference.hpp"
 #include "analysis/stability.hpp"
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "numeric/roots.hpp"
 #include "scene/captions.hpp"
 

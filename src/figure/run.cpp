@@ -1,6 +1,5 @@
 #include "figure/run.hpp"
 
-#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/text.hpp"

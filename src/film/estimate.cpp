@@ -1,5 +1,5 @@
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "base/threads.hpp"
 #include "film/film.hpp"
 #include "film/page.hpp"

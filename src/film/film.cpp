@@ -1,6 +1,6 @@
 #include "film/film.hpp"
 
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "image/picture.hpp"
 #include "output/png.hpp"
 #include "output/sink.hpp"

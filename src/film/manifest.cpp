@@ -1,4 +1,4 @@
-#include "base/clock.hpp"
+#include "base/threads.hpp"
 #include "film/film.hpp"
 #include "output/written.hpp"
 #include "scene/certificate.hpp"

@@ -1,8 +1,8 @@
 #include "film/recording.hpp"
 
-#include "base/clock.hpp"
 #include "base/embedded.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "integrate/motion_batch.hpp"
 #include "output/written.hpp"
 #include "scene/resolved.hpp"

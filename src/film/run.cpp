@@ -1,7 +1,7 @@
 #include "film/run.hpp"
 
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "film/film.hpp"
 #include "film/page.hpp"
 #include "film/pair_table.hpp"

@@ -1,5 +1,5 @@
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "film/film.hpp"
 #include "film/run.hpp"
 #include "image/picture.hpp"

@@ -1,6 +1,5 @@
 #include "fit/result.hpp"
 
-#include "base/clock.hpp"
 #include "base/machine.hpp"
 #include "fit/flow.hpp"
 #include "fit/report.hpp"

@@ -1,7 +1,6 @@
 #include "scene/scene.hpp"
 
 #include "analysis/difference.hpp"
-#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/threads.hpp"

@@ -1,5 +1,5 @@
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>

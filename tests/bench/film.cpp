@@ -1,6 +1,6 @@
 #include "film/film.hpp"
 
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "bench/encoders/encoding_trial.hpp"
 #include "film/composer.hpp"
 #include "film/run.hpp"

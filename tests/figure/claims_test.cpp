@@ -4,7 +4,7 @@
 #include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
 #include "analysis/pair_batch.hpp"
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "numeric/dual.hpp"
 #include "output/fixtures.hpp"
 #include "scene/captions.hpp"

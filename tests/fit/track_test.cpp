@@ -1,4 +1,4 @@
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "fit/support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The inputs that libFuzzer found, and seeded mutations of every preset and some files, through all readers.
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "figure/preset.hpp"
 #include "fuzz/mutation.hpp"
 #include "fuzz/reading.hpp"

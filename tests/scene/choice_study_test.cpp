@@ -1,5 +1,5 @@
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "scene/drawn_scenes.hpp"
 #include "scene/method_choice.hpp"
 

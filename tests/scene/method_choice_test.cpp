@@ -1,7 +1,7 @@
 #include "scene/method_choice.hpp"
 
 #include "analysis/reference.hpp"
-#include "base/clock.hpp"
+#include "base/threads.hpp"
 #include "scene/drawn_scenes.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"

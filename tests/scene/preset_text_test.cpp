@@ -1,5 +1,5 @@
 // The text of a preset before it is interpreted: its file, its name, its bytes.
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "output/fixtures.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"

@@ -1,6 +1,6 @@
 #include "scene/scene.hpp"
 
-#include "base/clock.hpp"
+#include "base/machine.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 

@@ -1,7 +1,7 @@
 #include "bench/encoders/encoding_trial.hpp"
 
-#include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "output/libav_encoder.hpp"
 
 extern "C" {
