@@ -253,7 +253,7 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
     const bool is_chart = is_figure(text);
     const std::string table = is_chart ? "chart" : "video";
     auto overrides = overrides_of(options, picture_overrides(table, options.size));
-    overrides.push_back({table + ".format", "\"png\"", "compare, which draws PNG"});
+    overrides.push_back({table + ".format", "\"png\"", "--render, which draws PNG"});
     if (is_chart && !(options.at + options.frames).empty())
         throw bad_input("--at and --frames are for films; {} is a figure", text.name);
     ProgressReport progress(progress_style("auto"), text.name, is_chart ? "trials" : "frames");

@@ -247,7 +247,7 @@ void add_still(CLI::App& app) {
     command.callback([options] {
         const auto at = seconds_of_option("--at", options->at);
         auto more = picture_overrides("video", options->size);
-        more.push_back({"video.format", "\"png\"", "still, which draws PNG"});
+        more.push_back({"video.format", "\"png\"", "--format of still, which draws PNG"});
         const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
         for (const auto& scene : scenes)

@@ -454,7 +454,8 @@ struct Preset {
 /// last masses can be compared.
 bool differ_in_kind(const SideSpec& a, const SideSpec& b);
 
-/// A value from the command line that replaces one of the preset: "system.step_s" = "\"1/1000\"", from option `origin`.
+/// A value from the command line that replaces one of the preset: "system.step_s" = "\"1/1000\"", from option `origin`,
+/// which begins with "--".
 struct Override {
     std::string key;     // "table.key"
     std::string value;   // TOML

@@ -18,7 +18,8 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
              {{"still", "calm"}, "--at is required"},
              {{"still", "calm", "--at", "soon"}, "--at must be seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
              {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
-             {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""}, "and still, which draws PNG"},
+             {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""},
+              "and --format of still, which draws PNG"},
              {{"render", "measured", "--to", "99"}, "--to 99: measured ends at 2.65 s"},
              {{"render", "calm", "--from", "-1"}, "--from must be seconds ≥ 0"},
              {{"render", "calm", "--from", "1", "--frames", "0:3"},
@@ -30,6 +31,18 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
         EXPECT_NE(refused.err.find(message), std::string::npos) << refused.err;
     }
     EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+/// Keys of the preset's own format do not apply to the picture.
+TEST(Still, IsDrawnOfAFilmOfAnyFormat) {
+    const auto folder = fresh_folder();
+    for (const char* keys : {"format = \"webm\"\ncodec = \"av1\"\ncrf = 60", "format = \"html\"\nposition_bits = 20"}) {
+        test::write_bytes(folder / "x.toml", std::string("[scene]\nduration_s = 1\n[video]\nsize = [64, 64]\n") + keys);
+        const auto still = test::doppel(folder, {"still", "x.toml", "--at", "0"});
+        EXPECT_EQ(still.code, 0) << still.err;
+        const auto compared = test::doppel(folder, {"compare", "--render", "x.toml", "--at", "0", "out/x"});
+        EXPECT_EQ(compared.code, 0) << compared.err;
+    }
 }
 
 TEST(Draft, HasAQuarterOfThePixels) {
