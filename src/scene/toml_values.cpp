@@ -321,10 +321,10 @@ private:
     }
 
     double number(const toml::node& node, Element element, double) const {
-        const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-        if (!value) throw error_of(element, "must be a number; {}", found(node));
-        if (!std::isfinite(*value)) throw error_of(element, "must be finite; it is {}", *value);
-        return *value + 0.0;  // turns −0 into 0
+        if (!node.is_number()) throw error_of(element, "must be a number; {}", found(node));
+        const double value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : *node.value<double>();
+        if (!std::isfinite(value)) throw error_of(element, "must be finite; it is {}", value);
+        return value + 0.0;  // turns −0 into 0
     }
     /// A number with all written digits.
     Quad number(const toml::node& node, Element element, const Quad&) const {
@@ -413,6 +413,8 @@ std::string significant_digits(std::string_view decimal) {
 }
 
 void TomlReader::key(const Field& field, const KeyMember& member) {
+    const auto elements = elements_of(field.key);
+    for (const auto& [key, element] : elements) known_.emplace(key);
     const auto read = [&]<class M>(M into) {
         constexpr bool is_choice = std::is_same_v<M, ChosenName>;
         const bool does_count = counts(field);
@@ -434,7 +436,7 @@ void TomlReader::key(const Field& field, const KeyMember& member) {
             if constexpr (requires { into->empty(); })
                 if (does_count) require(field, !into->empty());
         }
-        for (const auto& [key, element] : elements_of(field.key)) {
+        for (const auto& [key, element] : elements) {
             auto one = field;
             one.key = key;
             if constexpr (is_choice)

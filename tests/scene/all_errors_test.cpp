@@ -92,6 +92,13 @@ TEST(AllErrors, IncludeErrorsOfSeveralKeys) {
               (Lines{"2:1: [a] links m", "4:1: [video] siz"}));
 }
 
+/// An element of a list that cannot be read is no unknown key.
+TEST(AllErrors, OfAnElementAreOfItsValue) {
+    EXPECT_EQ(faults_of("", {"system.model[0]=5"}),
+              Lines{"--set system.model[0]: [system] model[0] is not an element of a list of numbers"});
+    EXPECT_EQ(faults_of("[a]\nlabel = 3", {"a.label[1]=\"x\""}).size(), 1u);
+}
+
 TEST(AllErrors, AreReportedOnceAndAtMostTwenty) {
     std::string text = "[video]\n";
     for (int i = 0; i < 23; ++i) text += "key" + std::to_string(i) + " = 1\n";

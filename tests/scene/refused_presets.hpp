@@ -42,6 +42,9 @@ inline const std::vector<RefusedPreset> refused_system{
         "string (\"90\")"},
     RefusedPreset{"[system]\nangle_deg = [90, \"90\"]",
                   "presets/x.toml:2:1: [system] angle_deg[1] must be a number; it is a string (\"90\")"},
+    RefusedPreset{"[system]\nangle_deg = [9223372036854775807, 1]",
+                  "presets/x.toml:2:1: [system] angle_deg must be from -1000000 to 1000000: beyond, rounding hides the "
+                  "motion; one is 9223372036854775807"},
     RefusedPreset{"[system]\ngravity_m_per_s2 = 0",
                   "presets/x.toml:2:1: [system] gravity_m_per_s2 must be > 0; it is 0"},
     RefusedPreset{"[system]\ngravity_m_per_s2 = true",
