@@ -120,7 +120,7 @@ std::string bytes_text(double bytes) {
 
 std::string duration_text(double seconds) {
     constexpr double minute = 60, hour = 3600, many_hours = 10 * hour;
-    return seconds < 100          ? fmt::format("{:.2g} s", seconds)
+    return seconds < 99.5         ? fmt::format("{:.2g} s", seconds)
            : seconds < many_hours ? fmt::format("{:.0f} min", std::ceil(seconds / minute))
                                   : fmt::format("{:.0f} h", std::ceil(seconds / hour));
 }

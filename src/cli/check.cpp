@@ -55,9 +55,9 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto print_indented = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
-        print_indented(fmt::format("error below {} {} up to {:.3g} s; no setting is accurate much longer in {}",
-                                   scientific(side.choice->accuracy), unit, scene.time(side.choice->horizon),
-                                   precision));
+        print_indented(fmt::format("error below {} {} up to {} s; no setting is accurate much longer in {}",
+                                   scientific(side.choice->accuracy), unit,
+                                   with_digits(scene.time(side.choice->horizon), 3), precision));
     else if (side.choice)
         print_indented(fmt::format("error at most {} {} to the end; verified by {}",
                                    scientific(side.choice->estimated_error), unit,
@@ -76,15 +76,15 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
                 break;
             case Forecast::Kind::chaotic:
                 print_indented(
-                    fmt::format("chaotic: errors grow tenfold every {:.2g} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
-                                tenfold, value, uncertainty));
+                    fmt::format("chaotic: errors grow tenfold every {} s (Lyapunov exponent {:.2g} ± {:.1g} 1/s)",
+                                two_digits(tenfold), value, uncertainty));
                 if (!is_settled) print_indented(unsettled_words);
                 break;
             case Forecast::Kind::unstable:
                 print_indented(
-                    fmt::format("released at an unstable equilibrium: near it errors grow tenfold every {:.2g} s "
+                    fmt::format("released at an unstable equilibrium: near it errors grow tenfold every {} s "
                                 "(exponent {:.2g} 1/s); this alone is not chaos",
-                                tenfold, value));
+                                two_digits(tenfold), value));
         }
     }
     if (seen.limit) {
@@ -106,7 +106,7 @@ std::vector<std::string> alternatives_of(const Scene& scene, char letter, const 
             const auto& alternative = *alternatives[letter == 'a' ? 0 : 1];
             // if round-off limits how long it is accurate, it determines the work, too
             words = alternative.choice->horizon < scene.samples
-                        ? fmt::format("is kept up to {:.3g} s", scene.time(alternative.choice->horizon))
+                        ? fmt::format("is kept up to {} s", with_digits(scene.time(alternative.choice->horizon), 3))
                         : fmt::format("takes {:.2f} times the work ({}, {})", alternative.choice->work / choice.work,
                                       alternative.method.name, step_control_text(alternative));
         } catch (const Error& error) {

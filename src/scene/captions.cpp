@@ -267,8 +267,12 @@ std::string grouped(long number) {
 }
 
 std::string two_digits(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - 1);
-    return unit < 1 ? fmt::format("{:.2g}", value) : grouped(std::lround(std::round(value / unit) * unit));
+    return with_digits(value, 2);
+}
+
+std::string with_digits(double value, int digits) {
+    const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - digits + 1);
+    return unit < 1 ? fmt::format("{:.{}g}", value, digits) : grouped(std::lround(std::round(value / unit) * unit));
 }
 
 std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {

@@ -40,6 +40,8 @@ std::string grouped(long number);
 
 /// 223456 → "220 000": two significant digits, as for a single measurement.
 std::string two_digits(double value);
+/// The same with so many digits: 1234.5 → "1230", 12.345 → "12.3".
+std::string with_digits(double value, int digits);
 
 /// 0.0123 → "1.2 × 10⁻²"
 std::string scientific(double value);

@@ -1,6 +1,7 @@
 #include "scene/forecast.hpp"
 
 #include "analysis/reference.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 
@@ -95,12 +96,14 @@ Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<boo
 }
 
 std::string error_words(const Side& side, double from_s) {
-    return fmt::format("error above half {} from {:.3g} s on", side.has_angles ? "a rad" : "its size", from_s);
+    return fmt::format("error above half {} from {} s on", side.has_angles ? "a rad" : "its size",
+                       with_digits(from_s, 3));
 }
 
 std::optional<std::string> early_error(const Scene& scene, const Side& side, long last, const std::atomic<bool>& stop) {
     if (side.replay || (side.choice && side.choice->horizon >= last)) return std::nullopt;
-    if (side.choice) return fmt::format("the accuracy is kept up to {:.3g} s", scene.time(side.choice->horizon));
+    if (side.choice)
+        return fmt::format("the accuracy is kept up to {} s", with_digits(scene.time(side.choice->horizon), 3));
     const auto history =
         error_history(side.motion, reference_trajectory(side.motion, last, side.reach, diverged_error, stop, 0),
                       diverged_error, stop);

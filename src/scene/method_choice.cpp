@@ -1,6 +1,7 @@
 #include "scene/method_choice.hpp"
 
 #include "integrate/turns.hpp"
+#include "scene/captions.hpp"
 #include "scene/side_keys.hpp"
 
 #include <algorithm>
@@ -193,8 +194,8 @@ Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, 
                                   const SideRequirement& side) const {
     const auto seconds = [&](long sample) { return static_cast<double>(sample) / preset_.sample_hz.value(); };
     if (!history.failure.empty())
-        return method_failed("the motion fails within {:.2g} s: {}", seconds(static_cast<long>(history.error.size())),
-                             history.failure);
+        return method_failed("the motion fails within {} s: {}",
+                             two_digits(seconds(static_cast<long>(history.error.size()))), history.failure);
     const auto within = [&](long sample) { return history.at(static_cast<std::size_t>(sample)) / accuracy_margin; };
     const double for_swing = within(side.swing_samples), to_end = within(samples_);
     const auto up = [](double value) {
@@ -202,12 +203,11 @@ Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, 
         return fmt::format("{:.0e}", std::ceil(value / digit) * digit);
     };
     const bool quad = in_quad(side.spec);
-    return bad_input(
-        "accuracy = {:.3g} rad is beyond {} here: it would be kept for {:.2g} s; possible: {} for {:.2g} s{}{}",
-        accuracy, quad ? "quad" : "double", std::max(0.0, seconds(horizon)),
-        std::isfinite(for_swing) ? up(for_swing) : "none", seconds(side.swing_samples),
-        to_end < max_error ? fmt::format(" and {} to the end", up(to_end)) : "",
-        quad ? "" : "; precision = \"quad\" allows more");
+    return bad_input("accuracy = {:.3g} rad is beyond {} here: it would be kept for {} s; possible: {} for {} s{}{}",
+                     accuracy, quad ? "quad" : "double", two_digits(std::max(0.0, seconds(horizon))),
+                     std::isfinite(for_swing) ? up(for_swing) : "none", two_digits(seconds(side.swing_samples)),
+                     to_end < max_error ? fmt::format(" and {} to the end", up(to_end)) : "",
+                     quad ? "" : "; precision = \"quad\" allows more");
 }
 
 double MethodChooser::work(SideRequirement& side, const StepLevels& method, int level,

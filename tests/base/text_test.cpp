@@ -29,6 +29,11 @@ TEST(Text, IsUtf8OrNot) {
     for (const char* text : {"\xff", "a\x80", "\xc3", "\xed\xa0\x80", "\xc0\xaf"}) EXPECT_FALSE(is_utf8(text)) << text;
 }
 
+TEST(Text, OfADurationHasTwoDigits) {
+    for (const auto& [seconds, text] : {std::pair(2.54, "2.5 s"), {99.4, "99 s"}, {99.6, "2 min"}, {36'000.0, "10 h"}})
+        EXPECT_EQ(duration_text(seconds), text);
+}
+
 TEST(Text, OnOneLineIsSanitised) {
     EXPECT_EQ(on_one_line("plain, 90° · λ"), "plain, 90° · λ");
     EXPECT_EQ(on_one_line("a\nb\r\tc\x1b[31md\x7f"), "a b  c [31md ");

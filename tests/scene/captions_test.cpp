@@ -18,6 +18,9 @@ TEST(Captions, RoundSingleMeasurements) {
     EXPECT_EQ(two_digits(96.4), "96");
     EXPECT_EQ(two_digits(223456), "220 000");
     EXPECT_EQ(two_digits(2345), "2300");
+    EXPECT_EQ(with_digits(12.345, 3), "12.3");
+    EXPECT_EQ(with_digits(1234.5, 3), "1230");
+    EXPECT_EQ(with_digits(999.9, 3), "1000");
     EXPECT_EQ(scientific(523), "520");
     EXPECT_EQ(scientific(0.1), "0.1");
     EXPECT_EQ(scientific(1234), "1.2 × 10³");
