@@ -123,7 +123,9 @@ std::vector<Override> beside_overrides(const PresetText& text, const std::vector
                                        const std::string& track, const std::atomic<bool>& stop) {
     auto all = given;
     const auto is_given = [&](std::string_view key) {
-        return std::any_of(given.begin(), given.end(), [&](const Override& one) { return one.key == key; });
+        return std::any_of(given.begin(), given.end(), [&](const Override& one) {
+            return one.key.substr(0, one.key.find('[')) == key;  // also one element
+        });
     };
     const auto add = [&](const char* key, const std::string& value) {
         if (!is_given(key)) all.push_back({key, value, fmt::format("--beside {} ({})", track, key)});

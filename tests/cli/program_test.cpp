@@ -51,6 +51,19 @@ TEST(Program, SimulatesWithoutPictures) {
     EXPECT_FALSE(fs::exists(folder / "none"));
 }
 
+/// A start that the command line gives, whole or in part, is not fitted.
+TEST(Program, StartsBesideATrackAsGiven) {
+    const auto folder = fresh_folder();
+    for (const char* given : {"b.angle_deg=[91, 90]", "b.angle_deg[0]=91"}) {
+        const auto result =
+            doppel(folder, {"simulate", "butterfly", "--beside", "data/double-pendulum-track/piece-00.csv", "--set",
+                            "scene.duration_s=0.1", "--set", given});
+        EXPECT_EQ(result.code, 0) << result.err;
+        const auto run = nlohmann::json::parse(bytes_of(folder / "out/butterfly/butterfly.json"));
+        EXPECT_EQ(run["resolved_preset"]["b"]["angle_deg"], (std::vector<int>{91, 90}));
+    }
+}
+
 TEST(Program, ListsShowsAndChecks) {
     const auto folder = fresh_folder();
     EXPECT_NE(doppel(folder, {"list"}).out.find("butterfly          Three thousandths of a degree\n"),
