@@ -22,13 +22,6 @@ extern "C" {
 namespace doppel {
 namespace {
 
-/// libdeflate and libavfilter return null only when memory is exhausted.
-template <class T>
-T* checked(T* thing) {
-    if (!thing) throw std::bad_alloc();
-    return thing;
-}
-
 /// libavfilter is loaded only when a GIF is written: its thirty dependencies would add 18 ms to every command.
 struct FilterLibrary {
     SharedLibrary library{{fmt::format("libavfilter.so.{}", LIBAVFILTER_VERSION_MAJOR)}};

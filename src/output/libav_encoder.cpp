@@ -46,11 +46,16 @@ void keep(void* /*source*/, int level, const char* format, va_list arguments) {
     }
 }
 
-/// libav's allocations return null only when memory is exhausted.
+/// Returns and clears the last error message of this thread, one line; empty if there is none.
+std::string take_libav_error() {
+    auto text = std::exchange(messages, {});
+    text.resize(text.find_last_not_of(" \n\r.") + 1);  // without final full stops
+    return text.empty() ? text : text.substr(text.find_first_not_of(' ', text.rfind('\n') + 1));
+}
+
 template <class T>
 Libav<T> owned(T* thing) {
-    if (!thing) throw std::bad_alloc();
-    return Libav<T>(thing);
+    return Libav<T>(checked(thing));
 }
 
 /// A muxer that writes the open file. libav would open files by name and follow links, so the path of the descriptor is
@@ -75,9 +80,7 @@ Stream output_file(const std::filesystem::path& place) {
 }
 
 void set_side_data(AVPacket& packet, AVPacketSideDataType type, std::string_view bytes) {
-    auto* place = av_packet_new_side_data(&packet, type, bytes.size());
-    if (!place) throw std::bad_alloc();
-    std::memcpy(place, bytes.data(), bytes.size());
+    std::memcpy(checked(av_packet_new_side_data(&packet, type, bytes.size())), bytes.data(), bytes.size());
 }
 
 std::string text(const std::uint8_t* bytes, std::size_t size) {
@@ -169,12 +172,6 @@ void capture_libav_log() {
     setenv("SVT_LOG", "0", 0);
 }
 
-std::string take_libav_error() {
-    auto text = std::exchange(messages, {});
-    text.resize(text.find_last_not_of(" \n\r.") + 1);  // without final full stops
-    return text.empty() ? text : text.substr(text.find_first_not_of(' ', text.rfind('\n') + 1));
-}
-
 const AVCodec& find_encoder(const std::vector<const char*>& names, std::string_view codec) {
     for (const char* name : names)
         if (const AVCodec* encoder = avcodec_find_encoder_by_name(name)) return *encoder;
@@ -260,8 +257,7 @@ Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const st
 }
 
 void Encoder::write_header() {
-    stream_ = avformat_new_stream(format_.get(), nullptr);
-    if (!stream_) throw std::bad_alloc();
+    stream_ = checked(avformat_new_stream(format_.get(), nullptr));
     check(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), "the stream cannot be described");
     // MP4 multiplies 1/time_base by a power of two, so that every frame starts at a whole tick
     stream_->time_base = codec_->time_base;
@@ -360,11 +356,9 @@ void Encoder::insert_png_chunks() {
 
 void Encoder::write_chapters() {
     if (chapters_.empty()) return;
-    format_->chapters = static_cast<AVChapter**>(av_calloc(chapters_.size(), sizeof(AVChapter*)));
-    if (!format_->chapters) throw std::bad_alloc();
+    format_->chapters = static_cast<AVChapter**>(checked(av_calloc(chapters_.size(), sizeof(AVChapter*))));
     for (const auto& [time, title] : chapters_) {
-        auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
-        if (!chapter) throw std::bad_alloc();
+        auto* chapter = static_cast<AVChapter*>(checked(av_mallocz(sizeof(AVChapter))));
         format_->chapters[format_->nb_chapters++] = chapter;
         chapter->id = static_cast<int>(format_->nb_chapters);
         chapter->time_base = encoding_.tick;

@@ -21,9 +21,6 @@ namespace doppel {
 /// Makes libav and its encoders print nothing; the last error message of each thread is kept.
 void capture_libav_log();
 
-/// Returns and clears the last error message of this thread, one line; empty if there is none.
-std::string take_libav_error();
-
 /// Frees what libav allocated.
 struct LibavFree {
     void operator()(AVFormatContext* format) const {

@@ -12,8 +12,6 @@ extern "C" {
 #include <fmt/format.h>
 #include <libdeflate.h>
 
-#include <new>
-
 namespace doppel {
 namespace {
 
@@ -41,8 +39,8 @@ std::string data_url(std::string_view type, std::string_view bytes) {
 
 std::string deflated(std::string_view bytes) {
     constexpr int level = 9;
-    const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(libdeflate_alloc_compressor(level));
-    if (!compressor) throw std::bad_alloc();
+    const Owned<libdeflate_compressor, libdeflate_free_compressor> compressor(
+        checked(libdeflate_alloc_compressor(level)));
     std::string packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
     packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));
     return base64(packed);

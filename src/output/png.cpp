@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
-#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -151,9 +150,8 @@ std::string chunks_of(const PngOptions& options) {
 std::string encoded(Size size, const Buffer& samples, const PngOptions& options) {
     const int channels = options.with_alpha ? 4 : 3;
     int count = 0;
-    auto* const bytes =
-        stbi_write_png_to_mem(samples.data(), channels * size.width, size.width, size.height, channels, &count);
-    if (!bytes) throw std::bad_alloc();
+    auto* const bytes = checked(
+        stbi_write_png_to_mem(samples.data(), channels * size.width, size.width, size.height, channels, &count));
     std::string png(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
     arena.give_back(bytes);
     return png.insert(header_bytes, chunks_of(options));

@@ -12,7 +12,6 @@ extern "C" {
 
 #include <algorithm>
 #include <array>
-#include <new>
 #include <utility>
 
 namespace doppel {
@@ -24,8 +23,7 @@ using Json = nlohmann::json;
 /// SHA-256, by libavutil, of the blocks that next() returns, up to the first empty one.
 template <class Next>
 std::string sha256_of(const Next& next) {
-    const Owned<AVSHA, av_free> sha(av_sha_alloc());
-    if (!sha) throw std::bad_alloc();
+    const Owned<AVSHA, av_free> sha(checked(av_sha_alloc()));
     av_sha_init(sha.get(), 256);
     for (std::string_view block = next(); !block.empty(); block = next())
         av_sha_update(sha.get(), reinterpret_cast<const std::uint8_t*>(block.data()), block.size());
