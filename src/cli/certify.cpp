@@ -1,7 +1,6 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "cli/options.hpp"
-#include "cli/program.hpp"
 #include "cli/terminal.hpp"
 #include "output/csv.hpp"
 #include "output/transaction.hpp"

@@ -12,12 +12,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
-#include <tuple>
 
 namespace doppel {
 namespace {
@@ -173,11 +172,8 @@ struct SceneCheck {
     const Scene& scene;
     SimulationEstimate simulation;
     std::optional<Needs> render;
-    std::string why_not;  // if `render` is unknown
-    std::array<OfSide, 2> sides;
-
-    OfSide& of(char letter) { return sides[letter == 'a' ? 0 : 1]; }
-    const OfSide& of(char letter) const { return sides[letter == 'a' ? 0 : 1]; }
+    std::string why_not;           // if `render` is unknown
+    std::map<char, OfSide> sides;  // by letter
 };
 
 SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
@@ -193,7 +189,7 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
     constexpr double patience = 2;  // limit for runs that only give information, s
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
-        auto& [forecast, alternatives] = check.of(letter);
+        auto& [forecast, alternatives] = check.sides[letter];
         if (side.replay) continue;
         if (!check.simulation.at_least && check.simulation.seconds < patience)
             forecast = forecast_of(scene, side, stop);
@@ -209,7 +205,7 @@ void print(const SceneCheck& check) {
     print_line("{}: {}", scene.preset.name, scene.preset.title);
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
-        const auto& [forecast, alternatives] = check.of(letter);
+        const auto& [forecast, alternatives] = check.sides.at(letter);
         print_side(letter, side);
         if (forecast) print_forecast(scene, side, *forecast);
         for (const auto& alternative : alternatives) print_line("         {}", alternative);
@@ -258,7 +254,7 @@ Json side_json(const SceneCheck& check, char letter, Json& warnings) {
     if (side.replay) return {{"model", "track"}, {"why", side.why}, {"file", track.file}};
     auto json = method_json(scene, side);
     json["precision"] = side.motion.precision == Precision::in_quad ? "quad" : "double";
-    const auto& [forecast, alternatives] = check.of(letter);
+    const auto& [forecast, alternatives] = check.sides.at(letter);
     const auto warn = [&](const std::string& words) { warnings.push_back(fmt::format("side {}: {}", letter, words)); };
     json["forecast"] = forecast ? forecast_json(scene, side, *forecast) : Json(nullptr);
     if (forecast && !side.choice && forecast->error_s < scene.time(scene.samples))

@@ -124,19 +124,16 @@ bool are_same(const Scene& scene) {
     return System<Scalar>(scene.a.motion) == System<Scalar>(scene.b.motion);
 }
 
-/// Throws if the sides' keys differ and their systems differ in quad, but not in `Scalar`. A key may have no effect
-/// even in quad, such as a length equal to the initial distance.
-template <class Scalar>
+/// Throws if the sides' keys differ and their systems differ in quad, but not in double. A key may have no effect even
+/// in quad, such as a length equal to the initial distance.
 void check_systems(const Scene& scene, const std::vector<KeyDifference>& differences) {
-    if (scene.a.motion.model != scene.b.motion.model || !are_same<Scalar>(scene)) return;
-    if constexpr (std::is_same_v<Scalar, double>)
-        if (are_same<Quad>(scene)) return;
+    if (scene.a.motion.model != scene.b.motion.model || !are_same<double>(scene) || are_same<Quad>(scene)) return;
     std::string names;
     for (const auto& difference : differences)
         if (const auto name = difference.any().name(); names.find(name) == std::string::npos)
             names += (names.empty() ? "" : ", ") + name;
-    throw bad_input("{}: {} differ, but not in the numbers of {}: both sides would move identically{}",
-                    scene.preset.name, names, working<Scalar>, remedy<Scalar>);
+    throw bad_input("{}: {} differ, but not in the numbers of double: both sides would move identically{}",
+                    scene.preset.name, names, remedy<double>);
 }
 
 }  // namespace
@@ -240,7 +237,7 @@ void check_difference(const Scene& scene) {
     if (scene.a.motion.precision == Precision::in_quad && scene.b.motion.precision == Precision::in_quad)
         return check_numbers<Quad>(scene, differences);
     check_numbers<double>(scene, differences);
-    check_systems<double>(scene, differences);
+    check_systems(scene, differences);
 }
 
 }  // namespace doppel
