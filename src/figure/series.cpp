@@ -141,9 +141,13 @@ public:
         if (!check_tolerance_) return;
         std::string words;
         for (std::size_t i = 0; i < curves_.size(); ++i)
-            words += fmt::format("{}{} until {:.1f} s", i == 0 ? "" : ", ", curves_[i].label, agree_until(numbers, i));
-        figure.captions.push_back(fmt::format("Converged: at tolerance {} the distances are the same within 1 %: {}.",
-                                              tolerance_text(*check_tolerance_), words));
+            words += fmt::format("{}{} until {:.1f} s", i == 0 ? ":" : ",",
+                                 curves_[i].label.empty() ? "" : " " + curves_[i].label, agree_until(numbers, i));
+        const bool are_distances =
+            std::ranges::all_of(curves_, [](const auto& c) { return c.film_column == "distance"; });
+        figure.captions.push_back(fmt::format("Converged: at tolerance {} the {} are the same within 1 %{}.",
+                                              tolerance_text(*check_tolerance_), are_distances ? "distances" : "values",
+                                              words));
     }
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
