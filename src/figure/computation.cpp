@@ -1,7 +1,7 @@
-#include "base/machine.hpp"
+#include "figure/computation.hpp"
+
 #include "base/text.hpp"
 #include "base/threads.hpp"
-#include "figure/run.hpp"
 #include "scene/captions.hpp"
 
 #include <algorithm>

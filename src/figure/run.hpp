@@ -1,87 +1,12 @@
 #pragma once
 
-#include "base/error.hpp"
-#include "base/machine.hpp"
-#include "figure/part_file.hpp"
-#include "film/run.hpp"
+#include "figure/computation.hpp"
 
-#include <atomic>
-#include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace doppel {
-
-struct FigureProgress {
-    double done = 0, total = 0;
-};
-
-/// Reports progress of the figures, numbered as given, and notes: the estimated time, the record that one resumes from.
-/// Called by any thread, by one at a time for one figure.
-struct FigureReport {
-    std::function<void(std::size_t figure, const FigureProgress&)> progress = [](auto, const auto&) {};
-    std::function<void(std::size_t figure, const std::string& sentence)> note = [](auto, const auto&) {};
-    std::function<void(std::size_t figure, const RunResult&)> done = [](auto, const auto&) {};
-};
-
-/// Computes the unknown trials of a part of a figure, in groups that threads take. After some seconds it records
-/// results in a file (resume_name). If it is destroyed before it is complete, the file stays.
-class Computation {
-public:
-    /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to a damaged
-    /// one. `threads` and the figure's `number` are only used in messages. Throws Error (exit 4) if the record is
-    /// something else; it is then left unchanged.
-    Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
-                int threads, FigureReport report, std::size_t number = 0);
-
-    std::size_t groups() const { return groups_.size(); }
-    /// Computes a group on the calling thread; each group must be computed once. Returns true for the last one: then
-    /// all trials are known. Throws Error: that of a trial, with the path of the record; exit 3 if its numbers are
-    /// invalid.
-    bool compute(std::size_t group, const std::atomic<bool>& stop);
-    KnownTrials take_all() { return std::move(known_); }
-    /// The same error, with the share of results kept in the record and its path.
-    Error with_record(const Error& error);
-
-    /// Turns the record of all trials into the shard. Throws Error (exit 4).
-    std::filesystem::path publish_shard();
-    const std::filesystem::path& record() const { return record_; }
-    double computed_units() const { return computed_units_; }  // without those read from files
-    double cpu_s() const { return cpu_s_; }                    // of the threads during computation
-    double start_s() const { return start_s_; }                // start of the first group, by CLOCK_MONOTONIC
-
-private:
-    using Group = std::pair<std::size_t, std::size_t>;  // trials first … last − 1
-
-    bool take(const std::filesystem::path& path, bool must_be);
-    std::filesystem::path shard() const { return *folder_ / shard_name(header_); }
-    void find_groups();
-    bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
-    void report_estimate(double time);
-    double percent(double units) const { return total_units_ > 0 ? 100 * units / total_units_ : 100; }
-
-    const FigurePreset& figure_;
-    PartHeader header_;
-    std::optional<std::filesystem::path> folder_;
-    std::filesystem::path record_;
-    int threads_;
-    FigureReport report_;
-    std::size_t number_;
-    std::vector<Group> groups_;
-    std::mutex mutex_;  // guards all members below
-    KnownTrials known_;
-    std::optional<PartWriter> writer_;
-    bool has_record_ = false, is_whole_ = false;  // results in a file, and that file is not damaged
-    std::size_t groups_done_ = 0;
-    double start_s_ = 0, flushed_s_ = 0, cpu_s_ = 0;
-    double done_units_ = 0, total_units_ = 0, computed_units_ = 0;
-};
-
-/// What a figure takes with so many threads, extrapolated from some trials. The process's memory counts from
-/// reset_peak_memory() on. Throws the error of a trial; exit 130 soon after `stop` is set.
-Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop);
 
 struct FigureOptions {
     std::filesystem::path out = "out";  // the files go to OUT/NAME/

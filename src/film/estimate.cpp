@@ -1,3 +1,5 @@
+#include "film/estimate.hpp"
+
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "base/threads.hpp"

@@ -1,3 +1,5 @@
+#include "film/events.hpp"
+
 #include "film/film.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "base/machine.hpp"
 #include "film/composer.hpp"
+#include "film/events.hpp"
 #include "film/parts.hpp"
 #include "film/recording.hpp"
 #include "film/run.hpp"
@@ -13,49 +13,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace doppel {
-
-/// Something that happens in a film.
-struct FilmEvent {
-    double time_s;
-    std::string event;              // "release", "flip", "divergence", "speed"
-    std::string chapter;            // its title as a chapter
-    Json details = Json::object();  // further keys of the manifest
-};
-
-/// Finds the flips of a pair from its samples: a link of a side passes the upright position. Of chains of one to three
-/// links.
-class FlipFinder {
-public:
-    explicit FlipFinder(const Scene& scene) : scene_(scene) {}
-    /// All samples are required in order.
-    void add(const PairState& state);
-    const std::vector<FilmEvent>& flips() const { return flips_; }
-
-private:
-    const Scene& scene_;
-    std::vector<double> turns_;  // of each link at the last sample, whole turns
-    std::vector<FilmEvent> flips_;
-};
-
-/// Release, flips, divergence and changes of speed, in order of time.
-std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome);
-
-/// For the manifest. `shown` = the frames of the film, counted in the whole film: then only the events in them, with
-/// their times in this film, s; nothing: there is no film.
-Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown);
-
-/// The titles of a film's chapters, by their first frames, counted from the first one shown: its events, but flips only
-/// if they are a second from the chapter before. Of events in one frame, the last one. The first chapter begins with
-/// the film, because an MP4 would move its start there.
-std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events,
-                                        const FrameRange& shown);
 
 /// The results of a run for the manifest.
 struct RunRecord : RunResult {
@@ -178,20 +141,5 @@ private:
 std::optional<long> poster_frame(const Scene& scene);
 
 VideoOptions video_options(const Scene& scene);
-
-/// The time to simulate a scene, extrapolated from the beginning of its run.
-struct SimulationEstimate {
-    double seconds = 0;
-    double steps = 0;
-    bool at_least = false;  // the beginning was too short for an estimate: a lower bound
-};
-
-/// Throws as a run does; exit 130 soon after `stop` is set.
-SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop);
-
-/// What it takes to render a scene; each shard simulates the motion again. The process's memory counts from
-/// reset_peak_memory() on. Draws and writes some frames in a temporary folder, for about a second. Throws as run()
-/// does, for example if there is no OpenGL.
-Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop);
 
 }  // namespace doppel

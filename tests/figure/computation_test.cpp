@@ -1,5 +1,5 @@
 // Resuming from a record.
-#include "figure/run.hpp"
+#include "figure/computation.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "film/parts.hpp"
+#include "film/recording.hpp"
+#include "scene/resolved.hpp"
+#include "scene/scene.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace doppel {
+
+/// Something that happens in a film.
+struct FilmEvent {
+    double time_s;
+    std::string event;              // "release", "flip", "divergence", "speed"
+    std::string chapter;            // its title as a chapter
+    Json details = Json::object();  // further keys of the manifest
+};
+
+/// Finds the flips of a pair from its samples: a link of a side passes the upright position. Of chains of one to three
+/// links.
+class FlipFinder {
+public:
+    explicit FlipFinder(const Scene& scene) : scene_(scene) {}
+    /// All samples are required in order.
+    void add(const PairState& state);
+    const std::vector<FilmEvent>& flips() const { return flips_; }
+
+private:
+    const Scene& scene_;
+    std::vector<double> turns_;  // of each link at the last sample, whole turns
+    std::vector<FilmEvent> flips_;
+};
+
+/// Release, flips, divergence and changes of speed, in order of time.
+std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome);
+
+/// For the manifest. `shown` = the frames of the film, counted in the whole film: then only the events in them, with
+/// their times in this film, s; nothing: there is no film.
+Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown);
+
+/// The titles of a film's chapters, by their first frames, counted from the first one shown: its events, but flips only
+/// if they are a second from the chapter before. Of events in one frame, the last one. The first chapter begins with
+/// the film, because an MP4 would move its start there.
+std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events,
+                                        const FrameRange& shown);
+
+}  // namespace doppel
