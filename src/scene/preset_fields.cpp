@@ -305,7 +305,7 @@ void side_text_fields(KeyVisitor& visit, SideSpec& side) {
                        "the current folder, or a built-in name",
                .absent = "none"},
               track.file);
-        const Condition of_file{.applies = !track.is_none()};
+        const Condition of_file{!track.is_none(), "is of a measured motion; give the file of one", false, "file"};
         table({"start_s", "time in the file at which the motion begins", "s", {}, "the first sample", of_file},
               track.start_s);
         table({"offset_deg", "reading of the encoders at rest, which is subtracted", "deg", angle_bounds, "", of_file,

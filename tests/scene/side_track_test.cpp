@@ -132,6 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{track + "start_s = 3",
                     "nowhere/x.toml:5:1: [a.track] start_s no sample at 3 s: the track goes "
                     "from 0 to 2.666 s"},
+        RefusedText{"[a.track]\noffset_deg = [1, 0]",
+                    "nowhere/x.toml:2:1: [a.track] offset_deg is of a measured motion; give the file of one"},
         RefusedText{track + "start_s = 1",
                     "x: [scene] duration_s must be at most \"199/120\", as long as the track of "
                     "side a lasts; it is 2"},
