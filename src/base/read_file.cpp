@@ -1,6 +1,7 @@
 #include "base/read_file.hpp"
 
 #include "base/error.hpp"
+#include "base/owned.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -9,7 +10,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <memory>
 #include <system_error>
 
 namespace doppel {
@@ -32,7 +32,7 @@ std::string read_whole_file(const std::filesystem::path& path, const WantedFile&
     if (path.native().find('\0') != std::string::npos)  // the system would open the path up to the NUL
         throw bad_input("{}: contains a NUL character; a file name cannot", path.string());
     const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> owner(file < 0 ? nullptr : fdopen(file, "r"), std::fclose);
+    const Owned<std::FILE, std::fclose> owner(file < 0 ? nullptr : fdopen(file, "r"));
     if (!owner) throw bad_input("{}: {}", path.string(), errno == ENOENT ? std::string(wanted.missing) : reason());
     struct stat status {};
     if (fstat(file, &status) != 0) throw io_failed("{}: cannot be read: {}", path.string(), reason());

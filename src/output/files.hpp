@@ -1,10 +1,10 @@
 #pragma once
 
+#include "base/owned.hpp"
+
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,21 +12,6 @@
 namespace doppel {
 
 class Error;
-
-/// Owns a pointer from a C library, freed by `destroy`.
-template <auto destroy>
-struct Destroy {
-    void operator()(auto* thing) const { destroy(thing); }
-};
-template <class T, auto destroy>
-using Owned = std::unique_ptr<T, Destroy<destroy>>;
-
-/// The same pointer, of a C library that returns null only when memory is exhausted: then throws std::bad_alloc.
-template <class T>
-T* checked(T* thing) {
-    if (!thing) throw std::bad_alloc();
-    return thing;
-}
 
 using Stream = Owned<std::FILE, std::fclose>;
 /// Opens with flags of open(2) and a mode of fdopen(3); null on failure, with the reason in errno.

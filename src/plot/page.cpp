@@ -1,6 +1,7 @@
 #include "plot/page.hpp"
 
 #include "base/error.hpp"
+#include "base/owned.hpp"
 #include "base/text.hpp"
 #include "render/stroke.hpp"
 
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <new>
 #include <numbers>
 #include <utility>
@@ -21,18 +21,14 @@
 namespace doppel {
 namespace {
 
-template <auto destroy>
-struct CairoDestroy {
-    void operator()(auto* object) const { destroy(object); }
-};
-using CairoSurface = std::unique_ptr<cairo_surface_t, CairoDestroy<cairo_surface_destroy>>;
+using CairoSurface = Owned<cairo_surface_t, cairo_surface_destroy>;
 
 /// Throws Error (exit 4).
 void check_cairo(cairo_status_t status) {
     if (status != CAIRO_STATUS_SUCCESS) throw io_failed("a page cannot be drawn: {}", cairo_status_to_string(status));
 }
 
-using CairoFontFace = std::unique_ptr<cairo_font_face_t, CairoDestroy<cairo_font_face_destroy>>;
+using CairoFontFace = Owned<cairo_font_face_t, cairo_font_face_destroy>;
 
 /// The font for Cairo; if it lacks the weight, FreeType emboldens it. FreeType lives until Cairo has released the font.
 CairoFontFace load_font(const Font& font, Weight weight) {
@@ -327,7 +323,7 @@ private:
 /// subpixel positions, because not every version of Cairo supports those for text.
 void draw(const Page& page, cairo_surface_t* surface, double units, bool pixels, const std::atomic<bool>& stop) {
     check_cairo(cairo_surface_status(surface));
-    const std::unique_ptr<cairo_t, CairoDestroy<cairo_destroy>> context(cairo_create(surface));
+    const Owned<cairo_t, cairo_destroy> context(cairo_create(surface));
     cairo_scale(context.get(), units * page.scale, units * page.scale);
     PagePainter painter(context.get(), page, pixels);
     for (const auto& item : page.items) {

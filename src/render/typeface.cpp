@@ -1,6 +1,7 @@
 #include "render/typeface.hpp"
 
 #include "base/error.hpp"
+#include "base/owned.hpp"
 #include "base/text.hpp"
 
 #include <fontconfig/fontconfig.h>
@@ -92,14 +93,10 @@ std::set<std::filesystem::path> Typeface::files_of(std::string_view text) const 
 
 namespace {
 
-template <class T, void (*give_back)(T*)>
-struct GiveBack {
-    void operator()(T* object) const { give_back(object); }
-};
-using Config = std::unique_ptr<FcConfig, GiveBack<FcConfig, FcConfigDestroy>>;
-using Pattern = std::unique_ptr<FcPattern, GiveBack<FcPattern, FcPatternDestroy>>;
-using Letters = std::unique_ptr<FcCharSet, GiveBack<FcCharSet, FcCharSetDestroy>>;
-using Fonts = std::unique_ptr<FcFontSet, GiveBack<FcFontSet, FcFontSetDestroy>>;
+using Config = Owned<FcConfig, FcConfigDestroy>;
+using Pattern = Owned<FcPattern, FcPatternDestroy>;
+using Letters = Owned<FcCharSet, FcCharSetDestroy>;
+using Fonts = Owned<FcFontSet, FcFontSetDestroy>;
 
 /// Fonts of the system with outlines, sorted by suitability for the letter.
 Fonts fonts_for(FcConfig* config, char32_t letter) {
