@@ -139,7 +139,8 @@ std::string Composer::outcome() const {
     const auto& divergence = state_.outcome.divergence;
     if (!divergence.starts_together()) return "apart from the start";
     if (divergence.since()) return fmt::format("diverged after {:.1f} s", *divergence.since());
-    if (state_.outcome.largest_distance >= Divergence::diverged_distance) return "apart only for moments";
+    if (divergence.share_apart() > 0)
+        return fmt::format("apart for {:.2g} % of the time", 100 * divergence.share_apart());
     return fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
 }
 

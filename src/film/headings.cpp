@@ -259,10 +259,11 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
             const auto& panel = regions.panels[0];
             return add_legend(layout, scene, panel.left, panel.width(), panel.top - 14 * t);
         };
-        if (const int lines = add(); lines > 1) {
-            needs.heading += static_cast<float>(lines - 1) * 1.3f * 0.85f * px(layout.style.font.heading);
+        // a higher legend makes the panel narrower, which may take more lines
+        for (int lines = 1, wanted = add(); wanted > lines; wanted = add()) {
+            needs.heading += static_cast<float>(wanted - lines) * 1.3f * 0.85f * px(layout.style.font.heading);
             regions = split(room, needs);
-            add();
+            lines = wanted;
         }
         return regions;
     }

@@ -93,7 +93,7 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     constexpr auto some = from_to(2, 1000), link = from_to(1, 10'000);
     constexpr std::string_view members =
         "of an ensemble: pendulums from side a to side b, or a list of angles, [[120, 120], [120.01, 120]], or of "
-        "tables with angle_deg, mass_kg, length_m, color";
+        "tables with angle_deg, mass_kg, length_m, color; numbers that a table lacks go from side a to side b";
     visit({"members", members, "", some, "", of_ensemble}, video.members);
     visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
           video.phase);

@@ -161,9 +161,9 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
         const auto &first = members.front().*list.member, &last = members.back().*list.member;
         const auto check_side = [&](const char* table, const std::vector<Quad>& given,
                                     const std::vector<Quad>& member) {
-            if (member.empty() || video.from_command_line("members") || !document.table(top, table).has(list.key) ||
-                given == member)
-                return;
+            auto side = document.table(top, table);
+            const bool is_replaced = video.from_command_line("members") && !side.from_command_line(list.key);
+            if (member.empty() || is_replaced || !side.has(list.key) || given == member) return;
             throw video.error("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
                               table, list.key, toml_value(given), toml_value(member));
         };

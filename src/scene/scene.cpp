@@ -144,8 +144,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
     if (preset.certify && !scene.members.empty())
         throw bad_input(
-            "{}: [scene] certify is for one or two pendulums; this film has {}. Without it, doppel certify proves two",
-            preset.name, scene.members.size());
+            "{}: [scene] certify is not for the layout \"ensemble\"; without it, doppel certify proves sides a and b",
+            preset.name);
     if (preset.certify)
         scene.certificate = std::make_shared<Certificate>(certificate_of(scene, usual_run_radius, cores(), stop));
     return scene;

@@ -201,7 +201,7 @@ void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& 
     auto table = side_table.inner("track");
     const bool is_read = table.guarded("file", [&] {
         if (!side.particles.empty() || side.links() != 2)
-            throw bad_input("a track needs two links; the side has {}",
+            throw bad_input("is of two links; the side has {}",
                             side.particles.empty()
                                 ? fmt::format("{} link{}", side.links(), side.links() == 1 ? "" : "s")
                                 : "particles");

@@ -255,6 +255,17 @@ std::string written(const toml::node& node) {
         for (const auto& element : *array) text += (text.empty() ? "" : ", ") + written(element);
         return fmt::format("[{}]", text);
     }
+    if (const auto* table = node.as_table()) {
+        std::string text;
+        for (const auto& [key, value] : *table) {
+            const bool is_bare =
+                std::ranges::all_of(key.str(), [](unsigned char c) { return c == '_' || std::isalnum(c); });
+            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ",
+                                is_bare ? std::string(key.str()) : written(toml::value(std::string(key.str()))),
+                                written(value));
+        }
+        return fmt::format("{{ {} }}", text);
+    }
     std::ostringstream out;
     node.visit([&](const auto& n) { out << toml::toml_formatter{n, toml::format_flags::none}; });
     return out.str();

@@ -350,8 +350,8 @@ private:
     void read_array(const toml::node& node, std::span<Number> into, std::string_view other = "") const {
         const auto& array = *node.as_array();
         if (array.size() != into.size()) {
-            const auto length =
-                error("must have {} numbers, {}; it has {}: {}", into.size(), field_.each, array.size(), shown(node));
+            const auto length = error("must have {} number{}, {}; it has {}: {}", into.size(),
+                                      into.size() == 1 ? "" : "s", field_.each, array.size(), shown(node));
             throw other.empty() ? length : length.with(table_.beside(other));
         }
         for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(*array.get(i), {i}, into[i]);

@@ -70,8 +70,8 @@ Replay replay_from(std::shared_ptr<const Track> track, std::optional<double> sta
     };
     const auto found = std::find_if(pieces.begin(), pieces.end(), contains);
     if (found == pieces.end())
-        throw bad_input("no sample at {} s: the track goes from {} to {} s{}", start, pieces.front().time_s.front(),
-                        pieces.back().time_s.back(),
+        throw bad_input("is {} s, without a sample there: the track goes from {} to {} s{}", start,
+                        pieces.front().time_s.front(), pieces.back().time_s.back(),
                         pieces.size() > 1 ? fmt::format(", in {} pieces", pieces.size()) : "");
     return {std::move(track), static_cast<std::size_t>(found - pieces.begin()), start, offset};
 }

@@ -229,6 +229,14 @@ TEST(Grid, HasAPanelForEachMethodWithTheNumbersOfItAlone) {
     EXPECT_NE(message.find("did you mean \"rk4\"?"), std::string::npos) << message;
 }
 
+TEST(Grid, TablesOfKeysKeepTheirDecimals) {
+    const auto figure = figure_from(
+        three_angles,
+        {"grid.color.key=\"system\"", "grid.color.values=[{ angle_deg = [120.1, 90] }, { angle_deg = [30, 90] }]"});
+    const auto text = table_text(figure, computed(figure));
+    EXPECT_NE(text.find("120.1, 90"), std::string::npos) << text;
+}
+
 TEST(Grid, TakesAnyKeyForPanelsOfMaps) {
     const auto figure = figure_from(
         "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"energy_error\"\n[grid.x]\nkey = "

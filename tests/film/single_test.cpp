@@ -75,6 +75,12 @@ TEST(Single, RefusesWhatIsOfAPair) {
     refused(ensemble + "[{mass_kg = [1, 2]}, {mass_kg = [1, -2]}]", "must be > 0");
     refused(ensemble + "[{mass_kg = [1, 2]}, {mass_kg = [1, 2, 3]}]",
             "must have 2 numbers each, one a link; mass_kg of [1] has 3");
+    const auto [code, message] = error_of([] {
+        read_preset(find_preset("fan"), {parse_set("b.angle_deg=[9, 9]"), parse_set("video.members=[[1, 2], [3, 4]]")});
+    });
+    EXPECT_EQ(code, ExitCode::bad_input);
+    EXPECT_NE(message.find("must begin with side a and end with side b; [b] angle_deg is [9, 9]"), std::string::npos)
+        << message;
 }
 
 TEST(Single, MembersOfAnEnsembleHaveMassesLengthsAndColoursOfTheirOwn) {
@@ -117,6 +123,15 @@ TEST(Single, TheLegendOfMembersCanBeReadInASmallPicture) {
     expect_apart(labels, {640, 360}, "legend");
     EXPECT_TRUE(
         std::ranges::any_of(labels, [](const Label& label) { return label.text == "0.5 kg, 0.5 kg, 0.25 m, 0.65 m"; }));
+}
+
+/// Its legend makes the panel narrower, which makes the legend higher again.
+TEST(Single, ALongLegendOfMembersIsBelowTheSubtitle) {
+    const auto scene =
+        scene_of("butterfly", {"video.layout=ensemble", "scene.duration_s=1", "video.size=[1280, 720]",
+                               "video.members=[[60.123, 100.5], [80, 100.25], [61, 100], [62, 103], [64.5, 120], "
+                               "[65, 121], [66, 1], [61, 1]]"});
+    expect_apart(labels_of(scene, 0), {1280, 720}, "long legend");
 }
 
 TEST(Single, AViewHasItsCentreAndHeightAndFollowsAMass) {

@@ -128,9 +128,9 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{"[a.track]\nfile = \"" + preset_file + "\"",
                     "nowhere/x.toml:2:1: [a.track] file " + preset_file + ":1: there is no column time_s"},
         RefusedText{"[system]\nlinks = 3\n" + track.substr(track.find("[a.track]")),
-                    "nowhere/x.toml:4:1: [a.track] file a track needs two links; the side has 3 links"},
+                    "nowhere/x.toml:4:1: [a.track] file is of two links; the side has 3 links"},
         RefusedText{track + "start_s = 3",
-                    "nowhere/x.toml:5:1: [a.track] start_s no sample at 3 s: the track goes "
+                    "nowhere/x.toml:5:1: [a.track] start_s is 3 s, without a sample there: the track goes "
                     "from 0 to 2.666 s"},
         RefusedText{"[a.track]\noffset_deg = [1, 0]",
                     "nowhere/x.toml:2:1: [a.track] offset_deg is of a measured motion; give the file of one"},

@@ -81,7 +81,7 @@ TEST(Replay, BeginsWhereItIsToldAndEndsWithItsPiece) {
               Thrown(ExitCode::method_failed, "the track ends 0.802 s after its start"));
     for (const double gap : {1.2, -1.0, 3.0})
         EXPECT_EQ(thrown_by([&] { replay_from(track, gap, {}); }).second,
-                  fmt::format("no sample at {} s: the track goes from 0 to 2.402 s, in 2 pieces", gap));
+                  fmt::format("is {} s, without a sample there: the track goes from 0 to 2.402 s, in 2 pieces", gap));
 }
 
 }  // namespace doppel::replay_test
