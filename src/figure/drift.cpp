@@ -1,7 +1,6 @@
 #include "analysis/drift.hpp"
 
 #include "figure/series.hpp"
-#include "figure/system_words.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
 
@@ -58,8 +57,7 @@ public:
         settings_ = resolved_release(release_) + settings_text(keys);
         unit_ = "motions";
         columns_ = {"method", "model", "setting", "time_s", "energy_error", "length_error_m"};
-        subtitle_ = fmt::format("a {} {}, {}; every method at some {:g} evaluations a second of motion",
-                                chain_words(release_.links()), released_words(release_), links_words(release_),
+        subtitle_ = fmt::format("{}; every method at some {:g} evaluations a second of motion", motion_words(release_),
                                 evaluations_per_s_);
     }
 

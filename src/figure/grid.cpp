@@ -1,7 +1,7 @@
 #include "figure/grid.hpp"
 
-#include "figure/system_words.hpp"
 #include "integrate/flips.hpp"
+#include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include "analysis/exponent.hpp"
 #include "figure/kinds.hpp"
-#include "figure/system_words.hpp"
 #include "image/color.hpp"
 #include "scene/captions.hpp"
 

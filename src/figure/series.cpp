@@ -1,7 +1,6 @@
 #include "figure/series.hpp"
 
 #include "base/error.hpp"
-#include "figure/system_words.hpp"
 #include "film/pair_table.hpp"
 #include "scene/captions.hpp"
 #include "scene/certificate.hpp"
@@ -146,7 +145,7 @@ public:
         const bool are_distances =
             std::ranges::all_of(curves_, [](const auto& c) { return c.film_column == "distance"; });
         figure.captions.push_back(fmt::format("Converged: at tolerance {} the {} are the same within 1 %{}.",
-                                              tolerance_text(*check_tolerance_), are_distances ? "distances" : "values",
+                                              number_text(*check_tolerance_), are_distances ? "distances" : "values",
                                               words));
     }
 
@@ -267,11 +266,7 @@ public:
         columns_ = {"time_s"};
         for (std::size_t i = 1; i <= exponents(); ++i) columns_.push_back(fmt::format("exponent{}_per_s", i));
         columns_.emplace_back("sum_per_s");
-        const auto physical = physical_words(release_.physical);
-        subtitle_ =
-            fmt::format("a {}{} {}, {}; tangent equations in canonical variables, dop853",
-                        chain_words(release_.links()), physical.empty() ? "" : fmt::format(" with {},", physical),
-                        released_words(release_), links_words(release_));
+        subtitle_ = motion_words(release_) + "; tangent equations in canonical variables, dop853";
     }
 
     std::size_t trials() const override { return 1; }

@@ -2,7 +2,6 @@
 
 #include "analysis/tangent.hpp"
 #include "base/error.hpp"
-#include "figure/system_words.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"
 
@@ -74,14 +73,10 @@ SideSpec side_of(const StandardProblem& standard) {
 std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
     constexpr std::string_view computed = "double precision, one core";
     if (!problem.has_angles()) return fmt::format("side a of {}, a mechanism; {}", problem.name, computed);
-    const auto besides = side.is_mechanism()        ? ", and more"
-                         : problem.is_plain_chain() ? ""
-                                                    : " with " + physical_words(side.physical);
     auto shown = side;
     shown.mass_kg = problem.motion.chain->mass;  // links with mass have none of their own in the preset
-    return fmt::format("side a of {}{}: {}{}; {}", problem.name,
-                       is_zero(side.omega_deg_per_s) ? ", released at rest" : "", links_words(shown), besides,
-                       computed);
+    return fmt::format("side a of {}: {}{}; {}", problem.name, motion_words(shown),
+                       side.is_mechanism() ? ", and more" : "", computed);
 }
 
 /// The text as TOML comments: data that the numbers depend on and no key contains.
@@ -89,17 +84,6 @@ std::string commented(std::string_view text) {
     std::string lines = "#";
     for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
     return lines + "\n";
-}
-
-/// The systems of the standard problems: "double and triple pendulums".
-std::string pendulums_words(const std::vector<WorkProblem>& problems) {
-    const auto of = [&](std::size_t links) {
-        return std::ranges::count_if(problems,
-                                     [&](const auto& problem) { return problem.motion.chain->links() == links; });
-    };
-    const auto doubles = of(2), triples = of(3);
-    if (doubles > 0 && triples > 0) return "double and triple pendulums";
-    return doubles > 1 ? "double pendulums" : "a " + chain_words(doubles == 1 ? 2 : 3);
 }
 
 /// The standard problems of these names, listed in `table`'s key `problems`. Throws Error (exit 2).
@@ -113,9 +97,8 @@ WorkProblems standard_problems(const std::vector<std::string>& names, const Toml
         const auto& standard = all_standard.at(static_cast<std::size_t>(number));
         problems.all.push_back(make_problem(name, side_of(standard), {standard.seconds, 1}));
     }
-    problems.subtitle =
-        fmt::format("{} released at rest, {}; double precision, one core", pendulums_words(problems.all),
-                    links_words(side_of(all_standard[0])));  // all links are alike
+    problems.subtitle = fmt::format("pendulums released at rest, {}; double precision, one core",
+                                    links_words(side_of(all_standard[0])));  // all links are alike
     return problems;
 }
 

@@ -1,162 +1,151 @@
 #include "scene/captions.hpp"
 
 #include "plot/axis.hpp"
-#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <optional>
 #include <utility>
-#include <vector>
 
 namespace doppel {
 namespace {
 
-const QuadPair at_rest{0, 0};  // m/s
+constexpr std::size_t max_listed = 3;  // longer lists are not shown number by number
 
-/// A statement about a side. The statements at the same index for both sides are about the same property.
-struct Statement {
-    std::string text;
-    bool is_start_angle = false;
-    std::string plain = text;  // in plain wording, without symbols
+using Texts = std::vector<std::string>;
+
+std::string joined(const Texts& parts) {
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// "90°", "0.5°/s", "1.01 kg"
+std::string with_unit(std::string_view number, std::string_view unit) {
+    if (unit.starts_with("deg")) return fmt::format("{}°{}", number, unit.substr(3));
+    return fmt::format("{}{}{}", number, unit.empty() ? "" : " ", unit);
+}
+
+bool are_one(const std::vector<Quad>& numbers) {
+    return std::ranges::all_of(numbers, [&](const Quad& number) { return number == numbers[0]; });
+}
+
+/// The keys of a side with the model and method by which it is computed.
+std::vector<SideKey> shown_keys(SideSpec spec, const Side& side) {
+    spec.model = value_named<ModelChoice>(name_of(side.motion.model));
+    auto keys = keys_of(spec);
+    const auto accuracy = std::ranges::find(keys, "accuracy", &SideKey::key);
+    if (accuracy != keys.end())
+        keys.insert(accuracy, {.key = "integrator", .text = std::string(side.method.title), .is_setting = true});
+    return keys;
+}
+
+/// The start first, then the system, then the computation.
+std::vector<KeyPair> shown_pairs(const Scene& scene) {
+    auto pairs = paired(shown_keys(scene.preset.a, scene.a), shown_keys(scene.preset.b, scene.b));
+    std::ranges::stable_sort(pairs, {}, [](const KeyPair& pair) {
+        const auto& key = pair.any();
+        return key.is_setting ? 2 : key.key == "angle_deg" || key.key == "omega_deg_per_s" ? 0 : 1;
+    });
+    return pairs;
+}
+
+/// What is said of a key with a symbol. Short chains: link by link. Long chains: the common number of the links, or the
+/// links in which the sides differ.
+Texts symbol_texts(const SideKey& key, const SideKey& other) {
+    const auto &numbers = key.numbers, &others = other.numbers;
+    const auto text = [&](const std::string& name, std::size_t i) {
+        return fmt::format("{} = {}", name, with_unit(number_text(numbers[i]), key.unit));
+    };
+    const auto of_link = [&](std::size_t i) { return text(fmt::format("{}{}", key.symbol, subscript(i + 1)), i); };
+    if (!key.is_of_links) return {text(std::string(key.symbol), 0)};
+    const bool is_long = numbers.size() > max_listed;
+    if (is_long && are_one(numbers) && are_one(others)) return {text(fmt::format("all {}", key.symbol), 0)};
+    if (is_long && numbers == others) return {fmt::format("{}, {} …", of_link(0), of_link(1))};
+    Texts all;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (!is_long || numbers[i] != others[i]) all.push_back(of_link(i));
+    return all;
+}
+
+/// What is said of a key of side b, or side a. The texts at the same index for both sides are about the same number.
+Texts texts_of(const KeyPair& pair, bool of_b) {
+    const auto &self = of_b ? pair.b : pair.a, &other = of_b ? pair.a : pair.b;
+    const auto& known = pair.any();
+    if (known.key.empty() && self && other) return {};
+    if (known.key.empty()) return {self ? fmt::format("with {}{}", known.place, self->text) : "no " + known.place};
+    constexpr std::string_view of_particle = "particle ";  // its name says enough
+    const auto place = known.place.substr(known.place.starts_with(of_particle) ? of_particle.size() : 0);
+    const auto name = fmt::format("{}{}{}", place, place.empty() ? "" : " ", known.caption);
+    if (!self || !self->counts) return known.is_setting ? Texts{} : Texts{"no " + name};
+    const auto& numbers = self->numbers;
+    const bool are_alike = other && other->numbers.size() == numbers.size();
+    if (!known.symbol.empty()) return symbol_texts(*self, are_alike ? *other : *self);
+    auto shown = *self;
+    std::string link;
+    if (known.is_of_links && are_one(numbers) && (!are_alike || are_one(other->numbers))) {
+        shown.numbers.resize(1);
+    } else if (are_alike && numbers.size() > max_listed && numbers != other->numbers) {
+        // only the first number in which the sides differ
+        const auto at = std::ranges::mismatch(numbers, other->numbers).in1;
+        link = fmt::format(" of link {}", at - numbers.begin() + 1);
+        shown.numbers = {*at};
+    }
+    return {fmt::format("{}{}{}{}", name, link, name.empty() ? "" : " ", value_words(shown))};
+}
+
+/// The settings of the computation of a side, except those that are the default; or only those of both sides.
+Texts setting_texts(const std::vector<KeyPair>& pairs, bool of_b, bool of_both) {
+    Texts all;
+    for (const auto& pair : pairs) {
+        const auto& self = of_b ? pair.b : pair.a;
+        if (!self || !self->is_setting || self->is_default || (of_both && pair.differs())) continue;
+        std::ranges::copy(texts_of(pair, of_b), std::back_inserter(all));
+    }
+    return all;
+}
+
+/// What is said of a side: how it differs from the other one, and the rest of its start.
+struct SideTexts {
+    Texts differs, start;
 };
 
-std::string model_words(const Side& side) {
-    std::string words(name_of(side.motion.model));
-    if (side.motion.stabilise == Stabilise::baumgarte) words += " (Baumgarte)";
-    if (side.motion.stabilise == Stabilise::projection) words += " (projected)";
-    if (side.motion.precision == Precision::in_quad) words += " in quad";
-    return words;
-}
-
-/// States a quantity of all links, given for both sides with the same length. Short chains: link by link. Long chains:
-/// the common value of the links, or the links in which the sides differ.
-void state_links(std::string_view symbol, const std::vector<Quad>& values, const std::vector<Quad>& others,
-                 std::string_view unit, bool angle, std::vector<Statement>& all) {
-    constexpr std::size_t max_listed = 3;
-    const auto alike = [](const std::vector<Quad>& of) {
-        return std::all_of(of.begin(), of.end(), [&](const Quad& value) { return value == of[0]; });
-    };
-    const bool listed = values.size() <= max_listed;
-    const auto number = [&](std::size_t i) { return fmt::format("{}{}", text_of(values[i]), unit); };
-    if (!listed && alike(values) && alike(others))
-        return all.push_back({fmt::format("all {} = {}", symbol, number(0)), angle});
-    if (!listed && values == others)
-        return all.push_back({fmt::format("{0}₁ = {1}, {0}₂ = {2} …", symbol, number(0), number(1)), angle});
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (listed || values[i] != others[i])
-            all.push_back({fmt::format("{}{} = {}", symbol, subscript(i + 1), number(i)), angle, number(i)});
-}
-
-/// "1.2e-03" → "1.2 × 10⁻³"; other numbers are unchanged.
-std::string with_power_of_ten(const std::string& digits) {
-    const auto e = digits.find('e');
-    if (e == std::string::npos) return digits;
-    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
-}
-
-/// For example 0.001 → "1 mm".
-std::string length_words(double metres) {
-    if (metres >= 0.1) return fmt::format("{:.6g} m", metres);
-    if (metres >= 1e-4) return fmt::format("{:.6g} mm", 1000 * metres);
-    return scientific(metres) + " m";
-}
-
-/// "1 mm to the right and 2 mm up"
-std::string offset_words(const QuadPair& from, const QuadPair& to) {
-    const auto x = static_cast<double>(to[0] - from[0]), y = static_cast<double>(to[1] - from[1]);
-    std::vector<std::string> parts;
-    if (x != 0) parts.push_back(fmt::format("{} to the {}", length_words(std::abs(x)), x > 0 ? "right" : "left"));
-    if (y != 0) parts.push_back(fmt::format("{} {}", length_words(std::abs(y)), y > 0 ? "up" : "down"));
-    return fmt::format("{}", fmt::join(parts, " and "));
-}
-
-/// "bob pushed at 1 mm/s", if the other side's velocity is zero.
-std::string speed_words(const QuadPair& velocity, const QuadPair& other) {
-    if (velocity == at_rest) return "at rest";
-    if (other != at_rest) return fmt::format("with ({}, {}) m/s", text_of(velocity[0]), text_of(velocity[1]));
-    const double speed = std::hypot(static_cast<double>(velocity[0]), static_cast<double>(velocity[1]));
-    return fmt::format("pushed at {}/s", length_words(speed));
-}
-
-/// How the particles of a side differ from those of side a, or, for side a, from the other side's. Particles with the
-/// same displacement are named together.
-void state_particles(const SideSpec& a, const SideSpec& b, bool of_b, std::vector<Statement>& all) {
-    std::vector<std::pair<std::string, std::string>> moved;  // displacement; names of the particles
-    for (std::size_t i = 0; i < std::min(a.particles.size(), b.particles.size()); ++i) {
-        const auto &one = a.particles[i], &other = b.particles[i];
-        const auto &self = of_b ? other : one, &opposite = of_b ? one : other;
-        if (one.position_m != other.position_m) {
-            const auto how = offset_words(one.position_m, other.position_m);
-            const auto same = std::find_if(moved.begin(), moved.end(), [&](const auto& m) { return m.first == how; });
-            if (same == moved.end())
-                moved.emplace_back(how, one.name);
-            else
-                same->second += " and " + one.name;
-        }
-        if (one.velocity_m_per_s != other.velocity_m_per_s)
-            all.push_back({self.name + " " + speed_words(self.velocity_m_per_s, opposite.velocity_m_per_s)});
-        if (one.mass_kg != other.mass_kg) all.push_back({fmt::format("{} {} kg", self.name, text_of(self.mass_kg))});
+SideTexts side_texts(const std::vector<KeyPair>& pairs, bool of_b, bool are_comparable) {
+    SideTexts all;
+    for (const auto& pair : pairs) {
+        if (!are_comparable && !(of_b ? pair.b : pair.a)) continue;
+        const auto own = texts_of(pair, of_b), others = texts_of(pair, !of_b);
+        for (std::size_t i = 0; i < own.size(); ++i)
+            if (are_comparable && (i >= others.size() || own[i] != others[i]))
+                all.differs.push_back(own[i]);
+            else if (pair.any().key == "angle_deg")
+                all.start.push_back(own[i]);
     }
-    for (const auto& [how, who] : moved) all.push_back({who + " " + (of_b ? how : "in place")});
-}
-
-/// The drive, if the other side's is different.
-void state_drives(const PhysicalSpec& one, const PhysicalSpec& other, std::vector<Statement>& all) {
-    if (one.pivot != other.pivot)
-        all.push_back({one.pivot.amplitude_m == 0 ? "pivot at rest"
-                                                  : fmt::format("pivot ±{} m at {} Hz", text_of(one.pivot.amplitude_m),
-                                                                text_of(one.pivot.frequency_hz))});
-    if (one.torques == other.torques) return;
-    std::vector<std::string> motors;
-    for (const auto& motor : one.torques)
-        motors.push_back(fmt::format("{} N m at {} Hz", text_of(motor.amplitude_N_m), text_of(motor.frequency_hz)));
-    all.push_back({motors.empty() ? "no motor" : fmt::format("motor {}", fmt::join(motors, " and "))});
-}
-
-/// The step size, tolerance or accuracy, if the preset sets it.
-std::string control_words(const Side& side) {
-    if (!side.choice) return step_control_text(side);
-    return fmt::format("accuracy {} rad", tolerance_text(parse_quad(fmt::format("{:g}", side.choice->accuracy))));
-}
-
-/// For side b, or for side a.
-std::vector<Statement> statements(const Scene& scene, const std::vector<KeyDifference>& differences, bool of_b) {
-    const auto &spec = of_b ? scene.preset.b : scene.preset.a, &other = of_b ? scene.preset.a : scene.preset.b;
-    const auto& side = of_b ? scene.b : scene.a;
-    std::vector<Statement> all;
-    if (spec.particles.empty()) {
-        state_links("θ", spec.angle_deg, other.angle_deg, "°", true, all);
-        state_links("ω", spec.omega_deg_per_s, other.omega_deg_per_s, "°/s", false, all);
-        state_links("m", spec.mass_kg, other.mass_kg, " kg", false, all);
-        state_links("l", spec.length_m, other.length_m, " m", false, all);
-    }
-    for (const auto& difference : differences)
-        if (difference.any().is_of_links) all.push_back({difference.words(of_b)});
-    state_drives(spec.physical, other.physical, all);
-    state_particles(scene.preset.a, scene.preset.b, of_b, all);
-    for (const auto& difference : differences)
-        if (difference.any().is_of_part) all.push_back({difference.words(of_b)});
-    const auto place = [](const QuadPair& xy) { return fmt::format("({}, {})", text_of(xy[0]), text_of(xy[1])); };
-    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
-    const auto droplet = std::find_if(spec.forces.begin(), spec.forces.end(), is_droplet);
-    if (droplet != spec.forces.end()) {
-        const auto kg = static_cast<double>(droplet->mass_kg);
-        const auto mass = kg < 0.001 ? scientific(kg) : text_of(droplet->mass_kg);
-        all.push_back({fmt::format("a droplet of {} kg at {} m", mass, place(*droplet->position_m))});
-    } else if (std::any_of(other.forces.begin(), other.forces.end(), is_droplet)) {
-        all.push_back({"no droplet"});
-    }
-    all.push_back({fmt::format("g = {} m/s²", text_of(spec.gravity_m_per_s2))});
-    // settings that follow from an accuracy alone are not stated as a difference
-    const bool chosen = scene.a.choice && scene.b.choice;
-    const bool any_model = spec.model == ModelChoice::automatic && other.model == ModelChoice::automatic;
-    all.push_back({chosen && any_model ? "" : model_words(side)});
-    all.push_back({chosen ? "" : std::string(side.method.title)});
-    all.push_back({control_words(side)});
     return all;
+}
+
+/// For side b or side a: the difference from the other side.
+SideCaptions difference_captions(SideTexts texts, bool of_b, bool has_label, Wording wording) {
+    auto& [differs, start] = texts;
+    if (wording == Wording::plain) {
+        start.clear();
+        for (auto& text : differs)  // the number alone
+            if (const auto at = text.find(" = "); at != std::string::npos) text.erase(0, at + 3);
+    }
+    // a heading contains two statements; the others go to the note
+    constexpr std::size_t max_statements = 2, max_noted = 4;
+    const auto rest = differs.begin() + static_cast<long>(std::min(max_statements, differs.size()));
+    Texts heading(differs.begin(), rest), note(rest, differs.end());
+    note.insert(note.end(), start.begin(), start.end());
+    if (note.size() > max_noted) {
+        note.resize(max_noted);
+        note.back() = "…";
+    }
+    // with a label set by the preset, the note also states the difference
+    if (has_label) note.insert(note.begin(), heading.begin(), heading.end());
+    return {heading.empty() ? of_b ? "b, the same" : "a" : joined(heading), joined(note)};
 }
 
 /// "piece-02.csv, 500 Hz"
@@ -166,78 +155,202 @@ std::string track_words(const Side& side, const TrackSpec& spec) {
     return fmt::format("{}, {} Hz", std::filesystem::path(spec.file).filename().string(), two_digits(rate));
 }
 
-/// For a measured pendulum or its simulation.
-SideCaptions captions_of_track(const Side& side, const TrackSpec& track) {
-    if (side.replay) return {"measured", track_words(side, track)};
-    return {"computed", fmt::format("{}, {}", side.method.title, control_words(side))};
-}
-
-std::string system_words(const SideSpec& side, std::string_view plural = "s") {
-    if (!side.particles.empty()) {
-        const auto masses = side.particles.size();
+/// "double pendulum", "chain of 4 links", "mechanism of 3 masses"; in the plural "double pendulums".
+std::string system_words(const SideSpec& side, std::string_view plural = "") {
+    constexpr std::array<std::string_view, 3> words{"", "double ", "triple "};
+    const auto masses = side.masses();
+    if (!side.particles.empty())
         return fmt::format("mechanism{} of {}", plural, masses == 1 ? "one mass" : fmt::format("{} masses", masses));
-    }
-    return chain_words(side.links(), plural);
+    if (masses > words.size()) return fmt::format("chain{} of {} links", plural, masses);
+    return fmt::format("{}pendulum{}", words[masses - 1], plural);
 }
 
-std::string joined(const std::vector<std::string>& parts) {
-    return fmt::format("{}", fmt::join(parts, ", "));
+bool is_at_rest(const SideSpec& side) {
+    const auto is_moving = [](const ParticleSpec& particle) { return particle.velocity_m_per_s != QuadPair{0, 0}; };
+    return side.particles.empty() ? is_zero(side.omega_deg_per_s) : std::ranges::none_of(side.particles, is_moving);
 }
 
-/// For a side of another type than the other one: the system and its start.
-SideCaptions captions_of_kind(const SideSpec& spec, const std::vector<Statement>& all) {
-    std::vector<std::string> start;
-    for (const auto& statement : all)
-        if (statement.is_start_angle) start.push_back(statement.text);
-    return {system_words(spec, ""), joined(start)};
+// Subtitles of figures.
+
+bool is_swept(const SweptKeys& swept, std::string_view key) {
+    return std::ranges::any_of(swept.keys, [&](const std::string& path) {
+        return path == key || path.find(fmt::format(".{}", key)) != std::string::npos;
+    });
 }
 
-/// For side b or side a: the difference from the other side.
-SideCaptions difference_captions(const std::array<std::vector<Statement>, 2>& all,
-                                 const std::vector<KeyDifference>& differences, bool of_b, bool has_label,
-                                 Wording wording) {
-    std::vector<std::string> differs, start;
-    const auto &own = all[of_b ? 1 : 0], &others = all[of_b ? 0 : 1];
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        if (i >= others.size() || own[i].text != others[i].text)
-            differs.push_back(wording == Wording::plain ? own[i].plain : own[i].text);
-        else if (own[i].is_start_angle && wording == Wording::exact)
-            start.push_back(own[i].text);
+/// "two links in angles", "two particles with constraints"
+std::string counted_words(const Scene& scene, const std::vector<KeyPair>& pairs, const SweptKeys& swept) {
+    constexpr std::array numbers{"no", "one", "two", "three", "four", "five", "six"};
+    constexpr std::array models{" in angles", " with constraints", " as a mechanism"};
+    const auto& side = scene.preset.a;
+    const auto model = scene.a.motion.model;
+    const auto count = side.masses();
+    const bool are_particles = !side.particles.empty() || model == Model::constraints;
+    const auto words = fmt::format("{} {}{}", count < numbers.size() ? numbers[count] : fmt::format("{}", count),
+                                   are_particles ? "particle" : "link", count == 1 ? "" : "s");
+    const auto is_model = [](const KeyPair& pair) { return pair.any().key == "model" && !pair.differs(); };
+    const bool is_common = std::ranges::any_of(pairs, is_model) && !is_swept(swept, "integrator");
+    return (is_swept(swept, "links") ? "chains" : words) + (is_common ? models[static_cast<std::size_t>(model)] : "");
+}
+
+/// The release angles that all pairs share: "90°/90°", or those of the other links, "θ₂ = θ₃ = 0".
+std::string release_words(const Scene& scene, const SweptKeys& swept) {
+    const auto &angles = scene.preset.a.angle_deg, &others = scene.preset.b.angle_deg;
+    const bool are_swept =
+        std::ranges::any_of(swept.keys, [](const std::string& path) { return path.ends_with(".angle_deg"); });
+    if (!scene.preset.a.particles.empty() || angles.size() > max_listed || are_swept) return "";
+    if (is_swept(swept, "links")) return "released from " + slashed(angles, "°", true);
+    if (swept.angles.empty() && angles == others) return slashed(angles, "°");
+    const auto value = [](const Quad& angle) {
+        return angle == 0 ? std::string(" = 0") : fmt::format(" = {}°", text_of(angle));
+    };
+    std::string words;
+    std::optional<Quad> before;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        if (angles[i] != others[i] || std::ranges::count(swept.angles, i) > 0) continue;
+        if (before) words += *before == angles[i] ? " = " : value(*before) + ", ";
+        words += "θ" + subscript(i + 1);
+        before = angles[i];
     }
-    // differences that no statement covers
-    if (differs.empty())
-        for (const auto& difference : differences) differs.push_back(difference.words(of_b));
-    const bool says_nothing = differs.empty();
-    if (says_nothing) differs.push_back(of_b ? "b, the same" : "a");
-    // a heading contains two statements; the others go to the note
-    constexpr std::size_t maximum = 2, max_noted = 4;
-    start.insert(start.begin(), differs.begin() + static_cast<long>(std::min(maximum, differs.size())), differs.end());
-    if (start.size() > max_noted) {
-        start.resize(max_noted);
-        start.back() = "…";
-    }
-    differs.resize(std::min(maximum, differs.size()));
-    // with a label set by the preset, the note also states the difference
-    if (has_label && !says_nothing) start.insert(start.begin(), differs.begin(), differs.end());
-    return {joined(differs), joined(start)};
+    return before ? words + value(*before) : "";
+}
+
+/// "1.2e-03" → "1.2 × 10⁻³"; other numbers are unchanged.
+std::string with_power_of_ten(const std::string& digits) {
+    const auto e = digits.find('e');
+    if (e == std::string::npos) return digits;
+    return fmt::format("{} × {}", digits.substr(0, e), power_of_ten(std::stoi(digits.substr(e + 1))));
 }
 
 }  // namespace
 
+std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
+    const auto& preset = scene.preset;
+    const bool has_track = scene.a.replay || scene.b.replay, differ = differ_in_kind(preset.a, preset.b);
+    const auto pairs = shown_pairs(scene);
+    std::array<SideCaptions, 2> both;
+    for (const bool of_b : {false, true}) {
+        if (of_b && scene.is_single()) break;
+        const auto& spec = of_b ? preset.b : preset.a;
+        const auto& side = of_b ? scene.b : scene.a;
+        const bool has_label = spec.label.has_value();
+        const auto texts = side_texts(pairs, of_b, !scene.is_single() && !differ);
+        const auto start = side.replay ? track_words(side, spec.track) : joined(texts.start);
+        auto& words = both[of_b];
+        if (scene.is_single())
+            words = {start, has_label ? start : ""};
+        else if (has_track)
+            words = side.replay ? SideCaptions{"measured", start}
+                                : SideCaptions{"computed", joined(setting_texts(pairs, of_b, false))};
+        else
+            words =
+                differ ? SideCaptions{system_words(spec), start} : difference_captions(texts, of_b, has_label, wording);
+        words = {spec.label.value_or(words.heading), spec.note.value_or(words.note)};
+    }
+    return both;
+}
+
+std::string scene_caption(const Scene& scene, Wording wording) {
+    const auto &a = scene.preset.a, &b = scene.preset.b;
+    if (scene.preset.subtitle) return *scene.preset.subtitle;
+    if (scene.is_single() && scene.a.replay) return "a real double pendulum";
+    if (scene.a.replay && scene.b.replay) return "two real double pendulums";
+    if (scene.a.replay || scene.b.replay) return "a real double pendulum and its simulation";
+    const auto number = scene.members.empty() ? std::string("two") : grouped(static_cast<long>(scene.members.size()));
+    const auto systems = scene.is_single()      ? "a " + system_words(a)
+                         : differ_in_kind(a, b) ? fmt::format("a {} and a {}", system_words(a), system_words(b))
+                                                : fmt::format("{} {}", number, system_words(a, "s"));
+    const auto physical = physical_words(a.physical);
+    const bool alike = !physical.empty() && physical == physical_words(b.physical);
+    const auto common = wording == Wording::plain ? Texts{} : setting_texts(shown_pairs(scene), false, true);
+    return fmt::format("{}{}{}{}{}", systems, alike ? " with " + physical : "",
+                       !alike && is_at_rest(a) && is_at_rest(b) ? ", released at rest" : "",
+                       common.empty() ? "" : " · ", joined(common));
+}
+
+std::string pair_subtitle(const Scene& scene, const SweptKeys& swept, const std::string& difference) {
+    auto pairs = shown_pairs(scene);
+    std::erase_if(pairs, [&](const KeyPair& pair) {
+        const auto& key = pair.any();
+        const bool is_of_step = key.key == "step_s" || key.key == "tolerance" || key.key == "accuracy";
+        return (!key.key.empty() && is_swept(swept, key.key)) ||
+               (is_of_step && (swept.step || is_swept(swept, "integrator")));
+    });
+    Texts parts{counted_words(scene, pairs, swept)};
+    // what is the same in all pairs, besides sizes and release
+    for (const auto& pair : pairs) {
+        const auto& key = pair.any();
+        const bool is_property = key.symbol.empty() && !key.is_setting && !scene.preset.a.is_mechanism();
+        if ((!is_property && key.symbol != "ω") || pair.differs() || !key.counts || is_zero(key.numbers)) continue;
+        std::ranges::copy(texts_of(pair, false), std::back_inserter(parts));
+    }
+    parts.push_back(release_words(scene, swept));
+    parts.push_back(difference);
+    if (const auto differs = side_texts(pairs, false, true).differs; !differs.empty())
+        parts.push_back(fmt::format("{} against {}", joined(differs), joined(side_texts(pairs, true, true).differs)));
+    std::erase(parts, "");
+    std::erase_if(pairs, [](const KeyPair& pair) { return pair.any().key == "model"; });
+    const auto method = swept.method.empty() ? joined(setting_texts(pairs, false, true)) : swept.method;
+    return fmt::format("{}{}{}", joined(parts), method.empty() ? "" : "; ", method);
+}
+
+std::string motion_words(const SideSpec& side) {
+    const auto physical = physical_words(side.physical);
+    const auto rates = is_at_rest(side) ? "" : fmt::format(" at {} °/s", slashed(side.omega_deg_per_s));
+    return fmt::format("a {}{} released{} from {}{}, {}", system_words(side),
+                       physical.empty() ? "" : fmt::format(" with {},", physical), is_at_rest(side) ? " at rest" : "",
+                       slashed(side.angle_deg, "°"), rates, links_words(side));
+}
+
+std::string links_words(const SideSpec& side) {
+    return fmt::format("{} of {} m and {} kg, g = {} m/s²", side.links() == 1 ? "a link" : "links",
+                       slashed(side.length_m, "", true), slashed(side.mass_kg, "", true),
+                       text_of(side.gravity_m_per_s2));
+}
+
 std::string physical_words(const PhysicalSpec& physical) {
-    std::vector<std::string> words;
+    Texts words;
     for (const auto& property : PhysicalSpec::properties)
         if (physical.has(property) && (words.empty() || words.back() != property.kind))
             words.emplace_back(property.kind);
-    if (physical.pivot.amplitude_m != 0) words.push_back("a moving pivot");
-    if (!physical.torques.empty()) words.push_back("motors");
-    return fmt::format("{}", fmt::join(words, ", "));
+    if (physical.pivot.amplitude_m != 0) words.emplace_back("a moving pivot");
+    if (!physical.torques.empty()) words.emplace_back("motors");
+    return joined(words);
 }
 
-std::string chain_words(std::size_t links, std::string_view plural) {
-    constexpr std::array<std::string_view, 3> words{"", "double ", "triple "};
-    if (links > words.size()) return fmt::format("chain{} of {} links", plural, links);
-    return fmt::format("{}pendulum{}", words[links - 1], plural);
+std::string slashed(const std::vector<Quad>& numbers, std::string_view unit, bool once) {
+    constexpr std::size_t max_slashed = 4;
+    const bool is_long = numbers.size() > max_slashed;
+    Texts texts;
+    for (const auto& number : numbers) texts.push_back(fmt::format("{}{}", text_of(number), unit));
+    if ((is_long || once) && are_one(numbers)) return texts[0];
+    if (!is_long) return fmt::format("{}", fmt::join(texts, "/"));
+    const auto [low, high] = std::ranges::minmax_element(numbers);
+    return fmt::format("{1}{0} to {2}{0}", unit, text_of(*low), text_of(*high));
+}
+
+std::string value_words(const SideKey& key) {
+    if (key.numbers.empty()) return key.text;
+    Texts texts;
+    for (std::size_t i = 0; i < std::min(key.numbers.size(), max_listed); ++i)
+        texts.push_back(number_text(key.numbers[i]));
+    if (key.numbers.size() > max_listed) texts.emplace_back("…");
+    const bool is_place = !key.is_of_links && texts.size() == 2;
+    return with_unit(is_place ? fmt::format("({})", joined(texts)) : fmt::format("{}", fmt::join(texts, "/")),
+                     key.unit);
+}
+
+std::string step_text(const Rational& step) {
+    return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
+}
+
+std::string step_control_text(const Side& side) {
+    return side.method.adaptive ? "tolerance " + number_text(side.motion.tolerance) : step_text(side.step);
+}
+
+std::string number_text(const Quad& number) {
+    const auto text = with_power_of_ten(text_of(number));
+    return text.starts_with("1 × ") ? text.substr(std::string_view("1 × ").size()) : text;
 }
 
 std::string subscript(std::size_t number) {
@@ -245,17 +358,6 @@ std::string subscript(std::size_t number) {
     std::string text;
     for (const char digit : fmt::format("{}", number)) text += digits[static_cast<std::size_t>(digit - '0')];
     return text;
-}
-
-std::string step_control_text(const Side& side) {
-    if (side.method.adaptive) return "tolerance " + tolerance_text(side.motion.tolerance);
-    const auto& step = side.step;
-    return step.numerator == 1 ? fmt::format("1/{} s", grouped(step.denominator)) : fmt::format("{} s", step.value());
-}
-
-std::string tolerance_text(const Quad& tolerance) {
-    const auto text = with_power_of_ten(text_of(tolerance));
-    return text.starts_with("1 × ") ? text.substr(std::string_view("1 × ").size()) : text;
 }
 
 std::string grouped(long number) {
@@ -273,58 +375,6 @@ std::string two_digits(double value) {
 std::string with_digits(double value, int digits) {
     const double unit = std::pow(10.0, std::floor(std::log10(std::max(value, 1.0))) - digits + 1);
     return unit < 1 ? fmt::format("{:.{}g}", value, digits) : grouped(std::lround(std::round(value / unit) * unit));
-}
-
-std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
-    const std::array specs{&scene.preset.a, &scene.preset.b};
-    const bool has_track = scene.a.replay || scene.b.replay, differ = differ_in_kind(*specs[0], *specs[1]);
-    std::vector<KeyDifference> differences;
-    std::array<std::vector<Statement>, 2> all;
-    if (!has_track) {
-        differences = differing_keys(*specs[0], *specs[1]);
-        all = {statements(scene, differences, false), statements(scene, differences, true)};
-    }
-    if (scene.is_single()) {
-        const auto& spec = *specs[0];
-        const auto start = has_track ? track_words(scene.a, spec.track) : captions_of_kind(spec, all[0]).note;
-        return {SideCaptions{spec.label.value_or(start), spec.note.value_or(spec.label ? start : "")}, {}};
-    }
-    std::array<SideCaptions, 2> words;
-    for (std::size_t i = 0; i < 2; ++i) {
-        const auto& spec = *specs[i];
-        words[i] = has_track ? captions_of_track(i == 0 ? scene.a : scene.b, spec.track)
-                   : differ  ? captions_of_kind(spec, all[i])
-                             : difference_captions(all, differences, i == 1, spec.label.has_value(), wording);
-        words[i] = {spec.label.value_or(words[i].heading), spec.note.value_or(words[i].note)};
-    }
-    return words;
-}
-
-std::string scene_caption(const Scene& scene, Wording wording) {
-    if (scene.preset.subtitle) return *scene.preset.subtitle;
-    if (scene.is_single() && scene.a.replay) return "a real double pendulum";
-    if (scene.a.replay && scene.b.replay) return "two real double pendulums";
-    if (scene.a.replay || scene.b.replay) return "a real double pendulum and its simulation";
-    const auto is_at_rest = [](const SideSpec& side) {
-        const auto is_moving = [](const ParticleSpec& particle) { return particle.velocity_m_per_s != at_rest; };
-        return side.particles.empty() ? is_zero(side.omega_deg_per_s) : std::ranges::none_of(side.particles, is_moving);
-    };
-    std::vector<std::string> common;
-    if (model_words(scene.a) == model_words(scene.b)) common.push_back(model_words(scene.a));
-    if (scene.a.method.name == scene.b.method.name) common.emplace_back(scene.a.method.title);
-    if (control_words(scene.a) == control_words(scene.b)) common.push_back(control_words(scene.a));
-    if (wording == Wording::plain) common.clear();
-    const auto number = scene.members.empty() ? std::string("two") : grouped(static_cast<long>(scene.members.size()));
-    const auto one = [](const SideSpec& side) { return system_words(side, ""); };
-    const auto systems = scene.is_single() ? "a " + one(scene.preset.a)
-                         : differ_in_kind(scene.preset.a, scene.preset.b)
-                             ? fmt::format("a {} and a {}", one(scene.preset.a), one(scene.preset.b))
-                             : fmt::format("{} {}", number, system_words(scene.preset.a));
-    const auto physical = physical_words(scene.preset.a.physical);
-    const bool alike = !physical.empty() && physical == physical_words(scene.preset.b.physical);
-    return fmt::format("{}{}{}{}{}", systems, alike ? " with " + physical : "",
-                       !alike && is_at_rest(scene.preset.a) && is_at_rest(scene.preset.b) ? ", released at rest" : "",
-                       common.empty() ? "" : " · ", joined(common));
 }
 
 std::string scientific(double value) {

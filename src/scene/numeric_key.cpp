@@ -84,7 +84,7 @@ std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
 std::string label_of(const NumericKey& key, const Field& field) {
     const Place place(key.inside);
     auto words = caption_of(field);
-    if (!field.symbol.empty())
+    if (!field.symbol.empty() && !field.each.empty())
         words = key.element ? fmt::format("{} {}{}", words, field.symbol, subscript(*key.element + 1))
                             : fmt::format("{} of all links", words);
     if (!place.entry.empty())

@@ -247,7 +247,8 @@ void gravity_field(KeyVisitor& visit, SideSpec& side) {
            .help = "may be 0 with particles, constraints or forces",
            .unit = "m/s²",
            .bounds = side.is_mechanism() ? not_negative : positive,
-           .otherwise = not_negative},
+           .otherwise = not_negative,
+           .symbol = "g"},
           side.gravity_m_per_s2);
 }
 
@@ -268,8 +269,8 @@ void method_fields(KeyVisitor& visit, SideSpec& side) {
 }
 
 void precision_fields(KeyVisitor& visit, SideSpec& side) {
-    visit({"precision", "53 bits or 113 (34 digits)"}, side.precision);
-    visit({"stabilise", "correction of constraint drift"}, side.stabilise);
+    visit({.key = "precision", .help = "53 bits or 113 (34 digits)", .caption = "in"}, side.precision);
+    visit({.key = "stabilise", .help = "correction of constraint drift", .caption = "stabilisation"}, side.stabilise);
     visit({"stabilise_rate_per_s",
            "of Baumgarte's method, α = β",
            "1/s",

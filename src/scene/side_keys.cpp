@@ -1,6 +1,8 @@
 #include "scene/side_keys.hpp"
 
 #include "base/error.hpp"
+#include "integrate/methods.hpp"
+#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
@@ -16,37 +18,17 @@
 namespace doppel {
 namespace {
 
-std::vector<SideKey> keys_of(SideSpec side) {
-    side.step_s = side.step();
-    side.tolerance = side.allowed_error();
-    std::vector<SideKey> all;
-    std::map<std::string_view, int> counts;  // entries of each kind
-    int entry = 0;
-    std::string place;
-    for_each_key(side, [&](const SideEntry& owner, const Field& field, const KeyMember& member) {
-        const bool is_part = (owner.table == "constraint" || owner.table == "force") && owner.kind != "droplet";
-        if (owner.number == 0) {
-            place = owner.table;
-        } else if (owner.number != entry) {
-            entry = owner.number;
-            const int number = ++counts[owner.kind];
-            place = owner.name.empty() ? fmt::format("{} {}", owner.kind, number)
-                                       : fmt::format("{} \"{}\"", owner.kind, owner.name);
-            all.push_back({.place = place, .key = "", .unit = "", .is_of_part = is_part});
-        }
-        if (!field.only.applies && !field.only.error.empty()) return;
-        SideKey key{.place = place,
-                    .key = field.key,
-                    .unit = field.unit,
-                    .caption = caption_of(field),
-                    .counts = field.only.applies,
-                    .is_of_links = !field.each.empty() && field.symbol.empty() && place.empty(),
-                    .is_of_part = is_part};
-        if (const auto numbers = numbers_of(member)) key.numbers.assign(numbers->begin(), numbers->end());
-        if (key.numbers.empty()) key.text = toml_value(member);
-        if (!key.numbers.empty() || !key.text.empty()) all.push_back(std::move(key));
-    });
-    return all;
+/// Sets the text of a value without decimals. Methods and steps have the words of captions; the other choices are
+/// named after `caption`, if they have one.
+void take_text(const Field& field, const KeyMember& member, SideKey& key) {
+    const auto* choice = std::get_if<ChosenName>(&member);
+    const auto* step = std::get_if<std::optional<Rational>*>(&member);
+    key.text = choice                      ? std::string(choice->name)
+               : step                      ? step_text(***step)
+               : field.key == "integrator" ? std::string(find_method(**std::get_if<std::string*>(&member))->title)
+                                           : toml_value(member);
+    key.is_default = choice && choice->name == choice->names.front();
+    if (key.is_setting) key.caption = field.caption;
 }
 
 template <class Scalar>
@@ -80,7 +62,7 @@ Quad factor_of(std::string_view unit) {
 
 /// Throws if a number differs between the sides and is rounded to the same value in `Scalar`.
 template <class Scalar>
-void check_numbers(const Scene& scene, const std::vector<KeyDifference>& differences) {
+void check_numbers(const Scene& scene, const std::vector<KeyPair>& differences) {
     for (const auto& [a, b] : differences) {
         if (!a || !b || a->numbers.size() != b->numbers.size()) continue;
         const auto factor = factor_of(a->unit);
@@ -126,7 +108,7 @@ bool are_same(const Scene& scene) {
 
 /// Throws if the sides' keys differ and their systems differ in quad, but not in double. A key may have no effect even
 /// in quad, such as a length equal to the initial distance.
-void check_systems(const Scene& scene, const std::vector<KeyDifference>& differences) {
+void check_systems(const Scene& scene, const std::vector<KeyPair>& differences) {
     if (scene.a.motion.model != scene.b.motion.model || !are_same<double>(scene) || are_same<Quad>(scene)) return;
     std::string names;
     for (const auto& difference : differences)
@@ -174,57 +156,81 @@ std::string caption_of(const Field& field) {
     return words;
 }
 
-std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b) {
-    std::vector<KeyDifference> all;
+std::vector<SideKey> keys_of(SideSpec side) {
+    side.step_s = side.step();
+    side.tolerance = side.allowed_error();
+    std::vector<SideKey> all;
+    std::map<std::string_view, int> counts;  // entries of each kind
+    int entry = 0;
+    std::size_t existence = 0;  // index of the entry's first row
+    std::string place;
+    for_each_key(side, [&](const SideEntry& owner, const Field& field, const KeyMember& member) {
+        const bool is_pivot = owner.table == "pivot";
+        if (is_pivot && side.physical.pivot.amplitude_m == 0) return;
+        if (owner.table.empty()) {
+            place.clear();
+        } else if (is_pivot ? place.empty() : owner.number != entry) {
+            entry = owner.number;
+            const int number = ++counts[owner.kind];
+            place = is_pivot             ? "pivot"
+                    : owner.name.empty() ? fmt::format("{} {}", owner.kind, number)
+                                         : fmt::format("{} \"{}\"", owner.kind, owner.name);
+            existence = all.size();
+            all.push_back({.place = is_pivot ? "pivot motion" : place, .key = ""});
+        }
+        if (!field.only.applies && !field.only.error.empty()) return;
+        SideKey key{.place = place,
+                    .key = field.key,
+                    .unit = field.unit,
+                    .symbol = field.symbol,
+                    .caption = caption_of(field),
+                    .counts = field.only.applies,
+                    .is_of_links = !field.each.empty() && place.empty(),
+                    .is_setting = place.empty() && field.each.empty() && field.symbol.empty() && field.key != "links"};
+        if (const auto numbers = numbers_of(member)) key.numbers.assign(numbers->begin(), numbers->end());
+        if (key.numbers.empty()) take_text(field, member, key);
+        if (key.numbers.empty() && key.text.empty()) return;
+        if (!place.empty() && !key.unit.empty() && !is_zero(key.numbers))
+            all[existence].text +=
+                fmt::format(" {} {} {}", all[existence].text.empty() ? "of" : "and", key.caption, value_words(key));
+        all.push_back(std::move(key));
+    });
+    return all;
+}
+
+bool KeyPair::differs() const {
+    if (!a || !b) return true;
+    return a->numbers != b->numbers || a->counts != b->counts || (a->text != b->text && !a->key.empty());
+}
+
+std::vector<KeyPair> paired(std::vector<SideKey> a, std::vector<SideKey> b) {
+    std::vector<KeyPair> all;
     std::map<std::string, std::size_t> indices;  // of names
-    for (auto& key : keys_of(a)) {
+    for (auto& key : a) {
         indices.emplace(key.name(), all.size());
         all.push_back({std::move(key), std::nullopt});
     }
-    for (auto& key : keys_of(b)) {
+    for (auto& key : b) {
         const auto [index, is_new] = indices.emplace(key.name(), all.size());
         if (is_new)
             all.push_back({std::nullopt, std::move(key)});
         else
             all[index->second].b = std::move(key);
     }
-    // of an entry that only one side has, the keys are not listed one by one
-    const auto is_listed = [&](const KeyDifference& one) {
-        if (one.a && one.b) return one.a->numbers != one.b->numbers || one.a->text != one.b->text;
-        const auto& key = one.any();
-        if (key.place.empty() || key.key.empty()) return true;
+    std::vector<KeyPair> kept;
+    std::ranges::copy_if(all, std::back_inserter(kept), [&](const KeyPair& pair) {
+        const auto& key = pair.any();
+        if ((pair.a && pair.b) || key.place.empty() || key.key.empty()) return true;
         const auto entry = indices.find(key.place);
         return entry != indices.end() && all[entry->second].a && all[entry->second].b;
-    };
-    std::vector<KeyDifference> differing;
-    std::ranges::copy_if(all, std::back_inserter(differing), is_listed);
-    return differing;
+    });
+    return kept;
 }
 
-std::string KeyDifference::words(bool of_b) const {
-    const auto &self = of_b ? b : a, &other = of_b ? a : b;
-    const auto& known = any();
-    if (known.key.empty()) return fmt::format("{} {}", self ? "with" : "no", known.place);
-    const auto name = fmt::format("{}{}{}", known.place, known.place.empty() ? "" : " ", known.caption);
-    if (!self || !self->counts) return fmt::format("no {}", name);
-    if (self->numbers.empty()) return fmt::format("{} {}", name, self->text);
-    const auto unit = fmt::format("{}{}", known.unit.empty() ? "" : " ", known.unit);
-    // in longer lists, only the first number in which the sides differ is shown
-    constexpr std::size_t max_listed = 3;
-    const auto& numbers = self->numbers;
-    if (numbers.size() > max_listed && other && other->numbers.size() == numbers.size()) {
-        const auto at = std::mismatch(numbers.begin(), numbers.end(), other->numbers.begin()).first;
-        const auto number = at - numbers.begin();
-        const auto which = known.is_of_links ? fmt::format(" of link {}", number + 1) : fmt::format("[{}]", number);
-        return fmt::format("{}{} {}{}", name, which, text_of(*at), unit);
-    }
-    std::vector<std::string> texts;
-    for (const auto& number : numbers) texts.push_back(text_of(number));
-    if (texts.size() > max_listed) {
-        texts.resize(max_listed);
-        texts.emplace_back("…");
-    }
-    return fmt::format("{} {}{}", name, fmt::join(texts, "/"), unit);
+std::vector<KeyPair> differing_keys(const SideSpec& a, const SideSpec& b) {
+    auto all = paired(keys_of(a), keys_of(b));
+    std::erase_if(all, [](const KeyPair& pair) { return !pair.differs(); });
+    return all;
 }
 
 void check_difference(const Scene& scene) {

@@ -14,31 +14,37 @@ namespace doppel {
 
 struct Scene;
 
+/// A key of a side, with its value. Captions are made of these rows.
 struct SideKey {
-    std::string place;               // its entry, "spring 1", or "pivot"; empty: the side itself
-    std::string_view key, unit;      // an empty `key` stands for the existence of the entry
-    std::string caption = {};        // name in captions
-    std::vector<Quad> numbers = {};  // with all their decimals
-    std::string text = {};           // TOML, if it has no such numbers
-    bool counts = true;              // false if the value is the same as not given
-    bool is_of_links = false;        // one number per link, without a symbol
-    bool is_of_part = false;         // of a constraint, a spring or an attraction
+    std::string place;                             // its entry, "spring 1", or "pivot"; empty: the side itself
+    std::string_view key, unit = {}, symbol = {};  // an empty `key` stands for the existence of the entry
+    std::string caption = {};                      // name in captions; empty if the value says enough
+    std::vector<Quad> numbers = {};                // with all their decimals
+    std::string text = {};  // the value, if it has no such numbers; of an entry, its numbers in the words of captions
+    bool counts = true;     // false if the value is the same as not given
+    bool is_of_links = false;  // one number per link
+    bool is_setting = false;   // of the computation, not of the system
+    bool is_default = false;   // a setting that captions only name beside another one
 
     /// "spring 1 stiffness_N_per_m"
     std::string name() const { return fmt::format("{}{}{}", place, place.empty() || key.empty() ? "" : " ", key); }
 };
 
-/// A key in which two sides differ, with its value on each; nothing for a side without it.
-struct KeyDifference {
+/// All keys that decide the motion of a side: system, forces, integration.
+std::vector<SideKey> keys_of(SideSpec side);
+
+/// A key with its value on each side; nothing for a side without it.
+struct KeyPair {
     std::optional<SideKey> a, b;
 
     const SideKey& any() const { return a ? *a : *b; }
-    /// The caption for side b, or side a: "spring 1 stiffness 2 N/m", "no spring 1".
-    std::string words(bool of_b) const;
+    bool differs() const;
 };
 
-/// Compares all keys that decide the motion of a side: system, forces, integration.
-std::vector<KeyDifference> differing_keys(const SideSpec& a, const SideSpec& b);
+/// Keys of both sides, without those of an entry that only one side has: it is a pair itself.
+std::vector<KeyPair> paired(std::vector<SideKey> a, std::vector<SideKey> b);
+/// The pairs that differ.
+std::vector<KeyPair> differing_keys(const SideSpec& a, const SideSpec& b);
 
 /// Throws Error (exit 2) if the difference of the sides is lost in their precision: a number of any key, the whole
 /// system, or the attraction of a droplet compared with gravity.

@@ -192,7 +192,7 @@ TEST(Subtitle, IsOfTheSystem) {
     };
     EXPECT_EQ(
         subtitle("poincare", {"system.mass_kg=[1, 2.5]", "system.length_m=0.5"}),
-        "Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, links of 0.5 m and 1, 2.5 kg, g = 9.8 m/s²; energies "
+        "Poincaré sections θ₁ = 0, ω₁ > 0 of a double pendulum, links of 0.5 m and 1/2.5 kg, g = 9.8 m/s²; energies "
         "above hanging at rest");
     EXPECT_EQ(subtitle("lyapunov-spectrum", {"system.links=3", "system.angle_deg=[10, 20, 30.5]"}),
               "a triple pendulum released at rest from 10°/20°/30.5°, links of 1 m and 1 kg, g = 9.8 m/s²; tangent "

@@ -152,7 +152,7 @@ TEST(FigurePreset, OfASweepStatesOverrides) {
              {"grid.difference=-0.25", ", pair 0.25° apart; explicit"},
              {"grid.quantity=\"energy_error\"", "two links in angles, θ₂ = 0; explicit Euler, 1/30 000 s"},
              {"system.angle_deg=[0, 30.5]", "two links in angles, θ₂ = 30.5°, pair"},
-             {"system.omega_deg_per_s=[0, 5]", ", θ₂ = 0, ω = 0/5 °/s, pair"},
+             {"system.omega_deg_per_s=[0, 5]", ", ω₁ = 0°/s, ω₂ = 5°/s, θ₂ = 0, pair"},
              {"system.integrator=\"rk4\"", "; "},
              {"system.step_s=\"1/1200\"", "; explicit Euler, 1/1200 s"},
              {"system.precision=\"quad\"", "; explicit Euler, 1/30 000 s, in quad"},

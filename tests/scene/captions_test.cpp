@@ -79,12 +79,18 @@ TEST(Captions, OfAnAccuracyOmitTheChosenTolerance) {
 }
 
 TEST(Captions, OfMechanismsSayWhatDiffers) {
-    const auto springs = side_captions(scene_of("springs"));
-    EXPECT_EQ(springs[0].heading, "bead and middle in place");
-    EXPECT_EQ(springs[1].heading, "bead and middle 1 mm to the right");
-    const auto loop = side_captions(scene_of("loop"));
-    EXPECT_EQ(loop[0].heading, "bob at rest");
-    EXPECT_EQ(loop[1].heading, "bob pushed at 1 mm/s");
+    // as the presets say it, and as it is said without their labels and notes
+    auto springs = scene_of("springs"), loop = scene_of("loop", {"b.particle.bob.mass_kg=2"});
+    EXPECT_EQ(side_captions(springs)[0].heading, "bead and middle in place");
+    EXPECT_EQ(side_captions(springs)[1].heading, "bead and middle 1 mm to the right");
+    EXPECT_EQ(side_captions(loop)[0].heading, "bob at rest");
+    EXPECT_EQ(side_captions(loop)[1].heading, "bob pushed at 1 mm/s");
+    for (auto* scene : {&springs, &loop})
+        for (auto* side : {&scene->preset.a, &scene->preset.b}) side->label = side->note = std::nullopt;
+    EXPECT_EQ(side_captions(springs)[0].heading, "\"bead\" position (0, 0) m, \"middle\" position (0.8, 0.6) m");
+    EXPECT_EQ(side_captions(springs)[1].heading, "\"bead\" position (0.001, 0) m, \"middle\" position (0.801, 0.6) m");
+    EXPECT_EQ(side_captions(loop)[0].heading, "\"bob\" mass 1 kg, \"bob\" velocity (0, 0) m/s");
+    EXPECT_EQ(side_captions(loop)[1].heading, "\"bob\" mass 2 kg, \"bob\" velocity (0.0006, -0.0008) m/s");
 }
 
 TEST(Captions, NeverCallSidesTheSameThatDiffer) {
@@ -99,17 +105,25 @@ TEST(Captions, NeverCallSidesTheSameThatDiffer) {
     EXPECT_EQ(headings(bead + "[[b.force]]\nname = \"s\"\nstiffness_N_per_m = 2"),
               "spring \"s\" stiffness 1 N/m | spring \"s\" stiffness 2 N/m");
     EXPECT_EQ(headings(bead + "[[b.force]]\nkind = \"spring\"\nfrom = \"u\"\nto = [1, 0]"),
-              "no spring 2 | with spring 2");
+              "no spring 2 | with spring 2 of stiffness 1 N/m");
+    EXPECT_EQ(headings(bead + "[[b.force]]\nkind = \"droplet\"\nmass_kg = 1000\nposition_m = [3, 1]"),
+              "no droplet 1 | with droplet 1 of position (3, 1) m and mass 1000 kg");
     EXPECT_EQ(headings(bead + "[[b.constraint]]\nname = \"rail\"\ndirection = [1, 0.5]"),
-              "slot-line \"rail\" direction 1/0 | slot-line \"rail\" direction 1/0.5");
+              "slot-line \"rail\" direction (1, 0) | slot-line \"rail\" direction (1, 0.5)");
     EXPECT_EQ(headings("[system.pivot]\namplitude_m = 0.1\n[b.pivot]\nphase_deg = 90"),
-              "pivot phase 0 deg | pivot phase 90 deg");
+              "pivot phase 0° | pivot phase 90°");
+    EXPECT_EQ(headings("[system.pivot]\namplitude_m = 0.1\n[b.pivot]\namplitude_m = 0"),
+              "with pivot motion of direction 90° and amplitude 0.1 m and frequency 1 Hz | no pivot motion");
     EXPECT_EQ(headings("[[system.torque]]\nname = \"t\"\namplitude_N_m = 1\n[[b.torque]]\nname = \"t\"\njoint = 2"),
               "torque \"t\" joint 1 | torque \"t\" joint 2");
     EXPECT_EQ(headings("[system]\nmodel = \"constraints\"\nstabilise = \"baumgarte\"\n[b]\nstabilise_rate_per_s = 20"),
               "stabilise rate 10 1/s | stabilise rate 20 1/s");
+    EXPECT_EQ(headings("[system]\nmodel = \"constraints\"\nstabilise = \"baumgarte\"\n[b]\nstabilise = \"none\""),
+              "stabilisation baumgarte, stabilise rate 10 1/s | stabilisation none");
+    EXPECT_EQ(headings("[system]\nlinks = 5\njoint_viscous_N_m_s = 0.1\n[b]\njoint_viscous_N_m_s = 0.2"),
+              "viscous friction 0.1 N m s | viscous friction 0.2 N m s");
     EXPECT_EQ(headings("[scene]\nduration_s = 1\n[system]\naccuracy = 1e-3\n[b]\nprecision = \"quad\""),
-              "precision \"double\" | precision \"quad\"");
+              "in double | in quad");
     EXPECT_EQ(headings("[system]\nlinks = 5\n[b]\njoint_viscous_N_m_s = [0, 0, 0, 0, 0.1]"),
               "no viscous friction | viscous friction of link 5 0.1 N m s");
     EXPECT_EQ(headings(""), "a | b, the same");

@@ -79,7 +79,7 @@ TEST(SideTrack, CaptionsTellWhichIsMeasured) {
     EXPECT_EQ(words[0].heading, "measured");
     EXPECT_EQ(words[0].note, "piece-00.csv, 500 Hz");
     EXPECT_EQ(words[1].heading, "computed");
-    EXPECT_EQ(words[1].note, "explicit Euler, 1/30 000 s");
+    EXPECT_EQ(words[1].note, "angles, explicit Euler, 1/30 000 s");
     EXPECT_EQ(scene_caption(scene), "a real double pendulum and its simulation");
     EXPECT_EQ(scene.preset.video.strips[0], StripKind::distance);
 }
