@@ -38,6 +38,13 @@ void check_distinct(const TomlReader& table, std::string_view key, const std::ve
             throw table.error(key, "must differ; \"{}\" is named more than once", name);
 }
 
+std::vector<std::string> methods_of(Model model, std::vector<std::string> names) {
+    constexpr std::array of_model{&MethodEntry::angles, &MethodEntry::constraints, &MethodEntry::mechanism};
+    std::erase_if(names,
+                  [&](const auto& name) { return !(find_method(name)->*of_model[static_cast<std::size_t>(model)]); });
+    return names;
+}
+
 bool have_same_release(const SideSpec& a, const SideSpec& b) {
     const auto same = [](const ParticleSpec& one, const ParticleSpec& other) {
         return one.mass_kg == other.mass_kg && one.position_m == other.position_m &&

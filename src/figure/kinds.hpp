@@ -197,6 +197,9 @@ struct FigureReader {
 /// Throws Error (exit 2) if a key lists a name twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
+/// The methods of these names that integrate a model, in the same order.
+std::vector<std::string> methods_of(Model model, std::vector<std::string> names);
+
 /// Whether both sides have the same release, so that their initial distance is 0.
 bool have_same_release(const SideSpec& a, const SideSpec& b);
 

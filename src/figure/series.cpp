@@ -1,6 +1,7 @@
-#include "figure/series.hpp"
-
+#include "analysis/drift.hpp"
+#include "analysis/spectrum.hpp"
 #include "base/error.hpp"
+#include "figure/kinds.hpp"
 #include "film/pair_table.hpp"
 #include "scene/captions.hpp"
 #include "scene/certificate.hpp"
@@ -13,7 +14,131 @@
 #include <numeric>
 
 namespace doppel {
+
+/// The quantities of a series: the distance of pairs, as such or as ln(d/d0); all exponents of one motion; the errors
+/// of one motion by each method.
+enum class SeriesQuantity { distance, log_ratio, exponents, errors };
+template <>
+inline constexpr auto names_of<SeriesQuantity> = std::to_array<std::string_view>({"distance", "log_ratio", "exponents",
+                                                                                  "errors"});
+
 namespace {
+
+struct SeriesKeys {
+    static constexpr std::string_view table_key = "series";
+    SeriesQuantity quantity = SeriesQuantity::distance;
+    bool logarithmic = false;
+    std::optional<std::string> film_column;
+    std::optional<Quad> check_tolerance;
+    double duration_s = 500;
+    int samples = 500, points_per_decade = 10;
+    double tolerance = SpectrumSpec{}.tolerance, evaluations_per_s = 500;
+    std::vector<std::string> methods{names_of_methods().begin(), names_of_methods().end()}, projected;
+
+    bool is_of_pairs() const { return quantity <= SeriesQuantity::log_ratio; }
+
+    void fields(KeyVisitor& visit) {
+        visit({"quantity",
+               "the distance of pairs in state space, or ln(d/d₀); all Lyapunov exponents of one motion, as their "
+               "estimates settle; or the errors of its energy and rods by each method at the same cost"},
+              quantity);
+        const Condition of_pairs{is_of_pairs(), "is only for pairs"};
+        visit({.key = "film_column",
+               .help = "in place of `quantity`: a column of the table that a film of the pair has",
+               .only = of_pairs,
+               .is_drawn = true},
+              film_column);
+        const Condition of_exponents{quantity == SeriesQuantity::exponents, "is only for exponents"};
+        const Condition of_errors{quantity == SeriesQuantity::errors, "is only for errors"};
+        const Bounds of_motions = of_errors.applies ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;
+        constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true},
+            costs{.low = 10, .high = 1e6, .is_positive = true};
+        visit({"logarithmic", "the axis", "", {}, "", of_pairs}, logarithmic);
+        visit({"check_tolerance", "runs every pair again at this tolerance, to see how long both agree", "", positive,
+               "", of_pairs},
+              check_tolerance);
+        visit({"duration_s", "of the motion", "s", of_motions, "",
+               Condition{!is_of_pairs(), "is for one motion; pairs use that of [scene]"}},
+              duration_s);
+        visit({"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000), "",
+               of_exponents},
+              samples);
+        visit({"tolerance", "relative error of a step of dop853, of the motion and of its tangents", "", tolerances, "",
+               of_exponents},
+              tolerance);
+        visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100), "", of_errors},
+              points_per_decade);
+        visit({"evaluations_per_s", "evaluations of the right-hand side a second of motion, the same for all methods",
+               "", costs, "", of_errors},
+              evaluations_per_s);
+        visit({.key = "methods",
+               .help = "names of methods",
+               .absent = "all that step chains",
+               .only = of_errors,
+               .names = names_of_methods()},
+              methods);
+        visit({.key = "projected",
+               .help = "methods that are also shown with projection onto the constraints",
+               .only = of_errors,
+               .names = names_of_methods()},
+              projected);
+    }
+};
+
+/// Quantities over time. A trial gives `own_` numbers, then `each_` quantities at all times, one quantity after the other.
+class Series : public Experiment {
+public:
+    std::size_t trials() const override { return trials_; }
+
+    bool fits(std::size_t trial, std::span<const double> numbers) const override {
+        return numbers.size() == own_ + each_ * times_s_.size() && finite_or_none(numbers) &&
+               (may_be_none(trial) || all_finite(numbers));
+    }
+
+    /// A row for each time, with all quantities.
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for (std::size_t n = 0; n < times_s_.size(); ++n) {
+            if (columns_.front() == "sample") table.add(static_cast<long>(n));
+            table.add(times_s_[n]);
+            for (std::size_t k = 0; k < shown_; ++k) table.add_or_empty(values(numbers, k)[n]);
+            table.end_row();
+        }
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        auto& plot = figure.panels.emplace_back(axes_);
+        for (std::size_t i = 0; i < labels_.size(); ++i) {
+            const auto y = values(numbers, i);
+            plot.curves.push_back(
+                {.label = labels_[i], .x = times_s_, .y = {y.begin(), y.end()}, .hue = static_cast<int>(i)});
+        }
+        if (auto words = caption(numbers); !words.empty()) figure.captions.push_back(std::move(words));
+    }
+
+    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
+        for (std::size_t k = 0; k < shown_ && axes_.y.logarithmic; ++k)
+            if (std::ranges::any_of(values(numbers, k), [](double x) { return x > 0; })) return std::nullopt;
+        return axes_.y.logarithmic ? std::optional(none_words_) : std::nullopt;
+    }
+
+protected:
+    /// Whether numbers may be missing.
+    virtual bool may_be_none(std::size_t /*trial*/) const { return true; }
+    virtual std::string caption(std::span<const TrialNumbers> numbers) const = 0;
+
+    /// Quantity k of all trials, at all times.
+    std::span<const double> values(std::span<const TrialNumbers> numbers, std::size_t k) const {
+        return std::span(numbers[k / each_]).subspan(own_ + k % each_ * times_s_.size(), times_s_.size());
+    }
+
+    // set by constructors
+    std::vector<double> times_s_;  // ascending
+    std::size_t trials_ = 1, own_ = 0, each_ = 1;
+    std::size_t shown_ = 0;            // quantities in the table
+    std::vector<std::string> labels_;  // of the curves, the first quantities
+    Plot axes_;                        // without curves
+    std::string none_words_;           // why a logarithmic axis shows nothing
+};
 
 struct PairCurve {
     std::string column, label;
@@ -63,10 +188,10 @@ std::string column_words(const std::string& column) {
 
 /// A quantity of one or more pairs over time. Every pair may be run again at a finer tolerance, to find how long both
 /// agree.
-class PairSeries final : public Experiment {
+class PairSeries final : public Series {
 public:
     PairSeries(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
-        : logarithmic_(keys.logarithmic), check_tolerance_(keys.check_tolerance) {
+        : check_tolerance_(keys.check_tolerance) {
         columns_ = {"sample", "time_s"};
         const auto shown = keys.film_column.value_or(std::string(name_of(keys.quantity)));
         auto entries = reader.entries("curve");
@@ -82,12 +207,12 @@ public:
         }
         if (reader.only_keys) return;
         if (entries.empty()) columns_.push_back(shown);
-        unit_ = "pairs";
         bool differ = false;
         for (auto& curve : curves_) {
             curve.pair.energy_columns = true;
             const auto scene = make_scene(curve.pair);  // reports errors now
-            samples_ = scene.samples;
+            times_s_.clear();
+            for (long n = 0; n <= scene.samples; ++n) times_s_.push_back(scene.time(n));
             auto known = columns_of(scene);
             known.erase(known.begin(), known.begin() + 2);  // sample and time
             known.insert(known.end(), certified_columns.begin(), certified_columns.end());
@@ -102,58 +227,18 @@ public:
                                   "ratio to a distance of 0");
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.error("check_tolerance", "needs adaptive methods on both sides");
+            labels_.push_back(curve.label);
         }
         if (!differ)
             throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
                               shown);
         settings_ = resolved_settings(settings_text(keys));
-    }
-
-    std::size_t trials() const override { return curves_.size() * (check_tolerance_ ? 2 : 1); }
-
-    bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        const bool is_distance = curves_[trial % curves_.size()].film_column == "distance";
-        return numbers.size() == static_cast<std::size_t>(samples_) + 1 &&
-               (is_distance ? all_finite(numbers) : finite_or_none(numbers));
-    }
-
-    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (long n = 0; n <= samples_; ++n) {
-            table.add(n);
-            table.add(time(n));
-            for (std::size_t i = 0; i < curves_.size(); ++i)
-                table.add_or_empty(numbers[i][static_cast<std::size_t>(n)]);
-            table.end_row();
-        }
-    }
-
-    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        Plot plot;
-        plot.x = {.label = "time, s", .low = 0, .high = time(samples_)};
-        plot.y = {.label = shown_words(), .logarithmic = logarithmic_};
-        for (std::size_t i = 0; i < curves_.size(); ++i) {
-            Curve curve{.label = curves_[i].label, .y = numbers[i], .hue = static_cast<int>(i)};
-            for (long n = 0; n <= samples_; ++n) curve.x.push_back(time(n));
-            plot.curves.push_back(std::move(curve));
-        }
-        figure.panels.push_back(std::move(plot));
-        if (!check_tolerance_) return;
-        std::string words;
-        for (std::size_t i = 0; i < curves_.size(); ++i)
-            words += fmt::format("{}{} until {:.1f} s", i == 0 ? ":" : ",",
-                                 curves_[i].label.empty() ? "" : " " + curves_[i].label, agree_until(numbers, i));
-        const bool are_distances =
-            std::ranges::all_of(curves_, [](const auto& c) { return c.film_column == "distance"; });
-        figure.captions.push_back(fmt::format("Converged: at tolerance {} the {} are the same within 1 %{}.",
-                                              number_text(*check_tolerance_), are_distances ? "distances" : "values",
-                                              words));
-    }
-
-    std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
-        if (!logarithmic_) return std::nullopt;
-        for (const auto& trial : numbers.first(curves_.size()))
-            if (std::ranges::any_of(trial, [](double x) { return x > 0; })) return std::nullopt;
-        return "nothing is greater than 0, which a logarithmic axis cannot show; set series.logarithmic = false";
+        unit_ = "pairs";
+        shown_ = curves_.size();
+        trials_ = shown_ * (check_tolerance_ ? 2 : 1);
+        axes_.x = {.label = "time, s", .low = 0, .high = times_s_.back()};
+        axes_.y = {.label = shown_words(), .logarithmic = keys.logarithmic};
+        none_words_ = "nothing is greater than 0, which a logarithmic axis cannot show; set series.logarithmic = false";
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
@@ -169,6 +254,22 @@ public:
     }
 
 private:
+    bool may_be_none(std::size_t trial) const override {
+        return curves_[trial % curves_.size()].film_column != "distance";
+    }
+
+    std::string caption(std::span<const TrialNumbers> numbers) const override {
+        if (!check_tolerance_) return "";
+        std::string words;
+        for (std::size_t i = 0; i < curves_.size(); ++i)
+            words += fmt::format("{}{} until {:.1f} s", i == 0 ? ":" : ",",
+                                 curves_[i].label.empty() ? "" : " " + curves_[i].label, agree_until(numbers, i));
+        const bool are_distances =
+            std::ranges::all_of(curves_, [](const auto& c) { return c.film_column == "distance"; });
+        return fmt::format("Converged: at tolerance {} the {} are the same within 1 %{}.",
+                           number_text(*check_tolerance_), are_distances ? "distances" : "values", words);
+    }
+
     void check_column(TomlReader& entry, const PairCurve& curve) const {
         if (curve.column.empty()) throw entry.error("column", "is missing; it names the curve in the table");
         if (!entry.has("label")) entry.require_drawable("column", curve.column);  // the column is used as label
@@ -187,9 +288,13 @@ private:
         return text;
     }
 
+    /// First the curves, then the same pairs at the finer tolerance.
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        const auto scene = make_scene(pair_of(trial));
-        const auto& shown = *curves_[trial % curves_.size()].film_column;
+        const auto& curve = curves_[trial % curves_.size()];
+        auto pair = curve.pair;
+        if (trial >= curves_.size()) pair.a.tolerance = pair.b.tolerance = check_tolerance_;
+        const auto scene = make_scene(pair);
+        const auto& shown = *curve.film_column;
         if (const auto* of = std::ranges::find(certified_columns, shown); of != certified_columns.end())
             return certified_radii(scene, static_cast<std::size_t>(of - certified_columns.begin()), stop);
         const auto names = columns_of(scene);
@@ -197,7 +302,7 @@ private:
         PairRun run(scene);
         TrialNumbers values;
         double start = 0;
-        for (long n = 0; n <= samples_; ++n) {
+        for (std::size_t n = 0; n < times_s_.size(); ++n) {
             const Snapshot now{run.next(stop), {}};
             if (n == 0) start = now.pair.distance;
             values.push_back(numbers_of(scene, now, start)[column]);
@@ -218,37 +323,21 @@ private:
         return fmt::format("{}{}", fmt::join(all, "; "), of_a ? " (a)" : of_b ? " (b)" : "");
     }
 
-    double time(long sample) const {
-        const auto& rate = curves_.front().pair.sample_hz;
-        return static_cast<double>(sample) * static_cast<double>(rate.denominator) /
-               static_cast<double>(rate.numerator);
-    }
-
-    /// First the curves, then the same pairs at the finer tolerance.
-    Preset pair_of(std::size_t trial) const {
-        auto pair = curves_[trial % curves_.size()].pair;
-        if (trial >= curves_.size()) pair.a.tolerance = pair.b.tolerance = check_tolerance_;
-        return pair;
-    }
-
     /// The time up to which both tolerances agree within 1 %, s.
     double agree_until(std::span<const TrialNumbers> numbers, std::size_t curve) const {
         constexpr double allowed = 0.01;
         const auto &one = numbers[curve], &other = numbers[curve + curves_.size()];
         for (std::size_t n = 0; n < one.size(); ++n)
-            if (std::abs(one[n] - other[n]) > allowed * std::abs(other[n]))
-                return n == 0 ? 0 : time(static_cast<long>(n) - 1);
-        return time(samples_);
+            if (std::abs(one[n] - other[n]) > allowed * std::abs(other[n])) return n == 0 ? 0 : times_s_[n - 1];
+        return times_s_.back();
     }
 
-    bool logarithmic_;
     std::optional<Quad> check_tolerance_;
     std::vector<PairCurve> curves_;
-    long samples_ = 0;
 };
 
-/// Convergence of the estimates of all Lyapunov exponents of one motion.
-class Spectrum final : public Experiment {
+/// Convergence of the estimates of all Lyapunov exponents of one motion, and of their sum.
+class Spectrum final : public Series {
 public:
     Spectrum(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
         : release_(reader.release(true)), spec_{keys.duration_s, keys.samples, keys.tolerance} {
@@ -264,95 +353,255 @@ public:
         settings_ = resolved_release(release_) + settings_text(keys);
         unit_ = "spectra";
         columns_ = {"time_s"};
-        for (std::size_t i = 1; i <= exponents(); ++i) columns_.push_back(fmt::format("exponent{}_per_s", i));
+        for (std::size_t i = 1; i <= 2 * release_.links(); ++i) {
+            columns_.push_back(fmt::format("exponent{}_per_s", i));
+            labels_.push_back("λ" + subscript(i));
+        }
         columns_.emplace_back("sum_per_s");
+        each_ = shown_ = labels_.size() + 1;
+        for (int k = 1; k <= spec_.samples; ++k) times_s_.push_back(spec_.duration_s * k / spec_.samples);
+        axes_.x = {.label = "time, s", .logarithmic = true};
+        axes_.y = {.label = "running estimates of the exponents, 1/s"};
+        axes_.rules.push_back({Rule::Orientation::horizontal, 0, ""});
         subtitle_ = motion_words(release_) + "; tangent equations in canonical variables, dop853";
-    }
-
-    std::size_t trials() const override { return 1; }
-
-    bool fits(std::size_t /*trial*/, std::span<const double> numbers) const override {
-        return numbers.size() == static_cast<std::size_t>(spec_.samples) * (exponents() + 1) && all_finite(numbers);
-    }
-
-    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
-        for (const auto& sample : samples_of(numbers)) {
-            table.add(sample.time_s);
-            for (const double exponent : sample.exponents) table.add(exponent);
-            add_row(table, sum(sample));
-        }
-    }
-
-    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
-        Plot plot;
-        plot.x = {.label = "time, s", .logarithmic = true};
-        plot.y = {.label = "running estimates of the exponents, 1/s"};
-        const auto samples = samples_of(numbers);
-        for (std::size_t i = 0; i < exponents(); ++i) {
-            Curve curve{.label = "λ" + subscript(i + 1), .hue = static_cast<int>(i)};
-            for (const auto& sample : samples) add_point(curve, sample.time_s, sample.exponents[i]);
-            plot.curves.push_back(std::move(curve));
-        }
-        plot.rules.push_back({Rule::Orientation::horizontal, 0, ""});
-        figure.panels.push_back(std::move(plot));
-        std::string words;
-        const auto& last = samples.back();
-        for (const double exponent : last.exponents)
-            words += fmt::format("{}{}{:.4f}", words.empty() ? "" : ", ", exponent < 0 ? "−" : "+", std::abs(exponent));
-        const auto of_them =
-            preserves_volume()
-                ? fmt::format("Their sum is 0 within {}, and the pairs are ± within {} 1/s.",
-                              scientific(std::abs(sum(last))), scientific(pair_mismatch(last)))
-                : fmt::format("Their sum is −{:.4f} 1/s, the mean rate at which friction contracts phase-space volume.",
-                              std::abs(sum(last)));
-        figure.captions.push_back(fmt::format("After {} s: {} 1/s. {}", spec_.duration_s, words, of_them));
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {
         Json all;
-        const auto last = samples_of(numbers).back();
-        for (std::size_t i = 0; i < exponents(); ++i) all[fmt::format("exponent{}_per_s", i + 1)] = last.exponents[i];
-        all["sum_per_s"] = sum(last);
-        if (preserves_volume()) all["pair_mismatch_per_s"] = pair_mismatch(last);
+        for (std::size_t k = 0; k < each_; ++k) all[columns_[k + 1]] = values(numbers, k).back();
+        if (preserves_volume()) all["pair_mismatch_per_s"] = pair_mismatch(last(numbers));
         return all;
     }
 
 private:
-    std::size_t exponents() const { return 2 * release_.links(); }
-
+    bool may_be_none(std::size_t /*trial*/) const override { return false; }
     bool preserves_volume() const { return physical_of(release_).friction.is_none(); }
 
+    /// The exponents at the end.
+    SpectrumSample last(std::span<const TrialNumbers> numbers) const {
+        SpectrumSample sample{times_s_.back(), {}};
+        for (std::size_t i = 0; i < labels_.size(); ++i) sample.exponents.push_back(values(numbers, i).back());
+        return sample;
+    }
+
+    std::string caption(std::span<const TrialNumbers> numbers) const override {
+        std::string words;
+        for (const double exponent : last(numbers).exponents)
+            words += fmt::format("{}{}{:.4f}", words.empty() ? "" : ", ", exponent < 0 ? "−" : "+", std::abs(exponent));
+        const double sum = std::abs(values(numbers, labels_.size()).back());
+        const auto of_them =
+            preserves_volume()
+                ? fmt::format("Their sum is 0 within {}, and the pairs are ± within {} 1/s.", scientific(sum),
+                              scientific(pair_mismatch(last(numbers))))
+                : fmt::format("Their sum is −{:.4f} 1/s, the mean rate at which friction contracts phase-space volume.",
+                              sum);
+        return fmt::format("After {} s: {} 1/s. {}", spec_.duration_s, words, of_them);
+    }
+
     TrialNumbers compute_trial(std::size_t, const std::atomic<bool>& stop) const override {
-        TrialNumbers numbers;
         const auto samples = lyapunov_spectrum(physical_of(release_).cast<double>(), spec_, stop);
-        for (const auto& sample : samples) {
-            numbers.push_back(sample.time_s);
-            numbers.insert(numbers.end(), sample.exponents.begin(), sample.exponents.end());
-        }
+        TrialNumbers numbers;
+        for (std::size_t i = 0; i < labels_.size(); ++i)
+            for (const auto& sample : samples) numbers.push_back(sample.exponents[i]);
+        for (const auto& [time_s, all] : samples) numbers.push_back(std::accumulate(all.begin(), all.end(), 0.0));
         return numbers;
-    }
-    /// The numbers of each sample: its time, then the exponents.
-    std::vector<SpectrumSample> samples_of(std::span<const TrialNumbers> numbers) const {
-        std::vector<SpectrumSample> samples;
-        const auto each = static_cast<std::ptrdiff_t>(exponents()) + 1;
-        for (auto at = numbers[0].begin(); at != numbers[0].end(); at += each)
-            samples.push_back({*at, {at + 1, at + each}});
-        return samples;
-    }
-    static double sum(const SpectrumSample& sample) {
-        return std::accumulate(sample.exponents.begin(), sample.exponents.end(), 0.0);
     }
 
     SideSpec release_;
     SpectrumSpec spec_;
 };
 
+/// The name of a law of growth, and the hue of its curves; in the order of Growth::Kind.
+struct GrowthStyle {
+    std::string_view words, law;
+    int hue;
+};
+constexpr std::array styles{GrowthStyle{"stays bounded", "", 1}, GrowthStyle{"grows like √t", " ∝ √t", 2},
+                            GrowthStyle{"grows linearly", " ∝ t", 0}, GrowthStyle{"grows like t²", " ∝ t²", 3},
+                            GrowthStyle{"fails", "", 6}};
+
+const GrowthStyle& style_of(const Growth& growth) {
+    return styles.at(static_cast<std::size_t>(growth.kind));
+}
+
+/// Long-term errors of energy and rod lengths, every method at the same cost. A trial is a run of a method.
+class Drift final : public Series {
+public:
+    Drift(FigureReader& reader, const TomlReader& table, SeriesKeys& keys)
+        : release_(reader.release()), evaluations_per_s_(keys.evaluations_per_s) {
+        if (reader.only_keys) return;
+        if (keys.methods.empty()) throw table.error("methods", "must name at least one");
+        for (const auto model : {Model::angles, Model::constraints})
+            for (const auto& name : methods_of(model, keys.methods)) add_run(name, model);
+        for (const auto& name : keys.projected) {
+            if (!find_method(name)->constraints)
+                throw table.error("projected", "needs methods that integrate constraints; \"{}\" does not", name);
+            add_run(name, Model::constraints, Stabilise::projection);
+        }
+        check_distinct(table, "methods", keys.methods);
+        check_distinct(table, "projected", keys.projected);
+        // from 1 s on, rounded to three digits
+        for (int i = 0; times_s_.empty() || times_s_.back() < keys.duration_s; ++i) {
+            const int decade = i / keys.points_per_decade;
+            const double part = std::pow(10, static_cast<double>(i % keys.points_per_decade) / keys.points_per_decade);
+            times_s_.push_back(std::fmin(std::round(100 * part) / 100 * std::pow(10, decade), keys.duration_s));
+        }
+        trials_ = runs_.size();
+        own_ = numbers_in<DriftCost>;
+        each_ = 2;  // errors of the energy, and of the rods
+        shown_ = each_ * trials_;
+        settings_ = resolved_release(release_) + settings_text(keys);
+        unit_ = "motions";
+        columns_ = {"method", "model", "setting", "time_s", "energy_error", "length_error_m"};
+        subtitle_ = fmt::format("{}; every method at some {:g} evaluations a second of motion", motion_words(release_),
+                                evaluations_per_s_);
+        // leaves room for names after the end
+        axes_.x = {.label = "time, s", .low = 1, .high = 9 * times_s_.back(), .logarithmic = true};
+        axes_.y = {.label = "maximum relative error of the energy to date", .high = 10, .logarithmic = true};
+        none_words_ =
+            fmt::format("no method has an error, or none reached {} s, the first point; use more evaluations_per_s",
+                        times_s_.front());
+    }
+
+    void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
+        for (std::size_t r = 0; r < runs_.size(); ++r) {
+            const auto energy = values(numbers, each_ * r), rods = values(numbers, each_ * r + 1);
+            const auto cost = row_of<DriftCost>(numbers[r]);
+            for (std::size_t i = 0; i < times_s_.size(); ++i)
+                if (!std::isnan(energy[i]))
+                    add_row(table, runs_[r].method, model_words(runs_[r]), cost.setting,
+                            std::fmin(times_s_[i], cost.failed_at_s), energy[i], rods[i]);
+        }
+    }
+
+    void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override {
+        for (const bool of_rods : {false, true}) {
+            auto plot = axes_;
+            if (of_rods) plot.y.label = "maximum error of a rod to date, m, with constraints";
+            for (const std::size_t run : longest_first(numbers))
+                if (shows(run, of_rods)) add_curves(numbers, run, of_rods, plot);
+            if (!plot.curves.empty()) figure.panels.push_back(std::move(plot));
+        }
+        figure.captions.push_back(caption(numbers));
+    }
+
+    Json findings(std::span<const TrialNumbers> numbers) const override {
+        Json all;
+        for (std::size_t r = 0; r < runs_.size(); ++r) {
+            const auto cost = row_of<DriftCost>(numbers[r]);
+            const bool fails = cost.failed_at_s > 0;
+            auto name = fmt::format("{}_{}", runs_[r].method, model_words(runs_[r]));
+            std::ranges::replace(name, ' ', '_');
+            all[name + "_setting"] = cost.setting;
+            all[name + "_evaluations_per_s"] = cost.evaluations_per_s;
+            all[name + "_cpu_s"] = cost.cpu_s;
+            for (const bool of_rods : {false, true}) {
+                if (of_rods && runs_[r].model == Model::angles) continue;
+                const auto found = growth(numbers, r, of_rods);
+                const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
+                all[quantity + "growth"] = std::string(style_of(found).words);
+                all[quantity + "exponent"] = found.exponent;
+                if (fails) all[quantity + "doubling_s"] = found.doubling_s;
+            }
+            if (fails) all[name + "_broken_at_s"] = cost.failed_at_s;
+        }
+        return all;
+    }
+
+private:
+    void add_run(const std::string& method, Model model, Stabilise stabilise = Stabilise::none) {
+        runs_.push_back({.chain = chain_of(release_), .model = model, .method = method, .stabilise = stabilise});
+    }
+
+    static bool is_projected(const MotionSpec& run) { return run.stabilise == Stabilise::projection; }
+    static std::string model_words(const MotionSpec& run) {
+        return is_projected(run) ? "projected constraints" : std::string(name_of(run.model));
+    }
+
+    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+        const auto run = drift(runs_[trial], evaluations_per_s_, times_s_, stop);
+        TrialNumbers numbers;
+        append<DriftCost>(numbers, run);
+        for (const auto* errors : {&run.energy_error, &run.length_error})
+            numbers.insert(numbers.end(), errors->begin(), errors->end());
+        return numbers;
+    }
+
+    /// The maximum error to date; NaN is kept.
+    std::vector<double> maximum(std::span<const TrialNumbers> numbers, std::size_t run, bool of_rods) const {
+        const auto errors = values(numbers, each_ * run + (of_rods ? 1 : 0));
+        std::vector<double> worst(errors.begin(), errors.end());
+        for (std::size_t i = 1; i < worst.size(); ++i)
+            if (!std::isnan(worst[i])) worst[i] = std::fmax(worst[i], worst[i - 1]);
+        return worst;
+    }
+    Growth growth(std::span<const TrialNumbers> numbers, std::size_t run, bool of_rods) const {
+        return growth_of(times_s_, maximum(numbers, run, of_rods), row_of<DriftCost>(numbers[run]).failed_at_s);
+    }
+
+    /// The energy is shown for the best model of a method; the rods for all models with rods.
+    bool shows(std::size_t run, bool of_rods) const {
+        if (of_rods || runs_[run].model == Model::angles) return of_rods == (runs_[run].model == Model::constraints);
+        return !is_projected(runs_[run]) && !find_method(runs_[run].method)->angles;
+    }
+    std::string curve_words(std::size_t run) const {
+        return runs_[run].method + (is_projected(runs_[run]) ? " projected" : "");
+    }
+
+    /// Curves that end early are drawn last, so that their labels are at their ends.
+    std::vector<std::size_t> longest_first(std::span<const TrialNumbers> numbers) const {
+        std::vector<std::size_t> order(runs_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t r) {
+            return std::fmin(times_s_.back(), row_of<DriftCost>(numbers[r]).failed_at_s);
+        });
+        return order;
+    }
+
+    /// Adds a line, with a mark if the run fails.
+    void add_curves(std::span<const TrialNumbers> numbers, std::size_t run, bool of_rods, Plot& plot) const {
+        const auto found = growth(numbers, run, of_rods);
+        const auto& style = style_of(found);
+        Curve curve{.label = curve_words(run), .hue = style.hue};
+        curve.label += style.law;
+        const auto errors = maximum(numbers, run, of_rods);
+        const double end_s = row_of<DriftCost>(numbers[run]).failed_at_s;
+        for (std::size_t i = 0; i < errors.size(); ++i)
+            if (errors[i] > 0) add_point(curve, std::fmin(times_s_[i], end_s), errors[i]);
+        if (curve.x.empty()) return;
+        if (found.kind == Growth::Kind::failed)
+            plot.curves.push_back(
+                {.x = {curve.x.back()}, .y = {curve.y.back()}, .mark = Mark::points, .hue = curve.hue});
+        plot.curves.push_back(std::move(curve));
+    }
+
+    /// The final energy errors, and how to read the curves.
+    std::string caption(std::span<const TrialNumbers> numbers) const override {
+        std::vector<std::string> bounded;
+        bool breaks = false;
+        for (std::size_t run = 0; run < runs_.size(); ++run) {
+            const auto kind = growth(numbers, run, false).kind;
+            breaks |= kind == Growth::Kind::failed;
+            if (shows(run, false) && kind == Growth::Kind::bounded) bounded.push_back(curve_words(run));
+        }
+        return fmt::format("{}; ∝ tells how the others grow{}.",
+                           bounded.empty()
+                               ? "No method keeps the error of the energy bounded"
+                               : fmt::format("The error of the energy stays bounded with {}", fmt::join(bounded, ", ")),
+                           breaks ? ", a dot marks a failed run" : "");
+    }
+
+    SideSpec release_;
+    double evaluations_per_s_;
+    std::vector<MotionSpec> runs_;
+};
+
 std::shared_ptr<const Experiment> read_series(FigureReader& reader) {
     SeriesKeys keys;
     const auto table = reader.settings(keys);
     if (keys.is_of_pairs()) return std::make_shared<PairSeries>(reader, table, keys);
-    return keys.quantity == SeriesQuantity::errors ? make_drift(reader, table, keys)
-                                                   : std::make_shared<Spectrum>(reader, table, keys);
+    if (keys.quantity == SeriesQuantity::errors) return std::make_shared<Drift>(reader, table, keys);
+    return std::make_shared<Spectrum>(reader, table, keys);
 }
 
 void list_tables(KeyVisitor& visit) {
@@ -363,52 +612,6 @@ void list_tables(KeyVisitor& visit) {
 }
 
 }  // namespace
-
-void SeriesKeys::fields(KeyVisitor& visit) {
-    visit({"quantity",
-           "the distance of pairs in state space, or ln(d/d₀); all Lyapunov exponents of one motion, as their "
-           "estimates settle; or the errors of its energy and rods by each method at the same cost"},
-          quantity);
-    const Condition of_pairs{is_of_pairs(), "is only for pairs"};
-    visit({.key = "film_column",
-           .help = "in place of `quantity`: a column of the table that a film of the pair has",
-           .only = of_pairs,
-           .is_drawn = true},
-          film_column);
-    const Condition of_exponents{quantity == SeriesQuantity::exponents, "is only for exponents"};
-    const Condition of_errors{quantity == SeriesQuantity::errors, "is only for errors"};
-    const Bounds of_motions = of_errors.applies ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;
-    constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true},
-        costs{.low = 10, .high = 1e6, .is_positive = true};
-    visit({"logarithmic", "the axis", "", {}, "", of_pairs}, logarithmic);
-    visit({"check_tolerance", "runs every pair again at this tolerance, to see how long both agree", "", positive, "",
-           of_pairs},
-          check_tolerance);
-    visit({"duration_s", "of the motion", "s", of_motions, "",
-           Condition{!is_of_pairs(), "is for one motion; pairs use that of [scene]"}},
-          duration_s);
-    visit(
-        {"samples", "of the exponents, equally spaced, the last at the end", "", from_to(2, 100'000), "", of_exponents},
-        samples);
-    visit({"tolerance", "relative error of a step of dop853, of the motion and of its tangents", "", tolerances, "",
-           of_exponents},
-          tolerance);
-    visit({"points_per_decade", "of the curves, from 1 s on", "", from_to(1, 100), "", of_errors}, points_per_decade);
-    visit({"evaluations_per_s", "evaluations of the right-hand side a second of motion, the same for all methods", "",
-           costs, "", of_errors},
-          evaluations_per_s);
-    visit({.key = "methods",
-           .help = "names of methods",
-           .absent = "all that step chains",
-           .only = of_errors,
-           .names = names_of_methods()},
-          methods);
-    visit({.key = "projected",
-           .help = "methods that are also shown with projection onto the constraints",
-           .only = of_errors,
-           .names = names_of_methods()},
-          projected);
-}
 
 const FigureKind series_kind{"series", read_series, list_tables};
 

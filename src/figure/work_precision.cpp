@@ -403,12 +403,9 @@ private:
     std::vector<Solver> solvers_of(TomlReader& table) const {
         check_distinct(table, "methods", methods_);
         std::vector<Solver> solvers;
-        constexpr std::array of_model{&MethodEntry::angles, &MethodEntry::constraints, &MethodEntry::mechanism};
         for (const auto& model_name : model_names_)
-            for (const auto& name : methods_)
-                if (const auto model = value_named<Model>(model_name);
-                    find_method(name)->*of_model[static_cast<std::size_t>(model)])
-                    solvers.push_back({model, name});
+            for (const auto model = value_named<Model>(model_name); const auto& name : methods_of(model, methods_))
+                solvers.push_back({model, name});
         if (solvers.empty())
             throw table.error(table.has("methods") ? "methods" : "models",
                               "must leave a method with a model that it supports");
