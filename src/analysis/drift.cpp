@@ -93,7 +93,7 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
     const auto lengths = spec.chain->cast<double>().length;
     const double shortest = *std::min_element(lengths.begin(), lengths.end());
     DriftRun made;
-    made.energy_error = made.length_error = std::vector<double>(times_s.size(), NAN);
+    made.errors.assign(2 * times_s.size(), NAN);
     made.setting = is_adaptive(spec) ? static_cast<double>(spec.tolerance)
                                      : quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value();
 
@@ -107,8 +107,9 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
                 made.failed_at_s = time_of(spec, sample);
                 break;
             }
-            made.energy_error[point] = std::fmax(made.energy_error[point], motion.energy_error);
-            made.length_error[point] = std::fmax(made.length_error[point], motion.length_error);
+            auto &energy = made.errors[point], &length = made.errors[times_s.size() + point];
+            energy = std::fmax(energy, motion.energy_error);
+            length = std::fmax(length, motion.length_error);
         }
     made.cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     made.evaluations_per_s = motion.evaluations() / time_of(spec, sample);

@@ -14,10 +14,10 @@ struct DriftCost {
     double failed_at_s = NAN;  // NaN if it did not fail
 };
 
-/// A long run, and its errors of energy and rod lengths.
+/// A long run, and its errors at all points: those of the energy, relative (analysis/watched_motion.hpp), then those of rod
+/// lengths, m. Each is the maximum since the previous point; NaN if there was no sample.
 struct DriftRun : DriftCost {
-    // The maximum since the previous point; NaN if there was no sample.
-    std::vector<double> energy_error, length_error;  // relative (analysis/watched_motion.hpp); m
+    std::vector<double> errors;
 };
 
 /// Integrates `motion` by its method, model and stabilisation, at the finest setting that `evaluations_per_s` allow.

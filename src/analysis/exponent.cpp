@@ -1,19 +1,114 @@
 #include "analysis/exponent.hpp"
 
 #include "analysis/stability.hpp"
-#include "analysis/tangent.hpp"
 #include "base/error.hpp"
+#include "integrate/dormand_prince.hpp"
+#include "numeric/dual.hpp"
 #include "physics/angle_chain.hpp"
+#include "physics/canonical.hpp"
 #include "physics/physical_chain.hpp"
+
+#include <Eigen/Householder>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
-#include <vector>
+#include <utility>
 
 namespace doppel {
 namespace {
+
+/// The number of parts of an interval, so that no tangent overflows in one part.
+long parts_of(double seconds, const NaturalUnits& units) {
+    return std::max(1L, std::lround(std::ceil(seconds / (4 * units.time))));
+}
+
+/// Throws Error (exit 2) if joints have Coulomb friction: where they stop and start, the motion has no tangents.
+void require_smooth(const PhysicalPendulum<double>& p) {
+    if (!p.friction.coulomb.empty())
+        throw bad_input(
+            "Lyapunov exponents need a smooth motion; with Coulomb friction (joint_coulomb_N_m) joints stick and slip");
+}
+
+/// A state y of a model in angles over Dual<double, D>, with D tangents, as plain numbers: y, then for each component
+/// of y D numbers, one for each tangent. If y contains the time, its tangents are 0.
+using TangentState = State<double, Eigen::Dynamic>;
+
+template <class DualState>
+void to_dual(const TangentState& all, DualState& y) {
+    constexpr Eigen::Index directions = DualState::Scalar::Tangent::RowsAtCompileTime;
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+        y[i].value = all[i];
+        y[i].tangent = all.segment<directions>(y.size() + i * directions);
+    }
+}
+
+template <class DualState>
+void from_dual(const DualState& y, TangentState& all) {
+    constexpr Eigen::Index directions = DualState::Scalar::Tangent::RowsAtCompileTime;
+    all.resize(y.size() * (1 + directions));
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+        all[i] = y[i].value;
+        all.segment<directions>(y.size() + i * directions) = y[i].tangent;
+    }
+}
+
+/// The state and its tangents as one system, so that error control applies to all of them:
+///     y′ = f(y) ,    δ′ = Df(y) δ
+/// both from one evaluation of f in dual numbers.
+/// Source  Benettin, Galgani, Giorgilli & Strelcyn 1980, Meccanica 15:9.
+struct TangentFlow {
+    using Scalar = double;
+    using State = TangentState;
+
+    std::function<void(const TangentState& all, TangentState& rates)> rate;
+    TangentState start;
+};
+
+template <class Model>
+TangentFlow tangent_flow(Model model, const typename Model::State& start) {
+    TangentFlow flow;
+    from_dual(start, flow.start);
+    flow.rate = [model = std::move(model), y = start, rate = start](const TangentState& all,
+                                                                    TangentState& rates) mutable {
+        to_dual(all, y);
+        model.rate(y, rate);
+        from_dual(rate, rates);
+    };
+    return flow;
+}
+
+/// Integrates state and tangents by dop853, with restarts. Error control is relative to the size of tangents, so they
+/// must be neither huge nor tiny. The first `angles` numbers must not be many turns.
+class TangentMotion {
+public:
+    TangentMotion(TangentFlow flow, std::size_t angles, double tolerance)
+        : flow_(std::move(flow)), angles_(static_cast<Eigen::Index>(angles)), tolerance_(tolerance) {}
+    TangentMotion(const TangentMotion&) = delete;  // the method contains the address of the flow
+    TangentMotion& operator=(const TangentMotion&) = delete;
+
+    void restart(TangentState y) {
+        for (Eigen::Index i = 0; i < angles_; ++i) y[i] = std::remainder(y[i], 2 * pi);
+        if (dop853_)
+            dop853_->reset(y);
+        else
+            dop853_.emplace(flow_, y, tolerance_);
+    }
+
+    const TangentState& advance(double seconds) {
+        dop853_->advance(seconds);
+        return dop853_->state();
+    }
+
+private:
+    TangentFlow flow_;
+    Eigen::Index angles_;
+    double tolerance_;
+    std::optional<Dop853::Stepper<TangentFlow>> dop853_;
+};
 
 /// The growth of one tangent, as its logarithm.
 class TangentGrowth {
@@ -165,12 +260,127 @@ Exponent exponent_of(const TangentFlow& flow, const PhysicalPendulum<double>& p,
                    spec);
 }
 
+/// Replaces the frame = QR by Q, by Householder reflections; returns |R_ii|. (Eigen's blocked QR takes seconds to
+/// compile.)
+/// Source  Golub & Van Loan, Matrix Computations, §5.2.
+Eigen::VectorXd orthonormalise(Eigen::MatrixXd& frame) {
+    const auto n = frame.rows();
+    Eigen::VectorXd factor(n), stretched(n), scratch(n);
+    const auto reflect = [&](Eigen::MatrixXd& matrix, Eigen::Index k, Eigen::Index columns) {
+        matrix.bottomRightCorner(n - k, columns)
+            .applyHouseholderOnTheLeft(frame.col(k).tail(n - k - 1), factor[k], scratch.data());
+    };
+    for (Eigen::Index k = 0; k < n; ++k) {
+        frame.col(k).tail(n - k).makeHouseholderInPlace(factor[k], stretched[k]);
+        reflect(frame, k, n - k - 1);
+    }
+    Eigen::MatrixXd q = Eigen::MatrixXd::Identity(n, n);
+    for (Eigen::Index k = n; k-- > 0;) reflect(q, k, n - k);
+    frame = q;
+    return stretched.cwiseAbs();
+}
+
+/// All tangents of a motion. At intervals their frame is made orthonormal, and its stretching is added up as
+/// logarithms. Frames are canonical, (δθ, δp), in which a flow without friction preserves volume: the logarithms always
+/// sum to 0.
+/// Source  Shimada & Nagashima 1979, Progress of Theoretical Physics 61:1605; Benettin et al. 1980, Meccanica 15:21.
+/// `directions` must be at least 2N; the remaining ones are 0.
+template <int directions>
+class Frame {
+public:
+    using Matrix = Eigen::MatrixXd;
+    using Column = Eigen::VectorXd;
+
+    Frame(const PhysicalPendulum<double>& p, double tolerance, const NaturalUnits& units)
+        : model_(p.template cast<Number>(), false),
+          canonical_(model_),
+          y_(Model::start(p.template cast<Number>(), false)),
+          z_(y_),
+          motion_(tangent_flow(model_, y_), p.chain.links(), tolerance),
+          links_(static_cast<Eigen::Index>(p.chain.links())) {
+        const double mass = std::accumulate(p.chain.mass.begin(), p.chain.mass.end(), 0.0);
+        unit_.setOnes(2 * links_);
+        unit_.tail(links_).setConstant(mass * units.length * units.length / units.time);
+        canonical_.momenta(y_, z_);
+        restart(Matrix::Identity(2 * links_, 2 * links_));
+    }
+
+    /// The growth of each ln|δ_i| over `seconds`.
+    Column advance(double seconds) {
+        constexpr double flat = 1e-7;  // the frame's smallest side has lost half of its digits
+        to_dual(motion_.advance(seconds), y_);
+        canonical_.momenta(y_, z_);
+        Matrix frame(2 * links_, 2 * links_);
+        for (Eigen::Index i = 0; i < 2 * links_; ++i)
+            frame.row(i) = z_[row(i)].tangent.head(2 * links_).transpose() / unit_[i];
+        const Column stretched = orthonormalise(frame);
+        if (stretched.minCoeff() < flat * stretched.maxCoeff()) {
+            motion_.restart(start_);
+            const Column first = advance(seconds / 2);
+            return first + advance(seconds / 2);
+        }
+        restart(frame);
+        return stretched.unaryExpr([](double factor) { return portable_log(factor); });
+    }
+
+private:
+    using Number = Dual<double, directions>;
+    using Model = PhysicalChain<Number>;
+
+    /// The rows of the state: angles and momenta, without the time.
+    Eigen::Index row(Eigen::Index i) const { return i < links_ ? i : z_.size() / 2 + i - links_; }
+
+    /// Restarts with the values of z and the columns of the frame as tangents.
+    void restart(const Matrix& frame) {
+        for (Eigen::Index i = 0; i < 2 * links_; ++i)
+            z_[row(i)].tangent.head(2 * links_) = unit_[i] * frame.row(i).transpose();
+        canonical_.velocities(z_, y_);
+        from_dual(y_, start_);
+        motion_.restart(start_);
+    }
+
+    Model model_;
+    Canonical<Model> canonical_;
+    typename Model::State y_, z_;
+    TangentMotion motion_;
+    TangentState start_;  // at the last restart
+    Eigen::Index links_;
+    Column unit_;  // units of angles and momenta: 1 and N m s
+};
+
+template <int directions>
+std::vector<SpectrumSample> estimates(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
+                                      const std::atomic<bool>& stop) {
+    const NaturalUnits units(p);
+    Frame<directions> frame(p, spec.tolerance, units);
+    const double interval = spec.duration_s / spec.samples;
+    const long parts = parts_of(interval, units);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(2 * p.chain.links()));
+    std::vector<SpectrumSample> samples;
+    for (int k = 1; k <= spec.samples; ++k) {
+        for (long i = 0; i < parts; ++i) {
+            throw_if_set(stop);
+            sum += frame.advance(interval / static_cast<double>(parts));
+        }
+        const double time = spec.duration_s * k / spec.samples;
+        samples.push_back({time, {}});
+        for (const double logarithm : sum) samples.back().exponents.push_back(logarithm / time);
+    }
+    return samples;
+}
+
 }  // namespace
 
-void require_smooth(const PhysicalPendulum<double>& p) {
-    if (!p.friction.coulomb.empty())
-        throw bad_input(
-            "Lyapunov exponents need a smooth motion; with Coulomb friction (joint_coulomb_N_m) joints stick and slip");
+NaturalUnits::NaturalUnits(const PhysicalPendulum<double>& p)
+    : length(p.chain.reach() / static_cast<double>(p.chain.links())) {
+    const auto& chain = p.chain;
+    const double nu = p.pivot.frequency, mass = std::accumulate(chain.mass.begin(), chain.mass.end(), 0.0);
+    const double unit = mass * chain.reach() / static_cast<double>(chain.links());
+    double drive = nu * nu * std::hypot(p.pivot.x, p.pivot.y);
+    for (const auto& motor : p.torques) drive += std::abs(motor.amplitude) / unit;
+    double fastest = std::sqrt((std::abs(chain.gravity) + drive) / length);
+    for (const double rate : chain.rate) fastest = std::max(fastest, std::abs(rate));
+    time = fastest > 0 ? 1 / fastest : 1;
 }
 
 Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
@@ -185,6 +395,23 @@ Exponent largest_exponent(const Pendulum<double>& p, const ExponentSpec& spec, c
 Exponent largest_exponent(const PhysicalPendulum<double>& p, const ExponentSpec& spec, const std::atomic<bool>& stop) {
     require_smooth(p);
     return exponent_of(flow_of(p), p, spec, stop);
+}
+
+std::vector<SpectrumSample> lyapunov_spectrum(const PhysicalPendulum<double>& p, const SpectrumSpec& spec,
+                                              const std::atomic<bool>& stop) {
+    constexpr std::size_t max_links = 4;
+    const std::size_t links = p.chain.links();
+    if (links > max_links) throw bad_input("a spectrum is for 1 to {} links; there are {}", max_links, links);
+    require_smooth(p);
+    return links <= 2 ? estimates<4>(p, spec, stop) : estimates<2 * max_links>(p, spec, stop);
+}
+
+double pair_mismatch(const SpectrumSample& sample) {
+    double worst = 0;
+    const auto& all = sample.exponents;
+    for (std::size_t i = 0; i < all.size() / 2; ++i)
+        worst = std::max(worst, std::abs(all[i] + all[all.size() - 1 - i]));
+    return worst;
 }
 
 }  // namespace doppel

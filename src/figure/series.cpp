@@ -1,5 +1,5 @@
 #include "analysis/drift.hpp"
-#include "analysis/spectrum.hpp"
+#include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "figure/kinds.hpp"
 #include "film/pair_table.hpp"
@@ -522,8 +522,7 @@ private:
         const auto run = drift(runs_[trial], evaluations_per_s_, times_s_, stop);
         TrialNumbers numbers;
         append<DriftCost>(numbers, run);
-        for (const auto* errors : {&run.energy_error, &run.length_error})
-            numbers.insert(numbers.end(), errors->begin(), errors->end());
+        numbers.insert(numbers.end(), run.errors.begin(), run.errors.end());
         return numbers;
     }
 

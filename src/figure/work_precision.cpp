@@ -1,6 +1,6 @@
 #include "figure/work_precision.hpp"
 
-#include "analysis/tangent.hpp"
+#include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
 #include "scene/captions.hpp"

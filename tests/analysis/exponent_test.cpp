@@ -1,7 +1,5 @@
 #include "analysis/exponent.hpp"
 
-#include "analysis/spectrum.hpp"
-#include "analysis/tangent.hpp"
 #include "errors.hpp"
 #include "physics/pendulums.hpp"
 

@@ -1,7 +1,6 @@
 #include "analysis/difference.hpp"
 #include "analysis/exponent.hpp"
 #include "analysis/pair_batch.hpp"
-#include "analysis/spectrum.hpp"
 #include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 

@@ -1,5 +1,3 @@
-#include "analysis/spectrum.hpp"
-
 #include "analysis/exponent.hpp"
 #include "integrate/taylor.hpp"
 #include "physics/oracles.hpp"
