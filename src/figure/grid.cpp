@@ -69,7 +69,8 @@ Grid::Grid(FigureReader& reader) : Grid() {
     std::size_t first = 0;
     for (auto& group : groups_) group.first = std::exchange(first, first + trials_of(group));
     make_subtitle();
-    name_columns();
+    visit_columns({0, 0, 0}, 0, TrialNumbers(cell_numbers_),
+                  [&](std::string_view name, const auto&) { columns_.emplace_back(name); });
     unit_ = "pairs";
 }
 
@@ -142,22 +143,19 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     }
     const auto number = groups_.size() - 1;
     if (!x_.is_of_method && !y_.is_of_method) use_common_method(group.pair, pair_at({number, 0, 0}), reader.stop);
-    const auto first = pair_at({number, 0, 0}), last = pair_at({number, y_.count - 1, group.x.count - 1});
-    InCommon all{.have_same_method = x_.keeps_method && y_.keeps_method};
+    const std::array ends{pair_at({number, 0, 0}), pair_at({number, y_.count - 1, group.x.count - 1})};
+    InCommon all{.have_same_method = x_.keeps_method && y_.keeps_method,
+                 .difference = difference_,
+                 .is_of_one_side = x_.is_of_one_side};
     const auto include = [&](const Cell& cell) {  // a friction may be 0 in some of them
         const auto pair = pair_at(cell);
         all.are_ideal = all.are_ideal && pair.a.physical.is_none() && pair.b.physical.is_none();
-        all.have_same_links = all.have_same_links && pair.a.links() == first.a.links();
+        all.have_same_links = all.have_same_links && pair.a.links() == ends[0].a.links();
     };
     for (std::size_t i = 0; i < (group.x.angle ? 1 : group.x.count); ++i) include({number, 0, i});
     for (std::size_t i = 0; i < (y_.angle ? 1 : y_.count); ++i) include({number, i, 0});
-    const auto measure = [&](std::string_view key, Quantity quantity) {
-        group.measurements.emplace_back(table, key, quantity, first, all, options_);
-        require_difference(table, quantity, x_.is_of_one_side, difference_, {make_scene(first), make_scene(last)});
-        if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, last.a);
-    };
-    measure("quantity", quantity_);
-    if (right_) measure("right", value_named<Quantity>(*right_));
+    group.measurements.emplace_back(table, "quantity", quantity_, ends, all, options_);
+    if (right_) group.measurements.emplace_back(table, "right", value_named<Quantity>(*right_), ends, all, options_);
     const auto spec = group.measurements.front().flips_in_lanes();
     if (options_.flip_tolerance && !spec)
         throw table.error("flip_tolerance", "is for flips of two ideal links; other flips use the integrator");
@@ -250,38 +248,33 @@ bool Grid::fits(std::size_t trial, std::span<const double> numbers) const {
     return true;
 }
 
-void Grid::name_columns() {
-    std::vector<std::string> last;
-    for (const auto* axis : {&color_, &panel_, &x_, &y_})
-        if (axis != &x_ || words().drawn == 0)
-            for (const auto& name : axis->columns()) columns_.push_back(name);
-    if (!words().counted.empty()) columns_.push_back(words().counted);
+/// Calls add(name, value) for each column of a row of a cell with these numbers.
+template <class Add>
+void Grid::visit_columns(const Cell& cell, std::size_t row, std::span<const double> numbers, const Add& add) const {
+    color_.visit(cell.group % color_.count, add);
+    panel_.visit(cell.group / color_.count, add);
+    if (words().drawn == 0) groups_[cell.group].x.visit(cell.column, add);
+    y_.visit(cell.row, add);
+    if (!words().counted.empty()) add(words().counted, words().first_row + static_cast<long>(row));
+    std::vector<std::pair<std::string_view, double>> last;
     for (const auto& measurement : measurements()) {
-        const auto& of = measurement.words();
-        columns_.insert(columns_.end(), of.columns.begin(), of.columns.end());
-        if (!of.last_column.empty()) last.push_back(of.last_column);
+        const auto& [columns, last_column] = std::tie(measurement.words().columns, measurement.words().last_column);
+        for (std::size_t i = 0; i < columns.size(); ++i) add(columns[i], numbers[row * columns.size() + i]);
+        if (!last_column.empty()) last.emplace_back(last_column, numbers[columns.size()]);
+        numbers = numbers.subspan(measurement.numbers());
     }
-    columns_.insert(columns_.end(), last.begin(), last.end());
+    for (const auto& [name, number] : last) add(name, number);
 }
 
 void Grid::write_rows(std::span<const TrialNumbers> numbers, Csv& table) const {
     for_each_cell([&](const Cell& cell) {
         for (std::size_t row = 0; row < words().rows; ++row) {
-            color_.write(cell.group % color_.count, table);
-            panel_.write(cell.group / color_.count, table);
-            if (words().drawn == 0) groups_[cell.group].x.write(cell.column, table);
-            y_.write(cell.row, table);
-            if (!words().counted.empty()) table.add(words().first_row + static_cast<long>(row));
-            std::vector<double> last;
-            auto rest = at(numbers, cell);
-            for (const auto& measurement : measurements()) {
-                const auto in_row = measurement.words().columns.size();
-                for (const double number : rest.subspan(row * in_row, in_row))
-                    table.add_or_empty(std::isfinite(number) ? number : NAN);
-                if (!measurement.words().last_column.empty()) last.push_back(rest[in_row]);
-                rest = rest.subspan(measurement.numbers());
-            }
-            for (const double number : last) table.add(number);
+            visit_columns(cell, row, at(numbers, cell), [&](std::string_view, const auto& value) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+                    table.add_or_empty(std::isfinite(value) ? value : NAN);
+                else
+                    table.add(value);
+            });
             table.end_row();
         }
     });

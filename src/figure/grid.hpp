@@ -55,7 +55,8 @@ private:
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();
     void make_subtitle();
-    void name_columns();
+    template <class Add>
+    void visit_columns(const Cell& cell, std::size_t row, std::span<const double> numbers, const Add& add) const;
 
     bool is_map() const { return y_.exists(); }
     bool is_of_releases() const;

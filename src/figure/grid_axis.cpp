@@ -300,22 +300,6 @@ std::string GridAxis::words(std::size_t i) const {
                        unit);
 }
 
-std::vector<std::string> GridAxis::columns() const {
-    if (!exists()) return {};
-    if (is_setting()) return {"step_s", "tolerance"};
-    if (key == "system.integrator") return {"method"};
-    return {key == "system.precision" ? "precision" : key};
-}
-
-void GridAxis::write(std::size_t i, Csv& table) const {
-    if (is_setting() && is_adaptive_) table.add_or_empty(NAN);
-    if (!levels.empty())
-        table.add(std::string_view(words(i)));
-    else if (exists())
-        table.add(static_cast<double>(value(i)));
-    if (is_setting() && !is_adaptive_) table.add_or_empty(NAN);
-}
-
 void GridAxis::put(Preset& pair, std::size_t i, const Quad& difference) const {
     if (number_) number_->set(pair, value(i), difference);
     for (auto* side : {&pair.a, &pair.b}) {

@@ -62,10 +62,22 @@ struct GridAxis {
     void settle(const Preset& pair);
 
     const Quad& value(std::size_t i) const { return numbers_[i]; }
-    std::vector<std::string> columns() const;
+    /// Calls add(name, value) for each column of value i; NaN for an empty cell.
+    template <class Add>
+    void visit(std::size_t i, const Add& add) const {
+        if (is_setting()) {
+            const auto number = static_cast<double>(value(i));
+            add("step_s", is_adaptive_ ? NAN : number);
+            add("tolerance", is_adaptive_ ? number : NAN);
+        } else if (!levels.empty()) {
+            const bool is_method = key == "system.integrator", is_precision = key == "system.precision";
+            add(is_method ? "method" : is_precision ? "precision" : std::string_view(key), std::string_view(words(i)));
+        } else if (exists()) {
+            add(key, static_cast<double>(value(i)));
+        }
+    }
     /// "θ₁ = 30°", "rk4"
     std::string words(std::size_t i) const;
-    void write(std::size_t i, Csv& table) const;
     /// Sets value i; side b gets `difference` more. Nothing happens for textual values.
     void put(Preset& pair, std::size_t i, const Quad& difference = 0) const;
     /// The same for both sides, whichever the key belongs to.

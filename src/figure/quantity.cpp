@@ -252,8 +252,8 @@ TrialNumbers stroboscope(const Scene& scene, const StroboscopeSpec& spec, const 
     return numbers;
 }
 
-}  // namespace
-
+/// Throws Error (exit 2) at the table's `key` or `link` without exactly one drive frequency of at most 18 digits, or such
+/// a link.
 void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side) {
     if (static_cast<std::size_t>(spec.link) > side.links())
         throw table.error("link", "must be 1 to {}, the number of links; it is {}", side.links(), spec.link);
@@ -264,23 +264,15 @@ void require_drive(const TomlReader& table, std::string_view key, const Strobosc
             "frequency of at most 18 digits");
 }
 
-Json period_findings(std::span<const TrialNumbers> motions) {
-    constexpr std::size_t many = 17;
-    std::array<double, many + 1> with{};  // numbers of motions with so many distinct rates
-    for (const auto& motion : motions) with[std::min(distinct_rates(motion), many)] += 1;
-    return {{"values_of_one_period", with[1]},
-            {"values_of_two_periods", with[2]},
-            {"values_of_four_periods", with[4]},
-            {"values_of_more_than_16", with[many]}};
-}
-
-void require_difference(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
+/// As Measurement's constructor, for the scenes of the first and last pair.
+void require_difference(const TomlReader& table, Quantity quantity, const InCommon& all,
                         const std::array<Scene, 2>& ends) {
     if (!is_of_distance(quantity)) return;
     const auto name = name_of(quantity);
+    const auto& difference = all.difference;
     const auto same = std::ranges::count_if(ends, are_one);
     const bool are_all = same == std::ssize(ends);
-    if (are_all && is_of_one_side)
+    if (are_all && all.is_of_one_side)
         throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
                           name);
     if (are_all || (difference != 0 && same > 0))
@@ -305,18 +297,30 @@ void require_difference(const TomlReader& table, Quantity quantity, bool is_of_o
             "0; \"distance_at_end\" and \"parting_time\" need none");
 }
 
+}  // namespace
+
+Json period_findings(std::span<const TrialNumbers> motions) {
+    constexpr std::size_t many = 17;
+    std::array<double, many + 1> with{};  // numbers of motions with so many distinct rates
+    for (const auto& motion : motions) with[std::min(distinct_rates(motion), many)] += 1;
+    return {{"values_of_one_period", with[1]},
+            {"values_of_two_periods", with[2]},
+            {"values_of_four_periods", with[4]},
+            {"values_of_more_than_16", with[many]}};
+}
+
 std::string seconds_text(const Preset& pair) {
     return fmt::format("{:.10g}", pair.duration_s.value());
 }
 
-Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
-                         const InCommon& all, const QuantityOptions& options)
+Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity quantity,
+                         const std::array<Preset, 2>& ends, const InCommon& all, const QuantityOptions& options)
     : quantity_(quantity),
-      words_(words_of(quantity, seconds_text(pair), options.stroboscope)),
+      words_(words_of(quantity, seconds_text(ends[0]), options.stroboscope)),
       options_(options),
-      flip_{pair.duration_s.value(), options.flip_tolerance.value_or(flip_tolerance(pair.duration_s.value()))} {
+      flip_{ends[0].duration_s.value(), options.flip_tolerance.value_or(flip_tolerance(ends[0].duration_s.value()))} {
     if (words_.short_label.empty()) words_.short_label = words_.label.substr(0, words_.label.rfind(", "));
-    const auto& a = pair.a;
+    const auto& a = ends[0].a;
     const bool is_ideal = quantity == Quantity::step_cost || quantity == Quantity::stability;
     if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !all.are_ideal)))
         throw table.error(key, "needs a plain chain, without further forces and constraints");
@@ -328,10 +332,10 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
         throw table.error(key, "\"{}\" needs a chain, whose rods have angles", name_of(quantity));
     if (quantity == Quantity::period && a.links() != 1)
         throw table.error(key, "\"period\" needs one link; there are {}", a.links());
-    if (is_of_distance(quantity) && differ_in_kind(a, pair.b))
+    if (is_of_distance(quantity) && differ_in_kind(a, ends[0].b))
         throw table.error(key, "\"{}\" needs sides with the same number of masses", name_of(quantity));
     if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, a);
-    const auto scene = make_scene(pair);
+    const auto scene = make_scene(ends[0]);
     if (quantity == Quantity::stability &&
         !(released_energy(chain_of(a).cast<double>()) > 1e-10 * chain_of(a).cast<double>().potential_range()))
         throw table.error(key, "\"stability\" needs a release with more energy than hanging at rest");
@@ -343,6 +347,8 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     if (has_lanes && all.have_same_method && (is_of_distance(quantity) || quantity == Quantity::energy_error))
         run_ = lanes_of(scene);
     if (run_ && !is_of_distance(quantity)) run_->b = run_->a;
+    require_difference(table, quantity, all, {scene, make_scene(ends[1])});
+    if (quantity == Quantity::stroboscopic) require_drive(table, key, options_.stroboscope, ends[1].a);
 }
 
 std::size_t Measurement::together(bool shared) const {

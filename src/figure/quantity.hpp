@@ -23,10 +23,6 @@ struct StroboscopeSpec {
     int transient_periods = 200, periods = 100;
 };
 
-/// Throws Error (exit 2) at the table's `key` or `link` without exactly one drive frequency of at most 18 digits, or
-/// such a link.
-void require_drive(const TomlReader& table, std::string_view key, const StroboscopeSpec& spec, const SideSpec& side);
-
 /// How many motions repeat after one, two or four periods, or have more than 16 distinct rates.
 Json period_findings(std::span<const TrialNumbers> motions);
 
@@ -79,12 +75,6 @@ struct QuantityWords {
 
 /// The duration of the pair in words: "20", "0.5".
 std::string seconds_text(const Preset& pair);
-/// Throws Error (exit 2) at the table's `difference` or `quantity` if the quantity compares two pendulums that are the
-/// same: in all pairs, or because `difference` is lost in rounding in the first or last pair, or because `divergence`
-/// starts at distance 0.
-void require_difference(const TomlReader& table, Quantity quantity, bool is_of_one_side, const Quad& difference,
-                        const std::array<Scene, 2>& ends);
-
 /// Options for quantities, set by keys of [grid].
 struct QuantityOptions {
     double exponent_duration_s = ExponentSpec{}.duration_s;
@@ -95,6 +85,8 @@ struct QuantityOptions {
 /// What all pairs to measure have in common.
 struct InCommon {
     bool are_ideal = true, have_same_links = true, have_same_method = true;
+    Quad difference = 0;          // that the figure adds to side b of every pair
+    bool is_of_one_side = false;  // it cannot: the key of x belongs to one side
 };
 
 /// Returns pair i; it stays valid until the next call.
@@ -107,8 +99,10 @@ using PairAt = std::function<const Preset&(std::size_t i)>;
 /// infinite if there is no flip.
 class Measurement {
 public:
-    /// For pairs like `pair`. Throws Error (exit 2) at the table's `key` if the quantity is not defined for them.
-    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const Preset& pair,
+    /// For pairs like the first and the last one. Throws Error (exit 2) at the table's `key` if the quantity is not defined
+    /// for them; at `difference` or `quantity` if it compares two pendulums that are the same: in all pairs, or because
+    /// the difference is lost in rounding, or because `divergence` starts at distance 0.
+    Measurement(const TomlReader& table, std::string_view key, Quantity quantity, const std::array<Preset, 2>& ends,
                 const InCommon& all, const QuantityOptions& options);
 
     /// How flips are found in lanes, if they are.

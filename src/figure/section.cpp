@@ -20,12 +20,8 @@ struct OrbitRow {
 OrbitRow orbit_of(const TrialNumbers& orbit) {
     return row_of<OrbitRow>(orbit);
 }
-/// A crossing of θ1 = 0.
-struct CrossingRow {
-    double theta2, p2, time_s;
-};
-std::vector<CrossingRow> crossings_of(const TrialNumbers& orbit) {
-    return rows_of<CrossingRow>(std::span(orbit).subspan(numbers_in<OrbitRow>));
+std::vector<SectionPoint> crossings_of(const TrialNumbers& orbit) {
+    return rows_of<SectionPoint>(std::span(orbit).subspan(numbers_in<OrbitRow>));
 }
 
 /// Poincaré sections of a double pendulum at θ1 = 0, one panel for each energy. Orbits whose largest exponent cannot be
@@ -73,7 +69,7 @@ public:
         if (numbers.size() < numbers_in<OrbitRow> || !all_finite(numbers)) return false;
         const double crossings = row_of<OrbitRow>(numbers).crossings;
         return is_count(crossings) && crossings <= spec_.crossings &&
-               numbers.size() == numbers_in<OrbitRow> + numbers_in<CrossingRow> * static_cast<std::size_t>(crossings);
+               numbers.size() == numbers_in<OrbitRow> + numbers_in<SectionPoint> * static_cast<std::size_t>(crossings);
     }
 
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override {
@@ -122,7 +118,7 @@ private:
         const auto points = poincare_section(release, spec_, stop);
         const auto exponent = largest_exponent(release, {.duration_s = exponent_duration_s_}, stop);
         TrialNumbers numbers{exponent.value, exponent.uncertainty, static_cast<double>(points.size())};
-        for (const auto& point : points) append(numbers, CrossingRow{point.theta2, point.p2, point.time_s});
+        for (const auto& point : points) append(numbers, point);
         return numbers;
     }
 
