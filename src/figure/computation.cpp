@@ -1,14 +1,69 @@
 #include "figure/computation.hpp"
 
+#include "base/embedded.hpp"
+#include "base/machine.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
+#include "output/written.hpp"
 #include "scene/captions.hpp"
+#include "scene/resolved.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace doppel {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr BlockKind trials_file{R"({"file":"doppel trials","format":3,)",
+                                "is no file of trials of this version, or its first line is damaged; remove it, or "
+                                "give another folder with --out",
+                                "is damaged or incomplete"};
+constexpr std::size_t max_trials = 100'000'000, name_digits = 12;
+
+/// What all parts of a figure agree on.
+Json identity(const PartHeader& header) {
+    return {{"figure", header.figure},
+            {"version", header.version},
+            {"revision", header.revision},
+            {"preset_sha256", header.preset},
+            {"trials", header.trials}};
+}
+
+Json json_of(const PartHeader& header) {
+    Json json{{"file", "doppel trials"}, {"format", 3}};
+    json.update(identity(header));
+    json.update({{"shard", header.shard}, {"of", header.of}});
+    return json;
+}
+
+/// Throws Error (exit 4) if it is invalid.
+PartHeader read_header(const BlockFile& file) {
+    try {
+        const auto json = Json::parse(file.header());
+        const auto shard = shard_of(json);
+        const auto& trials = json.at("trials");
+        if (!shard || !trials.is_number_unsigned() || trials < 1 || trials > max_trials) throw file.other();
+        return {json.at("figure"), json.at("version"), json.at("revision"), json.at("preset_sha256"), trials,
+                shard->number,     shard->of};
+    } catch (const nlohmann::json::exception&) {
+        throw file.other();
+    }
+}
+
+/// "fig8." or "fig8.3-of-8."
+std::string stem(const PartHeader& header) {
+    return header.of == 1 ? header.figure + "." : fmt::format("{}.{}-of-{}.", header.figure, header.shard, header.of);
+}
+
+/// The path "PATH.part". A file there is removed: it belongs to a run that was killed.
+fs::path new_part_path(fs::path path) {
+    path += ".part";
+    fs::remove(path);
+    return path;
+}
 
 constexpr double record_after_s = 2, flush_every_s = 0.5;
 constexpr std::size_t many_groups = 200, groups_ahead = 16;
@@ -23,9 +78,93 @@ double cpu_now() {
 
 }  // namespace
 
-Computation::Computation(const FigurePreset& figure, const PartHeader& header,
-                         std::optional<std::filesystem::path> folder, int threads, FigureReport report,
-                         std::size_t number)
+PartHeader header_of(const FigurePreset& figure, const Shard& shard) {
+    return {figure.name,
+            std::string(version()),
+            std::string(revision()),
+            sha256_of_text(figure.resolved_work()),
+            figure.experiment->trials(),
+            shard.number,
+            shard.of};
+}
+
+std::string shard_name(const PartHeader& header) {
+    return stem(header) + "shard";
+}
+
+std::string resume_name(const PartHeader& header) {
+    return stem(header) + sha256_of_text(json_of(header).dump()).substr(0, name_digits) + ".resume";
+}
+
+std::vector<fs::path> other_resumes(const fs::path& folder, const PartHeader& header) {
+    const auto own = resume_name(header);
+    std::vector<fs::path> found;
+    for (const auto& name : names_in(folder))
+        if (name != own && name.size() == own.size() && name.starts_with(stem(header)) && name.ends_with(".resume"))
+            found.push_back(folder / name);
+    return found;
+}
+
+void PartFile::take(const Experiment& experiment, KnownTrials& into) {
+    for (auto& [number, numbers] : trials) {
+        if (number < header.first() || number >= header.last() || !experiment.fits(number, numbers)) {
+            is_damaged = true;
+            break;
+        }
+        into[number] = std::move(numbers);
+    }
+    trials.clear();
+}
+
+PartFile read_part_file(const fs::path& path) {
+    if (type_of(path) == fs::file_type::symlink)
+        throw io_failed("{} is a symbolic link; remove it, or give another folder with --out", path.string());
+    BlockFile file(path, trials_file);
+    PartFile part{.header = read_header(file)};
+    try {
+        for (PartFile::Trial trial{}; !file.is_read() && file.next(); part.trials.push_back(trial))
+            file(trial.number, trial.numbers);
+    } catch (const DamagedFile&) {
+        part.is_damaged = true;
+    }
+    return part;
+}
+
+PartWriter::PartWriter(const fs::path& path, const PartHeader& header, const KnownTrials& known)
+    : file_(new_part_path(path), json_of(header).dump()) {
+    for (std::size_t trial = 0; trial < known.size(); ++trial)
+        if (!known[trial].empty()) add(trial, known[trial]);
+    flush();
+    rename_file(path.string() + ".part", path);
+}
+
+void PartWriter::add(std::size_t trial, TrialNumbers numbers) {
+    file_(trial, numbers);
+    file_.end_block();
+}
+
+KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, const std::atomic<bool>& stop) {
+    const auto wanted = header_of(figure);
+    KnownTrials all(wanted.trials);
+    all_parts(folder, figure.name, [&](const fs::path& path) {
+        throw_if_set(stop);
+        auto part = read_part_file(path);
+        const auto& header = part.header;
+        const Shard shard{header.shard, header.of};
+        check_identity(path, identity(header), identity(wanted), shard, "compute");
+        part.take(*figure.experiment, all);
+        for (std::size_t trial = header.first(); trial < header.last(); ++trial)
+            part.is_damaged = part.is_damaged || all[trial].empty();
+        if (part.is_damaged)
+            throw io_failed("{} is damaged or incomplete; compute it again with --shard {}/{}", path.string(),
+                            shard.number, shard.of);
+        return shard;
+    });
+    return all;
+}
+
+Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::optional<fs::path> folder,
+                         int threads, FigureReport report, std::size_t number)
     : figure_(figure),
       header_(header),
       folder_(std::move(folder)),
@@ -33,8 +172,7 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header,
       report_(std::move(report)),
       number_(number),
       known_(header.trials) {
-    for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
-        total_units_ += figure_.experiment->units(trial);
+    total_units_ = units_of({header_.first(), header_.last()});
     if (folder_) {
         record_ = *folder_ / resume_name(header_);
         if (header_.of == 1 || !take(shard(), false)) take(record_, true);
@@ -43,8 +181,8 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header,
 }
 
 /// Reads the trials of the file, if it exists and belongs to this figure.
-bool Computation::take(const std::filesystem::path& path, bool must_be) {
-    if (type_of(path) == std::filesystem::file_type::not_found) return false;
+bool Computation::take(const fs::path& path, bool must_be) {
+    if (type_of(path) == fs::file_type::not_found) return false;
     auto part = read_part_file(path);
     if (part.header != header_ && !must_be) return false;
     if (part.header != header_)
@@ -61,16 +199,16 @@ bool Computation::take(const std::filesystem::path& path, bool must_be) {
     return true;
 }
 
-std::filesystem::path Computation::publish_shard() {
-    if (groups_.empty() && type_of(record_) == std::filesystem::file_type::not_found && is_whole_) return shard();
+fs::path Computation::publish_shard() {
+    if (groups_.empty() && type_of(record_) == fs::file_type::not_found && is_whole_) return shard();
     if (!writer_) writer_.emplace(record_, header_, known_);
     writer_->finish();
     rename_file(record_, shard());
     return shard();
 }
 
-/// Groups of unknown trials that are best computed together. If there are many, some evenly spaced ones come first, so
-/// that the time of the rest can be estimated.
+/// Groups of unknown trials that are best computed together. Those that others require come first. The others are in an
+/// order in which any first ones are spread evenly, so that the time of the rest can be estimated.
 void Computation::find_groups() {
     const std::size_t maximum = figure_.experiment->together();
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
@@ -80,12 +218,17 @@ void Computation::find_groups() {
         else
             groups_.emplace_back(trial, trial + 1);
     }
-    if (groups_.size() < many_groups) return;
-    for (std::size_t i = 0; i < groups_ahead; ++i) {
-        const auto from =
-            groups_.begin() + static_cast<std::ptrdiff_t>((2 * i + 1) * groups_.size() / (2 * groups_ahead + 1));
-        std::rotate(groups_.begin() + static_cast<std::ptrdiff_t>(i), from, from + 1);
-    }
+    std::ranges::stable_sort(groups_, {}, [&](const Group& group) {
+        constexpr double golden = 0.6180339887498949;
+        const double place = golden * static_cast<double>(group.first);
+        return units_of(group) == 0 ? -1 : place - std::floor(place);
+    });
+}
+
+double Computation::units_of(const Group& group) const {
+    double units = 0;
+    for (std::size_t trial = group.first; trial < group.second; ++trial) units += figure_.experiment->units(trial);
+    return units;
 }
 
 bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
@@ -119,11 +262,8 @@ Error Computation::with_record(const Error& error) {
 
 bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
     const std::lock_guard lock(mutex_);
-    double units = 0;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        known_[group.first + i] = std::move(numbers[i]);
-        units += figure_.experiment->units(group.first + i);
-    }
+    std::ranges::move(numbers, known_.begin() + static_cast<std::ptrdiff_t>(group.first));
+    const double units = units_of(group);
     cpu_s_ += cpu_s;
     ++groups_done_;
     const double time = now();
@@ -154,69 +294,47 @@ void Computation::report_estimate(double time) {
 }
 
 Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
-    constexpr double allowed_s = 1, golden = 0.6180339887498949;
-    const auto& experiment = *figure.experiment;
-    const std::size_t trials = experiment.trials(), together = experiment.together();
-    double total = 0;
-    std::size_t counted = 0;
-    const double before = cpu_now();
-    for (std::size_t trial = 0; trial < trials; ++trial) {
-        const double units = experiment.units(trial);
-        // trials of 0 units are prerequisites: computed first and not timed
-        TrialNumbers numbers;
-        if (units == 0) experiment.compute(trial, {&numbers, 1}, stop);
-        if (units > 0) ++counted;
-        total += units;
-    }
-    const double needed_s = cpu_now() - before;
-    // evenly spaced groups, until the time is over
+    constexpr double allowed_s = 1;
+    Computation computation(figure, header_of(figure), std::nullopt, threads, {});
+    std::size_t group = 0;
+    for (; group < computation.groups() && computation.units(group) == 0; ++group) computation.compute(group, stop);
+    const double needed_s = computation.cpu_s();
+    const auto parallel = static_cast<double>(computation.groups() - group);
     const TimeLimit limit(allowed_s, stop);
-    const std::size_t all_groups = (trials + together - 1) / together;
-    double done = 0, seconds = 0, place = 0.5, from = 0;
-    std::size_t first = 0, trials_done = 0, numbers_done = 0;
     Needs estimate;
+    double from = 0, cut_s = 0;
     try {
-        for (std::size_t calls = 0; calls < all_groups && !limit.reached(); ++calls) {
-            first = static_cast<std::size_t>(place * static_cast<double>(all_groups)) * together;
-            place += golden - std::floor(place + golden);
-            if (experiment.units(first) == 0) continue;
-            std::vector<TrialNumbers> numbers(std::min(together, trials - first));
+        for (; group < computation.groups() && !limit.reached(); ++group) {
             from = cpu_now();
-            experiment.compute(first, numbers, limit.reached());
-            seconds += cpu_now() - from;
-            for (std::size_t k = 0; k < numbers.size(); ++k) {
-                done += experiment.units(first + k);
-                numbers_done += numbers[k].size();
-            }
-            trials_done += numbers.size();
+            computation.compute(group, limit.reached());
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
-        // a group that takes longer than all others before counts as done
-        const double cut_s = cpu_now() - from;
-        estimate.at_least = cut_s > seconds;
-        if (estimate.at_least) {
-            seconds += cut_s;
-            for (std::size_t k = first; k < std::min(first + together, trials); ++k) done += experiment.units(k);
-        }
+        cut_s = cpu_now() - from;
     }
-    const auto groups = static_cast<double>((counted + together - 1) / together);
-    estimate.cpu_s = needed_s + (done > 0 ? seconds * total / done : 0);
-    estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), groups);
+    double seconds = computation.cpu_s() - needed_s, done = computation.computed_units();
+    // a group that takes longer than all others before counts as done
+    estimate.at_least = cut_s > seconds;
+    if (estimate.at_least) seconds += cut_s, done += computation.units(group);
+    estimate.cpu_s = needed_s + (done > 0 ? seconds * computation.total_units() / done : 0);
+    estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), parallel);
+    double trials_done = 0, numbers_done = 0;
+    for (const auto& numbers : computation.take_all()) {
+        trials_done += numbers.empty() ? 0 : 1;
+        numbers_done += static_cast<double>(numbers.size());
+    }
     // of a row of the table, of a number in it, and of a pixel drawn and as PNG; measured
     constexpr double row_bytes = 6, text_bytes = 18, drawn_bytes = 8, png_bytes = 0.15;
     const auto size = layout_of(figure.chart).picture;
-    const auto map = experiment.map();
+    const auto map = figure.experiment->map();
     const double pixels = 1.0 * size.width * size.height;
-    const double rows =
-        map ? 1.0 * map->columns * map->rows * static_cast<double>(map->panels) : static_cast<double>(trials);
-    const auto counted_numbers =
-        static_cast<double>(numbers_done) / static_cast<double>(std::max<std::size_t>(trials_done, 1));
-    const double numbers = rows * (map ? static_cast<double>(map->numbers) : counted_numbers);
+    const double rows = map ? 1.0 * map->columns * map->rows * static_cast<double>(map->panels)
+                            : static_cast<double>(figure.experiment->trials());
+    const double numbers = rows * (map ? static_cast<double>(map->numbers) : numbers_done / std::max(trials_done, 1.0));
     estimate.memory_bytes =
         peak_memory() + sizeof(TrialNumbers) * rows + sizeof(double) * numbers + drawn_bytes * pixels;
     estimate.disk_bytes = row_bytes * rows + text_bytes * numbers + png_bytes * pixels;
-    estimate.most_shards = static_cast<long>(std::min<std::size_t>(all_groups, max_parts));
+    estimate.most_shards = static_cast<long>(std::min<std::size_t>(computation.groups(), max_parts));
     return estimate;
 }
 

@@ -8,7 +8,6 @@
 #include "integrate/widths.hpp"
 #include "output/png.hpp"
 #include "output/transaction.hpp"
-#include "output/workers.hpp"
 #include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 
@@ -16,8 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
-#include <thread>
 
 namespace doppel {
 namespace {
@@ -159,73 +158,6 @@ RunResult write_figure(const FigurePreset& figure, const KnownTrials& trials, Fi
     return result;
 }
 
-/// The computations of all figures, and the threads that do them.
-class Scheduler {
-public:
-    /// `files` of each figure: the place of the record of its trials.
-    Scheduler(const std::vector<FigurePreset>& figures, const FigureOptions& options, int jobs,
-              const std::vector<std::unique_ptr<Transaction>>& files, const std::atomic<bool>& stop,
-              const FigureReport& report)
-        : stop_(stop) {
-        for (std::size_t k = 0; k < figures.size(); ++k) {
-            const auto& figure = figures[k];
-            const auto header = header_of(figure, options.shard.value_or(Shard{}));
-            const auto& folder = files[k]->folder();
-            require_room(figure, header, options.tiles, folder);
-            if (const auto others = other_resumes(folder, header);
-                !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
-                report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
-                                           others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-            computations_.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report, k));
-            auto& groups = figure.experiment->measures_time() ? timed_groups_ : groups_;
-            for (std::size_t group = 0; group < computations_[k]->groups(); ++group) groups.emplace_back(k, group);
-            if (computations_[k]->groups() == 0) finished_.push(k);
-        }
-        thread_ = start_thread([this, jobs] { run(jobs); });
-    }
-    ~Scheduler() {
-        closing_ = true;
-        finished_.abandon();
-    }
-
-    /// Waits for the next figure whose trials are complete; returns nothing after the last. Rethrows the error that
-    /// stopped the threads.
-    std::optional<std::size_t> next() {
-        auto figure = finished_.pop();
-        if (!figure && error_) std::rethrow_exception(error_);
-        return figure;
-    }
-
-    Computation& computation(std::size_t figure) { return *computations_[figure]; }
-
-private:
-    using Group = std::pair<std::size_t, std::size_t>;  // number of the figure, and of its group
-
-    void run(int jobs) {
-        try {
-            parallel_for(groups_.size(), jobs, [&](std::size_t i) { run_group(groups_[i]); });
-            for (const auto& group : timed_groups_) run_group(group);
-        } catch (...) {
-            error_ = std::current_exception();
-        }
-        finished_.close();
-    }
-
-    void run_group(const Group& place) {
-        if (closing_) return;
-        const auto [figure, group] = place;
-        if (computations_[figure]->compute(group, stop_)) finished_.push(figure);
-    }
-
-    const std::atomic<bool>& stop_;
-    std::vector<std::unique_ptr<Computation>> computations_;
-    std::vector<Group> groups_, timed_groups_;
-    Queue<std::size_t> finished_{100'000};
-    std::exception_ptr error_;
-    std::atomic<bool> closing_ = false;
-    std::jthread thread_;  // declared last: joined before the other members are destroyed
-};
-
 }  // namespace
 
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
@@ -253,16 +185,33 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         }
         return;
     }
-    std::vector<std::unique_ptr<Transaction>> files;  // opened first, so that errors are reported early
+    using Group = std::pair<std::size_t, std::size_t>;  // number of the figure, and of its group
+    std::vector<std::unique_ptr<Transaction>> files;    // opened first, so that errors are reported early
+    std::vector<std::unique_ptr<Computation>> computations;
+    std::vector<Group> groups, timed_groups;
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) {
         files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, "figure", options.replacing));
         for (const auto& name : figure_files(figure, options))
             if (!name.ends_with('/') && !options.shard) files.back()->require(name);
     }
-    Scheduler scheduler(figures, options, jobs, files, stop, report);
-    while (const auto k = scheduler.next()) {
-        auto& computation = scheduler.computation(*k);
+    for (std::size_t k = 0; k < figures.size(); ++k) {
+        const auto& figure = figures[k];
+        const auto header = header_of(figure, options.shard.value_or(Shard{}));
+        const auto& folder = files[k]->folder();
+        require_room(figure, header, options.tiles, folder);
+        if (const auto others = other_resumes(folder, header);
+            !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
+            report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
+                                       others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
+        computations.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report, k));
+        auto& of_its_sort = figure.experiment->measures_time() ? timed_groups : groups;
+        for (std::size_t group = 0; group < computations[k]->groups(); ++group) of_its_sort.emplace_back(k, group);
+    }
+    std::mutex writing;  // fonts are for one thread at a time
+    const auto write = [&](std::size_t k) {
+        const std::lock_guard lock(writing);
+        auto& computation = *computations[k];
         FigureRecord record{.jobs = jobs, .compute_cpu_s = computation.cpu_s()};
         const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
         record.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
@@ -271,7 +220,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
             if (options.shard)
                 result.files = {computation.publish_shard()};
             else
-                result = write_figure(figures[*k], computation.take_all(), record, options.tiles, *files[*k], stop);
+                result = write_figure(figures[k], computation.take_all(), record, options.tiles, *files[k], stop);
         } catch (const Error& error) {
             // running the same command again could not draw more
             if (error.code() == ExitCode::method_failed) {
@@ -283,8 +232,15 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         fs::remove(computation.record());
         result.samples = std::lround(computation.computed_units());
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
-        report.done(*k, result);
-    }
+        report.done(k, result);
+    };
+    const auto compute = [&](const Group& group) {
+        if (computations[group.first]->compute(group.second, stop)) write(group.first);
+    };
+    for (std::size_t k = 0; k < figures.size(); ++k)
+        if (computations[k]->groups() == 0) write(k);
+    parallel_for(groups.size(), jobs, [&](std::size_t i) { compute(groups[i]); });
+    std::ranges::for_each(timed_groups, compute);
 }
 
 }  // namespace doppel

@@ -1,5 +1,4 @@
-#include "figure/part_file.hpp"
-
+#include "figure/computation.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "figure/preset.hpp"
 
-#include "figure/part_file.hpp"
+#include "figure/computation.hpp"
 #include "figure/refused_figures.hpp"
 #include "figure/support.hpp"
 

@@ -16,7 +16,7 @@ std::string read_input(std::string_view input);
 /// Arguments of --set, one per line, for a film, or for a figure if the first line is "#NAME".
 std::string read_sets(std::string_view input);
 
-/// A file of a figure's trials (figure/part_file.hpp); a line that ends in ";?" gets its checksum. Its trials for the
+/// A file of a figure's trials (figure/computation.hpp); a line that ends in ";?" gets its checksum. Its trials for the
 /// figure that it names, one of every kind, are drawn and written.
 std::string read_part(std::string_view input);
 
