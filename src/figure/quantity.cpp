@@ -17,72 +17,50 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 
 QuantityWords words_of(Quantity quantity, const std::string& seconds, const StroboscopeSpec& stroboscope) {
-    switch (quantity) {
-        case Quantity::divergence:
-            return {.label = fmt::format("mean of ln(d/d₀) over {} s", seconds),
-                    .columns = {"average_log_ratio"},
-                    .short_label = "mean of ln(d/d₀)"};
-        case Quantity::exponent:
-            return {.label = "largest Lyapunov exponent, 1/s",
-                    .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
-                    .none = "",
-                    .method = "tangent equations by Dormand–Prince 8",
-                    .short_label = "Lyapunov exponent",
-                    .last_column = "exponent_unsettled"};
-        case Quantity::flip_time:
-            return {.label = "time to the first flip, s",
-                    .columns = {"flip_time_s"},
-                    .logarithmic = true,
-                    .none = fmt::format("no flip within {} s", seconds)};
-        case Quantity::distance_at_end:
-            return {.label = fmt::format("distance after {} s", seconds),
-                    .columns = {"distance_at_end"},
-                    .logarithmic = true};
-        case Quantity::greatest_distance:
-            return {.label = fmt::format("greatest distance within {} s", seconds),
-                    .columns = {"greatest_distance"},
-                    .logarithmic = true};
-        case Quantity::energy_error:
-            return {.label = "largest energy error, of the potential range",
-                    .columns = {"energy_error"},
-                    .logarithmic = true};
-        case Quantity::deviation:
-            return {.label = fmt::format("maximum deviation of an angle within {} s, °", seconds),
-                    .columns = {"deviation_deg"}};
-        case Quantity::period:
-            return {.label = "period, s",
-                    .columns = {"period_s"},
-                    .none = fmt::format("no whole period within {} s", seconds)};
-        case Quantity::stroboscopic:
-            return {.label = fmt::format("rate ω{} at each drive period, rad/s",
-                                         subscript(static_cast<std::size_t>(stroboscope.link))),
-                    .columns = {"theta_rad", "omega_rad_per_s"},
-                    .rows = static_cast<std::size_t>(stroboscope.periods),
-                    .counted = "period",
-                    .first_row = stroboscope.transient_periods};
-        case Quantity::step_cost:
-            return {.label = "CPU time of an Euler step, ns",
-                    .columns = {"angles_step_ns", "constraints_step_ns"},
-                    .curves = {"in angles", "with constraints"},
-                    .method = "explicit Euler"};
-        case Quantity::stability:
-            return {.label = fmt::format("greatest energy error in {} s, of the energy released", seconds),
-                    .columns = {"energy_error"},
-                    .logarithmic = true,
-                    .none = "failed run",
-                    .none_is_bad = true,
-                    .range = Range{1e-12, failure_error}};
-        case Quantity::convergence:
-            return {.label = fmt::format("greatest distance within {} s", seconds),
-                    .columns = {"step_s", "distance", "steps"},
-                    .logarithmic = true,
-                    .drawn = 1};
-        case Quantity::parting_time:
-            return {.label = "time of divergence, s",
-                    .columns = {"parting_time_s"},
-                    .none = fmt::format("together for {} s", seconds)};
-    }
-    return {};
+    // in the order of Quantity; {0} is the duration, {1} the number of the stroboscope's link
+    const std::array<QuantityWords, names_of<Quantity>.size()> all{{
+        {.label = "mean of ln(d/d₀) over {0} s", .columns = {"average_log_ratio"}, .short_label = "mean of ln(d/d₀)"},
+        {.label = "largest Lyapunov exponent, 1/s",
+         .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
+         .none = "",
+         .method = "tangent equations by Dormand–Prince 8",
+         .short_label = "Lyapunov exponent",
+         .last_column = "exponent_unsettled"},
+        {.label = "time to the first flip, s",
+         .columns = {"flip_time_s"},
+         .logarithmic = true,
+         .none = "no flip within {0} s"},
+        {.label = "distance after {0} s", .columns = {"distance_at_end"}, .logarithmic = true},
+        {.label = "greatest distance within {0} s", .columns = {"greatest_distance"}, .logarithmic = true},
+        {.label = "largest energy error, of the potential range", .columns = {"energy_error"}, .logarithmic = true},
+        {.label = "time of divergence, s", .columns = {"parting_time_s"}, .none = "together for {0} s"},
+        {.label = "maximum deviation of an angle within {0} s, °", .columns = {"deviation_deg"}},
+        {.label = "period, s", .columns = {"period_s"}, .none = "no whole period within {0} s"},
+        {.label = "rate ω{1} at each drive period, rad/s",
+         .columns = {"theta_rad", "omega_rad_per_s"},
+         .rows = static_cast<std::size_t>(stroboscope.periods),
+         .counted = "period",
+         .first_row = stroboscope.transient_periods},
+        {.label = "CPU time of an Euler step, ns",
+         .columns = {"angles_step_ns", "constraints_step_ns"},
+         .curves = {"in angles", "with constraints"},
+         .method = "explicit Euler"},
+        {.label = "greatest energy error in {0} s, of the energy released",
+         .columns = {"energy_error"},
+         .logarithmic = true,
+         .none = "failed run",
+         .none_is_bad = true,
+         .range = Range{1e-12, failure_error}},
+        {.label = "greatest distance within {0} s",
+         .columns = {"step_s", "distance", "steps"},
+         .logarithmic = true,
+         .drawn = 1},
+    }};
+    auto words = all.at(static_cast<std::size_t>(quantity));
+    for (auto* text : {&words.label, &words.none})
+        *text = fmt::format(fmt::runtime(*text), seconds, subscript(static_cast<std::size_t>(stroboscope.link)));
+    if (words.short_label.empty()) words.short_label = words.label.substr(0, words.label.rfind(", "));
+    return words;
 }
 
 /// CPU time per step of explicit Euler in double, ns, with angles and with constraints. It is the minimum over some
@@ -319,7 +297,6 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
       words_(words_of(quantity, seconds_text(ends[0]), options.stroboscope)),
       options_(options),
       flip_{ends[0].duration_s.value(), options.flip_tolerance.value_or(flip_tolerance(ends[0].duration_s.value()))} {
-    if (words_.short_label.empty()) words_.short_label = words_.label.substr(0, words_.label.rfind(", "));
     const auto& a = ends[0].a;
     const bool is_ideal = quantity == Quantity::step_cost || quantity == Quantity::stability;
     if ((is_ideal || quantity == Quantity::exponent) && (a.is_mechanism() || (is_ideal && !all.are_ideal)))
