@@ -87,28 +87,16 @@ std::string commented(std::string_view text) {
 }
 
 /// The standard problems of these names, listed in `table`'s key `problems`. Throws Error (exit 2).
-WorkProblems standard_problems(const std::vector<std::string>& names, const TomlReader& table) {
+std::vector<WorkProblem> standard_problems(const std::vector<std::string>& names, const TomlReader& table) {
     if (names.empty())
         throw table.error("problems", "must name at least one of {}", fmt::join(standard_problem_names, ", "));
     check_distinct(table, "problems", names);
-    WorkProblems problems;
+    std::vector<WorkProblem> problems;
     for (const auto& name : names) {
         const auto number = std::ranges::find(standard_problem_names, name) - standard_problem_names.begin();
         const auto& standard = all_standard.at(static_cast<std::size_t>(number));
-        problems.all.push_back(make_problem(name, side_of(standard), {standard.seconds, 1}));
+        problems.push_back(make_problem(name, side_of(standard), {standard.seconds, 1}));
     }
-    problems.subtitle = fmt::format("pendulums released at rest, {}; double precision, one core",
-                                    links_words(side_of(all_standard[0])));  // all links are alike
-    return problems;
-}
-
-/// The film's settings follow its name, so that two films of the same name can be distinguished.
-WorkProblems problem_of(Preset film) {
-    WorkProblems problems;
-    problems.all.push_back(make_problem(film.name, film.a, film.duration_s));
-    problems.subtitle = problem_words(problems.all.back(), film.a);
-    film.b = film.a;
-    problems.comment = commented(resolved_sides(film));
     return problems;
 }
 
@@ -248,10 +236,18 @@ public:
         further_fields(reader.chart);
         auto table = reader.settings(*this);
         if (reader.only_keys) return;
-        problems = scene_ ? problem_of(film_) : standard_problems(problem_names_, table);
-        references_ = std::make_unique<SharedReference[]>(problems.all.size());
-        settings_ = settings_text(*this) + problems.comment;
-        subtitle_ = problems.subtitle;
+        settings_ = settings_text(*this);
+        if (scene_) {
+            problems.push_back(make_problem(film_.name, film_.a, film_.duration_s));
+            subtitle_ = problem_words(problems.back(), film_.a);
+            film_.b = film_.a;
+            settings_ += commented(resolved_sides(film_));  // distinguishes two films of the same name
+        } else {
+            problems = standard_problems(problem_names_, table);
+            subtitle_ = fmt::format("pendulums released at rest, {}; double precision, one core",
+                                    links_words(side_of(all_standard[0])));  // all links are alike
+        }
+        references_ = std::make_unique<SharedReference[]>(problems.size());
         unit_ = "step-size studies";
         const auto* error = has_angles() ? "angle_error_rad" : "place_error";
         columns_ = {"problem",      "model",          "method",      "setting",     error,
@@ -260,12 +256,12 @@ public:
         further_fields(chart);
         chart_settings_ = chart.text();
         const auto solvers = solvers_of(table);
-        for (std::size_t p = 0; p < problems.all.size(); ++p)
+        for (std::size_t p = 0; p < problems.size(); ++p)
             for (const auto& solver : solvers)
-                if (solver.supports(problems.all[p])) studies_.push_back({p, solver});
+                if (solver.supports(problems[p])) studies_.push_back({p, solver});
         if (studies_.empty())
-            throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems.all[0].name,
-                              name_of(problems.all[0].motion.model));
+            throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems[0].name,
+                              name_of(problems[0].motion.model));
     }
 
     void fields(KeyVisitor& visit) {
@@ -291,12 +287,12 @@ public:
         visit({"names", "which curves are labelled: the five best, or all"}, names);
     }
 
-    std::size_t trials() const override { return problems.all.size() + studies_.size() * rounds(); }
+    std::size_t trials() const override { return problems.size() + studies_.size() * rounds(); }
     bool measures_time() const override { return cost == Cost::time; }
-    double units(std::size_t trial) const override { return trial < problems.all.size() ? 0 : 1; }
+    double units(std::size_t trial) const override { return trial < problems.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        if (trial < problems.all.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
+        if (trial < problems.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
         if (numbers.empty() || numbers.size() % numbers_in<StepResult> != 0) return false;
         const auto is_count_or_none = [](double x) { return std::isnan(x) || is_count(x); };
         const auto outcomes = rows_of<StepResult>(numbers);
@@ -311,7 +307,7 @@ public:
             for (const auto& study : all[p])
                 for (const auto& outcome : study.outcomes) {
                     const auto add = [&](const auto& error) {
-                        add_row(table, problems.all[p].name, name_of(study.solver.model), study.solver.method,
+                        add_row(table, problems[p].name, name_of(study.solver.model), study.solver.method,
                                 outcome.setting, error, outcome.energy_error, outcome.length_error, outcome.cpu_s,
                                 outcome.evaluations, outcome.steps);
                     };
@@ -341,8 +337,8 @@ public:
         auto named = ranked(all, cost, accuracies);
         const bool are_all = named.size() <= best_shown;
         named.resize(std::min(named.size(), best_shown));
-        for (std::size_t p = 0; p < problems.all.size(); ++p)
-            figure.panels.push_back(work_plot({problems.all[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
+        for (std::size_t p = 0; p < problems.size(); ++p)
+            figure.panels.push_back(work_plot({problems[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
                                                all[p], all[p], cost, named, names}));
         figure.captions.push_back(
             are_all ? "Each method in its best model; the pale band is the Pareto front."
@@ -357,8 +353,8 @@ public:
     Json findings(std::span<const TrialNumbers> numbers) const override {
         Json found;
         const auto all = merged_studies(numbers);
-        for (std::size_t p = 0; p < problems.all.size(); ++p) {
-            const auto& name = problems.all[p].name;
+        for (std::size_t p = 0; p < problems.size(); ++p) {
+            const auto& name = problems[p].name;
             const auto problem = row_of<ProblemRow>(numbers[p]);
             found[name + "_sensitivity"] = problem.sensitivity;
             found[name + "_reference_disagreement"] = problem.disagreement;
@@ -380,16 +376,16 @@ public:
 
     const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const override {
         auto& shared = references_[problem];
-        const auto& motion = problems.all[problem].motion;
+        const auto& motion = problems[problem].motion;
         std::call_once(shared.once, [&] { shared.reference = reference_end(motion, motion.sample_interval, stop); });
         return shared.reference;
     }
 
     Studies merged_studies(std::span<const TrialNumbers> numbers) const override {
-        Studies all(problems.all.size());
+        Studies all(problems.size());
         for (std::size_t i = 0; i < studies_.size(); ++i) {
             std::vector<std::vector<StepResult>> measured;
-            for (std::size_t trial = problems.all.size() + i; trial < numbers.size(); trial += studies_.size())
+            for (std::size_t trial = problems.size() + i; trial < numbers.size(); trial += studies_.size())
                 measured.push_back(rows_of<StepResult>(numbers[trial]));
             all[studies_[i].first].push_back(merged(studies_[i].second, measured));
         }
@@ -398,7 +394,7 @@ public:
 
 private:
     std::size_t rounds() const { return cost == Cost::time ? static_cast<std::size_t>(repeats) : 1; }
-    bool has_angles() const { return problems.all.front().has_angles(); }
+    bool has_angles() const { return problems.front().has_angles(); }
 
     std::vector<Solver> solvers_of(TomlReader& table) const {
         check_distinct(table, "methods", methods_);
@@ -413,7 +409,7 @@ private:
     }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        const std::size_t first = problems.all.size();
+        const std::size_t first = problems.size();
         if (trial < first) {
             const auto& known = reference(trial, stop);
             return {known.sensitivity, known.disagreement};
@@ -421,7 +417,7 @@ private:
         const auto& [p, solver] = studies_[(trial - first) % studies_.size()];
         const bool is_first = trial - first < studies_.size();
         TrialNumbers numbers;
-        for (const auto& outcome : run_step_study(problems.all[p], reference(p, stop), solver,
+        for (const auto& outcome : run_step_study(problems[p], reference(p, stop), solver,
                                                   {max_evaluations, min_error, cost == Cost::time, is_first}, stop))
             append(numbers, outcome);
         return numbers;
@@ -430,7 +426,7 @@ private:
     std::string error_words(bool floors) const {
         return fmt::format("Errors: the worst {} against Taylor series in quad, {}, which agree.{}",
                            has_angles() ? "angle" : "place, as a part of the mechanism's size,",
-                           problems.all.front().is_plain_chain() ? "in two formulations" : "at two tolerances",
+                           problems.front().is_plain_chain() ? "in two formulations" : "at two tolerances",
                            floors ? " Dashed: round-off in double, and round-off × sensitivity." : "");
     }
 

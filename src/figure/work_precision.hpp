@@ -15,19 +15,12 @@ enum class NamedCurves { best, all };
 template <>
 inline constexpr auto names_of<NamedCurves> = std::to_array<std::string_view>({"best", "all"});
 
-/// The problems selected by [work_precision].
-struct WorkProblems {
-    std::vector<WorkProblem> all;
-    std::string subtitle;  // the system
-    std::string comment;   // other data that the numbers depend on, as TOML comments
-};
-
 /// What a work-precision figure compares, and its results: the interface for a chart that adds methods of other
 /// libraries (tests/bench/peers/library_chart.cpp).
 struct WorkComparison {
     using Studies = std::vector<std::vector<StepStudy>>;  // for each problem
 
-    WorkProblems problems;
+    std::vector<WorkProblem> problems;  // selected by [work_precision]
     Cost cost = Cost::time;
     NamedCurves names = NamedCurves::best;
     int repeats = 5, max_evaluations = 300'000;

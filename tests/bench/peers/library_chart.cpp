@@ -16,7 +16,7 @@ public:
     LibraryChart(std::shared_ptr<const Experiment> own, std::vector<ExternalMethod> methods)
         : own_(std::move(own)),
           compared_(dynamic_cast<const WorkComparison&>(*own_)),
-          problems_(compared_.problems.all),
+          problems_(compared_.problems),
           methods_(std::move(methods)) {
         for (std::size_t p = 0; p < problems_.size(); ++p)
             for (std::size_t m = 0; m < methods_.size() && problems_[p].is_plain_chain(); ++m)
