@@ -2,10 +2,8 @@
 
 #include "base/embedded.hpp"
 #include "base/machine.hpp"
-#include "base/text.hpp"
 #include "base/threads.hpp"
 #include "output/written.hpp"
-#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 
 #include <algorithm>
@@ -66,7 +64,6 @@ fs::path new_part_path(fs::path path) {
 }
 
 constexpr double record_after_s = 2, flush_every_s = 0.5;
-constexpr std::size_t many_groups = 200, groups_ahead = 16;
 
 double now() {
     return seconds_of(CLOCK_MONOTONIC);
@@ -164,11 +161,10 @@ KnownTrials merged_parts(const FigurePreset& figure, const fs::path& folder, con
 }
 
 Computation::Computation(const FigurePreset& figure, const PartHeader& header, std::optional<fs::path> folder,
-                         int threads, FigureReport report, std::size_t number)
+                         FigureReport report, std::size_t number)
     : figure_(figure),
       header_(header),
       folder_(std::move(folder)),
-      threads_(threads),
       report_(std::move(report)),
       number_(number),
       known_(header.trials) {
@@ -281,21 +277,13 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
     }
     computed_units_ += units;
     done_units_ += units;
-    if (groups_done_ == groups_ahead && groups_.size() >= many_groups) report_estimate(time);
     report_.progress(number_, {done_units_, total_units_});
     return is_last;
 }
 
-void Computation::report_estimate(double time) {
-    const double rate = computed_units_ / (time - start_s_), left = total_units_ - done_units_;
-    report_.note(number_,
-                 fmt::format("{} {} to go, about {} a second on {} threads: {}", grouped(std::lround(left)),
-                             figure_.experiment->unit(), two_digits(rate), threads_, duration_text(left / rate)));
-}
-
 Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
     constexpr double allowed_s = 1;
-    Computation computation(figure, header_of(figure), std::nullopt, threads, {});
+    Computation computation(figure, header_of(figure), std::nullopt, {});
     std::size_t group = 0;
     for (; group < computation.groups() && computation.units(group) == 0; ++group) computation.compute(group, stop);
     const double needed_s = computation.cpu_s();

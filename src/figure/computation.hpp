@@ -84,7 +84,7 @@ struct FigureProgress {
     double done = 0, total = 0;
 };
 
-/// Reports progress of the figures, numbered as given, and notes: the estimated time, the record that one resumes from.
+/// Reports progress of the figures, numbered as given, and notes: the record that one resumes from.
 /// Called by any thread, by one at a time for one figure.
 struct FigureReport {
     std::function<void(std::size_t figure, const FigureProgress&)> progress = [](auto, const auto&) {};
@@ -97,10 +97,10 @@ struct FigureReport {
 class Computation {
 public:
     /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to a damaged
-    /// one. `threads` and the figure's `number` are only used in messages. Throws Error (exit 4) if the record is
-    /// something else; it is then left unchanged.
+    /// one. The figure's `number` is only used in messages. Throws Error (exit 4) if the record is something else; it is
+    /// then left unchanged.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
-                int threads, FigureReport report, std::size_t number = 0);
+                FigureReport report, std::size_t number = 0);
 
     std::size_t groups() const { return groups_.size(); }
     double units(std::size_t group) const { return units_of(groups_[group]); }
@@ -128,14 +128,12 @@ private:
     void find_groups();
     double units_of(const Group& group) const;
     bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
-    void report_estimate(double time);
     double percent(double units) const { return total_units_ > 0 ? 100 * units / total_units_ : 100; }
 
     const FigurePreset& figure_;
     PartHeader header_;
     std::optional<std::filesystem::path> folder_;
     std::filesystem::path record_;
-    int threads_;
     FigureReport report_;
     std::size_t number_;
     std::vector<Group> groups_;

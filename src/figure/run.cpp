@@ -204,7 +204,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
             !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
             report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
                                        others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-        computations.push_back(std::make_unique<Computation>(figure, header, folder, jobs, report, k));
+        computations.push_back(std::make_unique<Computation>(figure, header, folder, report, k));
         auto& of_its_sort = figure.experiment->measures_time() ? timed_groups : groups;
         for (std::size_t group = 0; group < computations[k]->groups(); ++group) of_its_sort.emplace_back(k, group);
     }

@@ -24,7 +24,7 @@ struct Resumed {
     double computed_units = 0;
 
     Resumed(const FigurePreset& figure, const PartHeader& header, const std::optional<fs::path>& folder) {
-        Computation computation(figure, header, folder, 1, said.run_report());
+        Computation computation(figure, header, folder, said.run_report());
         const std::atomic<bool> never = false;
         for (std::size_t group = 0; group < computation.groups(); ++group)
             EXPECT_EQ(computation.compute(group, never), group + 1 == computation.groups());
@@ -154,7 +154,7 @@ TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
     known[3] = {1};
     PartWriter(record, header_of(figure), known).finish();
     Said said;
-    Computation computation(figure, header_of(figure), folder, 1, said.run_report());
+    Computation computation(figure, header_of(figure), folder, said.run_report());
     const std::atomic<bool> stop = true;
     expect_error(ExitCode::interrupted, {"interrupted"}, [&] { computation.compute(0, stop); });
     const auto kept = read_part_file(record).trials;

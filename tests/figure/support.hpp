@@ -27,7 +27,7 @@ inline FigurePreset figure_from(const std::string& text, const std::vector<std::
 
 inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
     const std::atomic<bool> never = false;
-    Computation computation(figure, header_of(figure), std::nullopt, jobs, {});
+    Computation computation(figure, header_of(figure), std::nullopt, {});
     parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, never); });
     return computation.take_all();
 }
