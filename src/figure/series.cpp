@@ -153,10 +153,6 @@ void curve_fields(KeyVisitor& visit, PairCurve& curve) {
     visit({.key = "film_column", .help = "quantity that is shown", .absent = "that of [series]"}, curve.film_column);
 }
 
-bool is_of_both(std::string_view film_column) {
-    return film_column == "distance" || film_column == "log_ratio";
-}
-
 /// Columns in place of a film's: the radius of the certified enclosure of side a, with each precision.
 constexpr std::array<std::string_view, 3> certified_columns{"radius_double_rad", "radius_quad_rad",
                                                             "radius_256_bits_rad"};
@@ -220,8 +216,10 @@ public:
             if (std::ranges::count(known, *curve.film_column) == 0)
                 throw table.error("film_column", "must be one of {}; it is \"{}\"", fmt::join(known, ", "),
                                   *curve.film_column);
-            differ |= !is_of_both(*curve.film_column) || !are_one(scene);
-            if (curve.film_column == "log_ratio" && have_same_release(curve.pair.a, curve.pair.b))
+            const bool is_ratio = curve.film_column == "log_ratio",
+                       is_of_both = is_ratio || curve.film_column == "distance";
+            differ |= !is_of_both || !are_one(scene);
+            if (is_ratio && have_same_release(curve.pair.a, curve.pair.b))
                 throw table.error("quantity",
                                   "\"log_ratio\" needs sides that are released differently: there is no "
                                   "ratio to a distance of 0");
@@ -436,7 +434,7 @@ public:
         for (const auto& name : keys.projected) {
             if (!find_method(name)->constraints)
                 throw table.error("projected", "needs methods that integrate constraints; \"{}\" does not", name);
-            add_run(name, Model::constraints, Stabilise::projection);
+            add_run(name, Model::constraints, true);
         }
         check_distinct(table, "methods", keys.methods);
         check_distinct(table, "projected", keys.projected);
@@ -469,7 +467,7 @@ public:
             const auto cost = row_of<DriftCost>(numbers[r]);
             for (std::size_t i = 0; i < times_s_.size(); ++i)
                 if (!std::isnan(energy[i]))
-                    add_row(table, runs_[r].method, model_words(runs_[r]), cost.setting,
+                    add_row(table, runs_[r].motion.method, runs_[r].model, cost.setting,
                             std::fmin(times_s_[i], cost.failed_at_s), energy[i], rods[i]);
         }
     }
@@ -479,7 +477,7 @@ public:
             auto plot = axes_;
             if (of_rods) plot.y.label = "maximum error of a rod to date, m, with constraints";
             for (const std::size_t run : longest_first(numbers))
-                if (shows(run, of_rods)) add_curves(numbers, run, of_rods, plot);
+                if (of_rods ? has_rods(run) : runs_[run].shows_energy) add_curves(numbers, run, of_rods, plot);
             if (!plot.curves.empty()) figure.panels.push_back(std::move(plot));
         }
         figure.captions.push_back(caption(numbers));
@@ -490,13 +488,13 @@ public:
         for (std::size_t r = 0; r < runs_.size(); ++r) {
             const auto cost = row_of<DriftCost>(numbers[r]);
             const bool fails = cost.failed_at_s > 0;
-            auto name = fmt::format("{}_{}", runs_[r].method, model_words(runs_[r]));
+            auto name = fmt::format("{}_{}", runs_[r].motion.method, runs_[r].model);
             std::ranges::replace(name, ' ', '_');
             all[name + "_setting"] = cost.setting;
             all[name + "_evaluations_per_s"] = cost.evaluations_per_s;
             all[name + "_cpu_s"] = cost.cpu_s;
             for (const bool of_rods : {false, true}) {
-                if (of_rods && runs_[r].model == Model::angles) continue;
+                if (of_rods && !has_rods(r)) continue;
                 const auto found = growth(numbers, r, of_rods);
                 const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
                 all[quantity + "growth"] = std::string(style_of(found).words);
@@ -509,17 +507,25 @@ public:
     }
 
 private:
-    void add_run(const std::string& method, Model model, Stabilise stabilise = Stabilise::none) {
-        runs_.push_back({.chain = chain_of(release_), .model = model, .method = method, .stabilise = stabilise});
-    }
+    struct Run {
+        MotionSpec motion;
+        std::string model, label;  // in the table; of the curve
+        bool shows_energy;         // the energy is shown for the best model of a method
+    };
 
-    static bool is_projected(const MotionSpec& run) { return run.stabilise == Stabilise::projection; }
-    static std::string model_words(const MotionSpec& run) {
-        return is_projected(run) ? "projected constraints" : std::string(name_of(run.model));
+    void add_run(const std::string& method, Model model, bool is_projected = false) {
+        runs_.push_back({{.chain = chain_of(release_),
+                          .model = model,
+                          .method = method,
+                          .stabilise = is_projected ? Stabilise::projection : Stabilise::none},
+                         is_projected ? "projected constraints" : std::string(name_of(model)),
+                         method + (is_projected ? " projected" : ""),
+                         model == Model::angles || (!is_projected && !find_method(method)->angles)});
     }
+    bool has_rods(std::size_t run) const { return runs_[run].motion.model == Model::constraints; }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        const auto run = drift(runs_[trial], evaluations_per_s_, times_s_, stop);
+        const auto run = drift(runs_[trial].motion, evaluations_per_s_, times_s_, stop);
         TrialNumbers numbers;
         append<DriftCost>(numbers, run);
         numbers.insert(numbers.end(), run.errors.begin(), run.errors.end());
@@ -538,15 +544,6 @@ private:
         return growth_of(times_s_, maximum(numbers, run, of_rods), row_of<DriftCost>(numbers[run]).failed_at_s);
     }
 
-    /// The energy is shown for the best model of a method; the rods for all models with rods.
-    bool shows(std::size_t run, bool of_rods) const {
-        if (of_rods || runs_[run].model == Model::angles) return of_rods == (runs_[run].model == Model::constraints);
-        return !is_projected(runs_[run]) && !find_method(runs_[run].method)->angles;
-    }
-    std::string curve_words(std::size_t run) const {
-        return runs_[run].method + (is_projected(runs_[run]) ? " projected" : "");
-    }
-
     /// Curves that end early are drawn last, so that their labels are at their ends.
     std::vector<std::size_t> longest_first(std::span<const TrialNumbers> numbers) const {
         std::vector<std::size_t> order(runs_.size());
@@ -561,7 +558,7 @@ private:
     void add_curves(std::span<const TrialNumbers> numbers, std::size_t run, bool of_rods, Plot& plot) const {
         const auto found = growth(numbers, run, of_rods);
         const auto& style = style_of(found);
-        Curve curve{.label = curve_words(run), .hue = style.hue};
+        Curve curve{.label = runs_[run].label, .hue = style.hue};
         curve.label += style.law;
         const auto errors = maximum(numbers, run, of_rods);
         const double end_s = row_of<DriftCost>(numbers[run]).failed_at_s;
@@ -581,7 +578,7 @@ private:
         for (std::size_t run = 0; run < runs_.size(); ++run) {
             const auto kind = growth(numbers, run, false).kind;
             breaks |= kind == Growth::Kind::failed;
-            if (shows(run, false) && kind == Growth::Kind::bounded) bounded.push_back(curve_words(run));
+            if (runs_[run].shows_energy && kind == Growth::Kind::bounded) bounded.push_back(runs_[run].label);
         }
         return fmt::format("{}; ∝ tells how the others grow{}.",
                            bounded.empty()
@@ -592,7 +589,7 @@ private:
 
     SideSpec release_;
     double evaluations_per_s_;
-    std::vector<MotionSpec> runs_;
+    std::vector<Run> runs_;
 };
 
 std::shared_ptr<const Experiment> read_series(FigureReader& reader) {
