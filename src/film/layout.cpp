@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 #include <utility>
+#include <variant>
 
 namespace doppel {
 namespace {
@@ -32,6 +33,92 @@ Theme themed(const VideoSpec& video) {
 bool is_dark(const Theme& theme) {
     const auto& color = theme.background;
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
+}
+
+/// The part of the plane shown in the pendulums' panels, m.
+struct View {
+    double x = 0, y = 0;   // centre
+    double width, height;  // for a chain, those of the circle it can reach
+    bool is_circle = true;
+};
+
+/// Whether the circle of the outstretched chains contains all that is drawn. Droplets are far away and not drawn.
+bool has_circle(const Scene& scene) {
+    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
+    for (const auto* side : {&scene.preset.a, &scene.preset.b})
+        if (!side->particles.empty() || !side->constraints.empty() || !std::ranges::all_of(side->forces, is_droplet))
+            return false;
+    return true;
+}
+
+/// The range with a margin of a tenth; includes zero.
+Range padded(const Spread& seen) {
+    const double low = seen.low, high = seen.high, width = high - low;
+    if (!(width > 0) || !std::isfinite(width)) return {0, 1};
+    return {low < 0 ? low - width / 10 : 0, high > 0 ? high + width / 10 : 0};
+}
+
+/// The nearest 1, 2 or 5 times a power of ten, rounded up or down.
+double round_number(double value, bool up) {
+    const double unit = std::pow(10, std::floor(std::log10(value)));
+    double best = up ? 10 * unit : unit;
+    for (const double step : {5.0, 2.0, 1.0})
+        if (up ? step * unit >= value : step * unit <= value) {
+            best = step * unit;
+            if (!up) break;
+        }
+    return best;
+}
+
+/// The default axis of the distance: all values of the pair, at least one power of ten.
+Range fitted_distance(const Spread& seen) {
+    constexpr double decades = 1e60;  // the largest ratio of an axis's ends, whatever the masses and lengths
+    if (seen.count == 0) return {1e-8, 1};
+    const double maximum = std::clamp(seen.maximum, 1e-290, decades);
+    const double high = round_number(1.02 * maximum, true);
+    const double minimum = std::clamp(seen.minimum, high / decades, maximum);
+    const double low =
+        maximum / minimum < 100 ? round_number(0.98 * minimum, false) : std::pow(10, std::floor(std::log10(minimum)));
+    return {std::clamp(low, high / decades, high / 10), high};
+}
+
+/// The default axis of an error, two to six powers of ten: from a tenth of its geometric mean to its largest value.
+Range fitted_error(const Spread& seen) {
+    if (seen.count == 0) return {1e-16, 1};
+    const double high = std::pow(10, std::ceil(std::log10(1.02 * seen.maximum)));
+    const double low = std::pow(10, std::floor(std::log10(seen.geometric_mean() / 10)));
+    return {std::clamp(low, high * 1e-6, high * 1e-2), high};
+}
+
+/// For a chain, the circle that it can reach when outstretched; for a mechanism, the area that it visits.
+View fitted_view(const Scene& scene, const MotionBounds& seen) {
+    if (has_circle(scene)) {
+        double reach = std::max(scene.a.reach + scene.a.pivot_reach, scene.b.reach + scene.b.pivot_reach);
+        for (const auto& member : scene.members)
+            reach = std::max(reach, static_cast<double>(member.chain->reach()) + scene.a.pivot_reach);
+        return {.width = 2 * reach, .height = 2 * reach};
+    }
+    double left = seen.left, right = seen.right, bottom = seen.bottom, top = seen.top;
+    for (const auto* side : {&scene.a, &scene.b})
+        for (const auto& line : side->lines)
+            for (const auto* end : {&line.from, &line.to})
+                if (const auto* place = std::get_if<Place<double>>(end)) {
+                    left = std::min(left, (*place)[0] - line.radius);
+                    right = std::max(right, (*place)[0] + line.radius);
+                    bottom = std::min(bottom, (*place)[1] - line.radius);
+                    top = std::max(top, (*place)[1] + line.radius);
+                }
+    const double minimum = 1e-3 * std::max({right - left, top - bottom, 1e-6});
+    const View view{(left + right) / 2, (bottom + top) / 2, std::max(right - left, minimum),
+                    std::max(top - bottom, minimum), false};
+    return std::isfinite(view.width + view.height) ? view : View{.width = 2, .height = 2, .is_circle = false};
+}
+
+/// The axis of a strip if the preset sets none.
+Range fitted_range(StripKind kind, const MotionBounds& seen) {
+    const auto& spread = seen.strips[static_cast<std::size_t>(kind)];
+    if (kind == StripKind::distance) return fitted_distance(spread);
+    return is_logarithmic(kind) ? fitted_error(spread) : padded(spread);
 }
 
 /// Height of the captions of strips this wide, px.
@@ -346,6 +433,13 @@ std::vector<Place<double>> pivots_of(const Side& side) {
 Point PendulumPanel::at(double x_m, double y_m) const {
     const auto px = [&](double m) { return static_cast<float>(std::clamp(px_per_m * m, -1e6, 1e6)); };
     return {center.x + px(x_m - center_x), center.y - px(y_m - center_y)};
+}
+
+bool depends_on_motion(const Scene& scene) {
+    const auto& video = scene.preset.video;
+    const bool view = video.pendulums && (!has_circle(scene) || video.layout == Arrangement::phase);
+    return view || std::any_of(video.strips.begin(), video.strips.end(),
+                               [&](StripKind kind) { return !video.ranges[static_cast<std::size_t>(kind)]; });
 }
 
 Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind kind) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "film/bounds.hpp"
+#include "film/recording.hpp"
 #include "image/color.hpp"
 #include "plot/axis.hpp"
 #include "render/display_list.hpp"
@@ -109,6 +109,9 @@ struct Layout {
     float last_bob_radius = 0;        // at least, for the bob that leaves the trail, in long chains, px
     float rod_radius = 0;             // half its width, px
 };
+
+/// Whether the picture requires the bounds of the whole motion.
+bool depends_on_motion(const Scene& scene);
 
 /// A picture of the film, or a tile of the contact sheet with only pendulums and time.
 enum class PictureKind { film, tile };

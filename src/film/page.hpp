@@ -1,6 +1,5 @@
 #pragma once
 
-#include "film/bounds.hpp"
 #include "film/layout.hpp"
 #include "film/recording.hpp"
 #include "output/page.hpp"

@@ -3,6 +3,8 @@
 #include "base/embedded.hpp"
 #include "base/error.hpp"
 #include "base/machine.hpp"
+#include "film/layout.hpp"
+#include "film/strips.hpp"
 #include "integrate/motion_batch.hpp"
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
@@ -48,6 +50,36 @@ void pass_all(BlockFile& all, Snapshot& snapshot, MotionRecord& record) {
 }
 
 }  // namespace
+
+void Spread::add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+    if (!(value > 0) || !std::isfinite(value)) return;
+    minimum = std::min(minimum, value);
+    maximum = std::max(maximum, value);
+    log_sum += std::log(value);
+    ++count;
+}
+
+void MotionBounds::add(const Scene& scene, const PairState& state, double start_distance) {
+    const auto& video = scene.preset.video;
+    const auto link = static_cast<std::size_t>(video.phase_link - 1);
+    for (const auto* side : {&state.a, &state.b}) {
+        for (const auto& bob : side->bobs) {
+            left = std::min(left, bob.x);
+            right = std::max(right, bob.x);
+            bottom = std::min(bottom, bob.y);
+            top = std::max(top, bob.y);
+        }
+        if (link < side->bobs.size()) fastest = std::max(fastest, std::abs(side->bobs[link].omega));
+    }
+    for (const auto kind : video.strips) {
+        // a pair that starts equal has distances near zero at first; they are left out
+        if (kind == StripKind::distance && !(start_distance > 0) && 50 * state.sample < scene.samples) continue;
+        for (const auto& curve : strip_curves(kind, scene, state, start_distance))
+            if (curve.value) strips[static_cast<std::size_t>(kind)].add(*curve.value);
+    }
+}
 
 Snapshot blank_snapshot(const Scene& scene) {
     Snapshot blank;

@@ -1,17 +1,19 @@
 #pragma once
 
 #include "analysis/difference.hpp"
-#include "film/bounds.hpp"
 #include "integrate/motion.hpp"
 #include "output/blocks.hpp"
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <deque>
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace doppel {
@@ -24,6 +26,28 @@ struct Snapshot {
 
 /// With as many numbers as every snapshot of the scene has, all of them zero.
 Snapshot blank_snapshot(const Scene& scene);
+
+/// The range of numbers: of all of them, and of the positive ones on a logarithmic scale.
+struct Spread {
+    double low = 0, high = 0;
+    double minimum = std::numeric_limits<double>::infinity(), maximum = 0;  // of the positive finite numbers
+    double log_sum = 0;                                                     // of their natural logarithms
+    long count = 0;
+
+    void add(double value);
+    double geometric_mean() const { return std::exp(log_sum / static_cast<double>(count)); }
+};
+
+/// The ranges of a whole motion, which a picture needs and no formula gives.
+struct MotionBounds {
+    static constexpr double far = std::numeric_limits<double>::infinity();
+    double left = far, right = -far, bottom = far, top = -far;  // m, over all bobs of both sides and all samples
+    double fastest = 0;                                         // rad/s, of the link shown in a phase panel
+    std::array<Spread, strip_kinds> strips{};                   // for the strips of the film
+
+    /// Adds the next sample.
+    void add(const Scene& scene, const PairState& state, double start_distance);
+};
 
 /// Distances of a pair, updated sample by sample.
 struct Outcome {

@@ -49,31 +49,23 @@ const quantities = [["angle", "angle_deg", "°", degrees], ["rate", "omega_deg_p
 let differing = 0;  // numbers in which the film's pendulums differ
 const numbersOf = (chain, [name, , , per]) => [chain[name]].flat().map(v => v * per);
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
+// With the film's numbers, also after form.reset().
 function makeForm() {
-  for (const [name, , unit] of isLive ? quantities : []) {
-    const row = element("p", {}, `${name}, ${unit}`), count = [bodies[0].chain[name]].flat().length;
-    for (let i = 0; i < count; ++i) {
-      const label = `${name}${count > 1 ? ` ${i + 1}` : ""}, ${unit}`;
-      row.append(element("input", { name: name + i, type: "number", step: "any", "aria-label": label }));
-      form.key.append(new Option(label, name + i));
-    }
+  for (const quantity of quantities) {
+    const [name, , unit] = quantity, row = element("p", {}, `${name}, ${unit}`);
+    const [first, last] = [bodies[0], bodies.at(-1)].map(({ chain }) => numbersOf(chain, quantity));
+    first.forEach((number, i) => {
+      const label = `${name}${first.length > 1 ? ` ${i + 1}` : ""}, ${unit}`, value = shortened(number);
+      row.append(element("input", { name: name + i, type: "number", step: "any", "aria-label": label, value }));
+      form.key.append(new Option(label, name + i, number !== last[i]));
+      if (number === last[i]) return;
+      ++differing;
+      form.by.defaultValue = shortened(last[i] - number, 6);
+    });
     $("#numbers").append(row);
   }
   form.by.parentElement.hidden = layout === "single";
-}
-function fillForm() {
-  form.by.value = 0;
-  differing = 0;
-  for (const quantity of quantities) {
-    const [first, last] = [bodies[0], bodies.at(-1)].map(({ chain }) => numbersOf(chain, quantity));
-    inputsOf(quantity[0]).forEach((input, i) => {
-      input.value = shortened(first[i]);
-      if (first[i] === last[i]) return;
-      ++differing;
-      form.key.value = input.name;
-      form.by.value = shortened(last[i] - first[i], 6);
-    });
-  }
+  form.reset();
 }
 const differenceIn = (name, k) =>
   name === form.key.value && k > 0 ? form.by.valueAsNumber * k / (bodies.length - 1) : 0;
@@ -194,7 +186,7 @@ const clicks = {
     play(false);
     wanted = null;
     motion = original;
-    fillForm();
+    $("#preset").hidden = true;
     say("");
     draw();
   },
@@ -219,7 +211,7 @@ addEventListener("hashchange", () => seek(addressNumbers().t ?? time));
 
 // The player of a figure is hidden until a place of the figure is chosen: angles in degrees by their keys.
 function releaseAt(angles) {
-  fillForm();
+  form.reset();
   for (const [key, angle] of Object.entries(angles))
     for (const input of inputsOf(`angle${/\[(\d)\]$/.exec(key)?.[1] ?? ""}`)) input.value = angle;
   $(".player").hidden = false;
@@ -231,7 +223,6 @@ function releaseAt(angles) {
 async function startFilm() {
   $(".player").hidden = false;
   resize();
-  if (isLive) fillForm();
   const made = film.motion ? await embeddedMotion(film.motion) : await compute(bodies.map(body => body.chain));
   original = await withCurves(made, true);
   if (motion) return;  // released by the form before
@@ -251,5 +242,5 @@ $("#time").max = film.duration_s;
 $("#open").hidden = !isLive;
 $("#back").hidden = isOfFigure;
 $("#close").hidden = !isOfFigure;
-makeForm();
+if (isLive) makeForm();
 if (!isOfFigure) startFilm();

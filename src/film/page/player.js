@@ -1,5 +1,5 @@
-// player.js: draws the film at any time. What is drawn, and in what order, is what src/film/pendulum_layer.cpp,
-// strips.cpp and phase_layer.cpp draw; lengths are pixels of the film's picture.
+// player.js: draws the film at any time. What is drawn, and in what order, is what src/film/layer.cpp and strips.cpp
+// draw; lengths are pixels of the film's picture.
 "use strict";
 const canvas = $("canvas"), g = canvas.getContext("2d");
 const isEnsemble = layout === "ensemble", isMany = bodies.length > 8, shows = part => film.show.includes(part);
@@ -164,9 +164,9 @@ function scientific(v) {
 
 // Of a release by hand: where a logarithmic axis does not hold the curve, whole decades that do, drawn over the film's.
 function decadesOf({ axis, area: [left, top, right, bottom] }, list) {
-  const decades = [...list].filter(v => v > 0).map(Math.log10), em = picture.em;
-  if (!axis.logarithmic || decades.every(e => e >= Math.log10(axis.from) && e <= Math.log10(axis.to))) return axis;
-  const first = Math.floor(-mostOf(decades.map(e => -e))), last = Math.max(Math.ceil(mostOf(decades)), first + 1);
+  const found = list.filter(v => v > 0).sort(), [least, most] = [found[0], found.at(-1)], em = picture.em;
+  if (!axis.logarithmic || !(least < axis.from || most > axis.to)) return axis;
+  const first = Math.floor(Math.log10(least)), last = Math.max(Math.ceil(Math.log10(most)), first + 1);
   const made = { ...axis, from: 10 ** first, to: 10 ** last };
   const every = Math.ceil((last - first) * 2.2 * em / (bottom - top));
   box(left, top, right - left, bottom - top, 0, theme.background);

@@ -1,12 +1,118 @@
 #include "film/layer.hpp"
+
+#include "numeric/state.hpp"
 #include "render/stroke.hpp"
+#include "scene/captions.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace doppel {
+namespace {
+
+// Fading points have to be redrawn. To limit this, the points of a trail fade in groups, in steps of 3 % of the light,
+// and rarely two groups at once.
+constexpr long group = 24;      // samples
+constexpr double steps = 32;    // from full light to none
+constexpr double fading = 1.6;  // brightness = freshness to this power
+
+}  // namespace
+
+Trail::Trail(const Scene& scene, const Style& style, Color color, float width, float jump)
+    : sample_hz_(scene.preset.sample_hz.value()),
+      trail_s_(scene.preset.video.trail_s),
+      jump_(jump),
+      pen_{.vertices = {}, .width = width, .color = color, .glow = style.glow} {}
+
+std::optional<Point> Trail::end() const {
+    return points_.empty() ? std::nullopt : std::optional(points_.back().at);
+}
+
+/// Removes whole groups that have faded out.
+void Trail::add(Point at, double time, double now) {
+    const long g = static_cast<long>(std::floor(time * sample_hz_ + 1e-6)) / group;
+    if (!points_.empty() && points_.back().group != g) {
+        simplify(points_);
+        // the new group begins where the last one ends
+        TrailPoint first = points_.back();
+        first.group = g;
+        first.starts = false;
+        points_.push_back(first);
+    }
+    const bool starts = !points_.empty() && std::abs(at.x - points_.back().at.x) > jump_;
+    if (starts) points_.back().joint = true;
+    points_.push_back({.at = at, .time = time, .group = g, .starts = starts, .joint = starts});
+    while (end_of(points_.front().group) < now - trail_s_) points_.pop_front();
+}
+
+/// Removes points of the newest group between which the path bends evenly.
+void Trail::simplify(Points& points) const {
+    std::size_t begin = points.size() - 1;
+    while (begin > 0 && points[begin - 1].group == points.back().group) --begin;
+    std::vector<Stroke::Vertex> path;
+    for (std::size_t i = begin; i < points.size(); ++i) {
+        // brightness falls almost linearly over short times
+        const double part = (points[i].time - points[begin].time) / trail_s_;
+        path.push_back(
+            {.at = points[i].at, .alpha = static_cast<float>(part), .bend = points[i].bend, .joint = points[i].joint});
+    }
+    std::size_t kept = begin;
+    for (std::size_t i = 0; i < path.size(); ++kept) {
+        const auto piece = i + 1 < path.size() ? next_piece(path, i) : StrokePiece{i, i + 1};
+        points[kept] = points[begin + i];
+        points[kept].bend = piece.bend;
+        points[kept].joint = true;
+        i = piece.last;
+    }
+    points.resize(kept);
+}
+
+/// The time of a group's last sample, s.
+double Trail::end_of(long g) const {
+    return static_cast<double>((g + 1) * group) / sample_hz_;
+}
+
+/// The time for which the points of a group show their age; it advances in steps.
+double Trail::faded_until(long g, double now) const {
+    const double end = end_of(g);
+    const double light = std::pow(std::max(1 - (now - end) / trail_s_, 0.0), fading);
+    return end + (1 - std::pow(std::ceil(steps * light) / steps, 1 / fading)) * trail_s_;
+}
+
+void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, Point shift) const {
+    if (!(trail_s_ > 0) || !(pen_.width > 0) || points_.empty()) return;
+    auto points = points_;
+    if (head) points.push_back({.at = *head, .time = now, .group = points.back().group});
+    simplify(points);
+    Stroke stroke = pen_;
+    const auto end_stroke = [&] {
+        if (!stroke.vertices.empty()) list.push_back(std::exchange(stroke, pen_));
+    };
+    std::optional<long> last_group;
+    double until = 0;
+    for (const auto& point : points) {
+        const Point at{point.at.x + shift.x, point.at.y + shift.y};
+        const bool is_within = area.contains(at);
+        if (point.starts || !is_within) end_stroke();
+        if (!is_within) continue;
+        if (point.group != last_group) until = faded_until(point.group, now);
+        last_group = point.group;
+        const double freshness = std::clamp(1 - (until - point.time) / trail_s_, 0.0, 1.0);
+        constexpr double thinnest = 0.55;
+        stroke.vertices.push_back({.at = at,
+                                   .alpha = static_cast<float>(std::pow(freshness, fading)),
+                                   .width = static_cast<float>(thinnest + (1 - thinnest) * freshness),
+                                   .glow = static_cast<float>(std::pow(freshness, 4)),
+                                   .bend = point.bend,
+                                   .joint = point.joint});
+    }
+    end_stroke();
+}
+
 namespace {
 
 /// Adds the part of a line that lies in the area, if any.
@@ -244,10 +350,103 @@ private:
     std::vector<Path> paths_;
 };
 
+double degrees(double rad) {
+    return rad * 180 / pi;
+}
+
+/// The fraction of the interval between two samples at which θ1 passes a whole number of turns upwards, if it does.
+std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>& to, double dt) {
+    const double turns = std::floor(to.theta / (2 * pi));
+    if (!(turns > std::floor(from.theta / (2 * pi)))) return std::nullopt;
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = (low + high) / 2;
+        const bool beyond = hermite(from.theta, from.omega, to.theta, to.omega, dt, middle) >= 2 * pi * turns;
+        (beyond ? high : low) = middle;
+    }
+    return high;
+}
+
+class PhaseLayer final : public Layer {
+public:
+    PhaseLayer(const FilmState& state, const PhasePanel& panel)
+        : Layer(state), panel_(panel), trails_{trail_of(0), trail_of(1)} {}
+
+    void backdrop(DisplayList& list) const override {
+        const Area &area = panel_.area, around = panel_.panel;
+        if (!video_.transparent)
+            list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
+        auto style = axis_style();
+        add_axis(panel_.angle, area, around, style, list, 90);
+        style.edge = AxisStyle::Edge::left;
+        add_axis(panel_.rate, area, around, style, list);
+        const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
+                                         video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
+        const auto fits = fitted_text(layout_, heading, px(style_.font.strip), Weight::regular, around.width());
+        list.push_back(label(fits.text, {around.left, around.top - 12 * layout_.text}, fits.size, theme_.text));
+    }
+
+    void add() override {
+        for (std::size_t side = 0; side < 2; ++side)
+            video_.phase == PhaseKind::rate
+                ? trails_[side].add(at(state_.bobs(side)[link_]), state_.time(), state_.time())
+                : add_to_section(side);
+    }
+    void frame(DisplayList& list) const override {
+        const float dot = px(1.2 * style_.width.trace), head = std::max(2.3f * px(style_.width.trace), 2.0f);
+        for (std::size_t side = 2; side-- > 0;) {
+            const auto color = theme_.sides[side];
+            for (const auto& point : section_[side]) list.push_back(Capsule{point, point, dot, color.with_alpha(0.8f)});
+            if (video_.phase != PhaseKind::rate) continue;
+            const Point now = at(state_.bobs(side)[link_]);
+            auto trail = trails_[side];
+            if (state_.is_between()) trail.add(now, state_.time(), state_.time());
+            trail.draw(panel_.area, state_.time(), std::nullopt, list);
+            list.push_back(Capsule{now, now, head, color});
+        }
+    }
+
+private:
+    Point at(double theta, double omega) const {
+        return {panel_.angle.at(degrees(std::remainder(theta, 2 * pi))), panel_.rate.at(degrees(omega))};
+    }
+    Point at(const Bob<double>& bob) const { return at(bob.theta, bob.omega); }
+    Trail trail_of(std::size_t side) const {
+        // a path that leaves at +180° continues at -180°
+        return {state_.scene, style_, theme_.sides[side], px(style_.width.trail), panel_.area.width() / 2};
+    }
+    /// Adds a point if the path since the last sample crosses the section.
+    void add_to_section(std::size_t side) {
+        const auto& bobs = state_.bobs(side);
+        if (const auto& last = last_bobs_[side]) {
+            const double dt = state_.time() - last_time_;
+            if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
+                const auto &from = (*last)[link_], &to = bobs[link_];
+                const double theta = hermite(from.theta, from.omega, to.theta, to.omega, dt, *share);
+                section_[side].push_back(at(theta, std::lerp(from.omega, to.omega, *share)));
+            }
+        }
+        last_bobs_[side] = bobs;
+        if (side == 1) last_time_ = state_.time();
+    }
+
+    const PhasePanel& panel_;
+    const VideoSpec& video_ = state_.scene.preset.video;
+    const std::size_t link_ = static_cast<std::size_t>(video_.phase_link - 1);
+    std::array<Trail, 2> trails_;
+    std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // for a section
+    std::array<std::vector<Point>, 2> section_;
+    double last_time_ = 0;  // s
+};
+
 }  // namespace
 
 std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel) {
     return std::make_unique<PendulumLayer>(state, panel);
+}
+
+std::unique_ptr<Layer> make_phase_layer(const FilmState& state, const PhasePanel& panel) {
+    return std::make_unique<PhaseLayer>(state, panel);
 }
 
 }  // namespace doppel
