@@ -50,9 +50,7 @@ PendulumPanel still_panel(const Layout& layout) {
 Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind kind)
     : state_{scene, make_layout(scene, bounds, kind)} {
     const auto& layout = state_.layout;
-    for (const auto& panel : layout.panels) layers_.push_back(make_pendulum_layer(state_, panel));
-    if (layout.phase) layers_.push_back(make_phase_layer(state_, *layout.phase));
-    for (std::size_t i = 0; i < layout.strips.size(); ++i) layers_.push_back(make_strip_layer(state_, i));
+    layers_ = layers_of(state_);
     const auto& video = scene.preset.video;
     const bool has_cards = video.title_card_s.value() > 0 || video.end_card_s.value() > 0;
     if (!has_cards || layout.panels.empty()) return;

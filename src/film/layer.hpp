@@ -9,14 +9,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace doppel {
-
-/// Cubic Hermite interpolation from p to q with slopes v and w, at the fraction s of the interval dt.
-inline double hermite(double p, double v, double q, double w, double dt, double s) {
-    const double r = 1 - s;
-    return (1 + 2 * s) * r * r * p + s * r * r * dt * v + s * s * (3 - 2 * s) * q - s * s * r * dt * w;
-}
 
 /// A path that fades and narrows with age.
 class Trail {
@@ -60,7 +55,6 @@ struct FilmState {
     const Layout layout;
     Snapshot snapshot{};  // added last
     Outcome outcome{};
-    const std::vector<ShownPendulum> pendulums = shown_pendulums(scene, layout.style);
 
     double time() const { return scene.time(snapshot.pair.moment()); }
     /// Whether the snapshot is between two samples. Curves and trails contain only samples, and are drawn on to the
@@ -68,7 +62,8 @@ struct FilmState {
     bool is_between() const { return snapshot.pair.share > 0; }
     const Observation& seen(const Side& side) const { return &side == &scene.a ? snapshot.pair.a : snapshot.pair.b; }
     const Bobs<double>& bobs(std::size_t pendulum) const {
-        return snapshot.members.empty() ? seen(pendulums[pendulum].side).bobs : snapshot.members[pendulum];
+        if (!snapshot.members.empty()) return snapshot.members[pendulum];
+        return (pendulum == 0 ? snapshot.pair.a : snapshot.pair.b).bobs;
     }
 };
 
@@ -104,6 +99,7 @@ protected:
     }
 
     const FilmState& state_;
+    const VideoSpec& video_ = state_.scene.preset.video;
     const Layout& layout_ = state_.layout;
     const Style& style_ = layout_.style;
     const Theme& theme_ = style_.theme;
@@ -113,8 +109,7 @@ protected:
 
 /// The pendulums of a panel and their trails.
 std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel);
-std::unique_ptr<Layer> make_phase_layer(const FilmState& state, const PhasePanel& panel);
-/// A strip, numbered from the top.
-std::unique_ptr<Layer> make_strip_layer(const FilmState& state, std::size_t index);
+/// Of the panels of pendulums, the phase portrait and the strips, from back to front.
+std::vector<std::unique_ptr<Layer>> layers_of(const FilmState& state);
 
 }  // namespace doppel

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 
 namespace doppel {
@@ -58,72 +57,8 @@ Json fonts_json(const Preset& preset) {
     return fonts;
 }
 
-/// The frame of the whole film that first shows this time.
-long film_frame(const Scene& scene, const Schedule& schedule, double time_s) {
-    const long frame = scene.frames.first_from(moment_at(time_s * scene.preset.sample_hz.value()));
-    return schedule.at(std::min(frame, schedule.motion - 1));
-}
-
 }  // namespace
 
-void FlipFinder::add(const PairState& state) {
-    constexpr std::size_t most_links = 3;
-    std::size_t at = 0;
-    for (const char letter : scene_.letters()) {
-        const auto& bobs = (letter == 'a' ? state.a : state.b).bobs;
-        if (!scene_.side(letter).has_angles || bobs.size() > most_links) continue;
-        for (std::size_t link = 0; link < bobs.size(); ++link, ++at) {
-            const double turns = std::round(bobs[link].theta / (2 * pi));
-            if (at == turns_.size()) turns_.push_back(turns);
-            if (turns != std::exchange(turns_[at], turns))
-                flips_.push_back({scene_.time(state.sample),
-                                  "flip",
-                                  fmt::format("{}link {} flips",
-                                              scene_.is_single() ? "" : (letter == 'a' ? "A: " : "B: "), link + 1),
-                                  {{"side", std::string(1, letter)}, {"link", link + 1}}});
-        }
-    }
-}
-
-std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome) {
-    auto events = std::move(flips);
-    events.insert(events.begin(), {0, "release", "Release"});
-    if (const auto since = outcome.divergence.since()) events.push_back({*since, "divergence", "Divergence"});
-    for (const auto& [at_s, speed] : scene.preset.video.speed.changes)
-        if (at_s.numerator > 0)
-            events.push_back({at_s.value(), "speed", "Speed " + speed.text(), {{"speed", speed.text()}}});
-    std::ranges::stable_sort(events, {}, &FilmEvent::time_s);
-    return events;
-}
-
-Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown) {
-    const auto schedule = schedule_of(scene);
-    Json list = Json::array();
-    for (const auto& event : events) {
-        Json json{{"event", event.event}, {"time_s", event.time_s}};
-        const long frame = film_frame(scene, schedule, event.time_s);
-        if (shown && !shown->contains(frame)) continue;
-        if (shown) json["film_s"] = static_cast<double>(frame - shown->first) / scene.fps.value();
-        json.update(event.details);
-        list.push_back(std::move(json));
-    }
-    return list;
-}
-
-std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events,
-                                        const FrameRange& shown) {
-    const auto schedule = schedule_of(scene);
-    std::map<long, std::string> chapters;
-    if (schedule.title > 0 || shown.first > 0) chapters[0] = scene.preset.title;
-    for (const auto& event : events) {
-        const long frame = film_frame(scene, schedule, event.time_s) - shown.first;
-        if (!shown.contains(shown.first + frame)) continue;
-        const bool is_near =
-            !chapters.empty() && static_cast<double>(frame - chapters.rbegin()->first) < scene.fps.value();
-        if (event.event != "flip" || !is_near) chapters[frame] = event.chapter;
-    }
-    return chapters;
-}
 Json method_json(const Scene& scene, const Side& side) {
     Json json{{"model", name_of(side.motion.model)}, {"why", side.why}, {"integrator", side.method.name}};
     if (side.method.adaptive) {

@@ -53,12 +53,10 @@ struct PictureJson {
     }
 };
 
-/// A strip: its axes, the position of its value if it has one, and colours and widths of curves. Adds its constant
-/// items to `backdrop`.
-Json strip_json(const FilmState& state, std::size_t index, const PictureJson& json_of, DisplayList& backdrop) {
-    const auto& strip = state.layout.strips[index];
+/// A strip: its axes, the position of its value if it has one, and colours and widths of curves. Adds its other words
+/// to `backdrop`.
+Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJson& json_of, DisplayList& backdrop) {
     const double start_distance = state.snapshot.pair.distance;
-    make_strip_layer(state, index)->backdrop(backdrop);
     const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance, state.layout.style);
     auto words = placed_caption(strip, state.scene, state.layout, curves, start_distance == 0);
     Json json{{"kind", name_of(strip.kind)},
@@ -99,21 +97,17 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     for (const auto& width : width_names) json[std::string(width.key)] = style.width.*width.member;
     DisplayList backdrop;
     if (!video.transparent) backdrop.push_back(filled(video.size, style.theme.background));
-    for (const auto& panel : layout.panels) {
-        make_pendulum_layer(state, panel)->backdrop(backdrop);
+    for (const auto& layer : layers_of(state)) layer->backdrop(backdrop);
+    for (const auto& panel : layout.panels)
         json["panels"].push_back({{"area", json_of(panel.area)},
                                   {"shown", panel.shown},
                                   {"center", json_of(panel.center)},
                                   {"origin", {panel.center_x, panel.center_y}},
                                   {"scale", panel.px_per_m}});
-    }
-    if (const auto& phase = layout.phase) {
-        make_phase_layer(state, *phase)->backdrop(backdrop);
+    if (const auto& phase = layout.phase)
         json["phase"] = {
             {"area", json_of(phase->area)}, {"angle", axis_json(phase->angle)}, {"rate", axis_json(phase->rate)}};
-    }
-    for (std::size_t i = 0; i < layout.strips.size(); ++i)
-        json["strips"].push_back(strip_json(state, i, json_of, backdrop));
+    for (const auto& strip : layout.strips) json["strips"].push_back(strip_json(state, strip, json_of, backdrop));
     json["backdrop"] = json_of.all(backdrop);
     for (const auto& [key, label] : {std::pair("clock", &layout.clock), {"speed", &layout.speed}})
         if (*label) json[key] = json_of(**label);
@@ -213,16 +207,14 @@ Numbers page_numbers(const Scene& scene, const Snapshot& snapshot, double start_
     return numbers;
 }
 
-/// The page's data except its motion of samples 0 … `samples`, for src/film/page/player.js.
-Json page_json(const Scene& scene, const MotionBounds& bounds, long samples) {
+/// The page's data except its motion of samples 0 … `samples`, for src/film/page/player.js. `first`: the first of them.
+Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first, long samples) {
     const auto& video = scene.preset.video;
     const auto style = make_style(video, 1, 1);
     const auto clock = clock_text(scene, 0);
     Json bodies = Json::array(), pictures = Json::array();
     for (const auto& pendulum : shown_pendulums(scene, style, !has_panel_for_each(video)))
         bodies.push_back(body_json(pendulum));
-    PairRun pair(scene);
-    const Snapshot first{pair.next(never_stopped), {}};
     pictures.push_back(picture_json(scene, bounds, first));
     if (!is_tall(video)) {
         auto upright = scene;
@@ -311,8 +303,8 @@ FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& 
 
 void FilmPage::add(const Snapshot& snapshot) {
     if (snapshot.pair.share > 0) return;
-    if (snapshot.pair.sample == 0) start_distance_ = snapshot.pair.distance;
-    const auto now = page_numbers(scene_, snapshot, start_distance_, computes_);
+    if (snapshot.pair.sample == 0) first_ = snapshot;
+    const auto now = page_numbers(scene_, snapshot, first_.pair.distance, computes_);
     for (auto [channels, numbers] : {std::pair(&places_, &now.places), {&curves_, &now.curves}}) {
         channels->resize(numbers->size());
         for (std::size_t i = 0; i < numbers->size(); ++i) (*channels)[i].push_back(static_cast<float>((*numbers)[i]));
@@ -354,7 +346,7 @@ Json FilmPage::motion_json() const {
 }
 
 void FilmPage::finish() {
-    auto film = page_json(scene_, bounds_, samples_ - 1);
+    auto film = page_json(scene_, bounds_, first_, samples_ - 1);
     if (!places_.empty()) film["motion"] = motion_json();
     std::vector<std::uint32_t> bits;
     for (const auto& curve : curves_)
@@ -373,7 +365,9 @@ std::optional<HtmlPage> film_player(Scene scene) {
         video.layout = Arrangement::single;
         video.strips.clear();
     }
-    return player(scene, page_json(scene, Recording(scene, {1}, true, never_stopped).bounds(), scene.samples));
+    PairRun pair(scene);
+    return player(scene, page_json(scene, Recording(scene, {1}, true, never_stopped).bounds(),
+                                   {pair.next(never_stopped), {}}, scene.samples));
 }
 
 double estimated_page_bytes(const Scene& scene) {

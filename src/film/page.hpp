@@ -35,7 +35,7 @@ private:
     const std::filesystem::path place_;
     const bool computes_;  // the script computes the motion
     Transaction& parts_;
-    double start_distance_ = 0;
+    Snapshot first_;
     long samples_ = 0;  // added
     Channels places_, curves_;
 };

@@ -91,17 +91,16 @@ function compute(of) {
   wanted = of;
   worker ??= new Worker(URL.createObjectURL(new Blob([`const chains = (${makeChains})();
     onmessage = ({ data: { of, samples } }) => {
-      let last = Date.now();
+      let next = Date.now() + 500;
       const states = of.map((p, k) => chains.run(p, p.method, p.step, p.steps, samples, sample => {
-        if (Date.now() - last > 200) last = Date.now(), postMessage({ share: (k + sample / samples) / of.length });
+        if (Date.now() > next) next = Date.now() + 200, postMessage({ share: (k + sample / samples) / of.length });
       }));
       postMessage({ states }, states.map(list => list.buffer));
     };`], { type: "text/javascript" })));
   return turn = turn.then(() => wanted === of && new Promise(done => {
-    const begun = performance.now();
     worker.onmessage = ({ data: { share, states } }) => {
       if (states) done(motionOf(of, states));
-      else if (wanted === of && performance.now() - begun > 500) say(`computing the motion: ${Math.round(100 * share)} %`);
+      else if (wanted === of) say(`computing the motion: ${Math.round(100 * share)} %`);
     };
     worker.postMessage({ of, samples: film.samples });
   }));
