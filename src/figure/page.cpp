@@ -62,14 +62,6 @@ Picture part_of(const Picture& picture, int left, int top, Size size) {
     return part;
 }
 
-/// The first level fits into one tile; each further level has twice as many pixels per side.
-std::vector<Picture> levels_of(Picture cells) {
-    std::vector<Picture> levels{std::move(cells)};
-    while (std::max(levels[0].size.width, levels[0].size.height) > tile)
-        levels.insert(levels.begin(), halved(levels[0]));
-    return levels;
-}
-
 /// The colour bar from its lower end, and its labels: [share of the bar, text].
 Json scale_json(const HeatMap& map, const Theme& theme) {
     constexpr int stops = 64;
@@ -158,7 +150,10 @@ Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& th
     const auto& plot = page.panels.front();
     const auto name = figure.name + ".tiles", html = figure.name + ".html";
     const auto folder = files.directory(name);
-    const auto levels = levels_of(cell_picture(*plot.map, theme));
+    // the first level fits into one tile; each further level has twice as many pixels per side
+    std::vector<Picture> levels{cell_picture(*plot.map, theme)};
+    while (std::max(levels[0].size.width, levels[0].size.height) > tile)
+        levels.insert(levels.begin(), halved(levels[0]));
     for (std::size_t level = 0; level < levels.size(); ++level) {
         const auto [width, height] = levels[level].size;
         const int across = (width + tile - 1) / tile, down = (height + tile - 1) / tile;
