@@ -85,7 +85,8 @@ void Grid::check(const TomlReader& table) const {
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
         const bool is_curves = axis == &color_ || axis == &panel_;
         if (!axis->levels.empty() && !is_curves)
-            throw table.error(axis->role, "takes numbers; \"{}\" is for panel or color", axis->key);
+            throw table.error(
+                axis->role, "takes numbers, which these are not; \"{}\" by its texts is for panel or color", axis->key);
         if (axis->is_setting() && axis != &x_)
             throw table.error(axis->role, "cannot be \"setting\", which is only for x");
     }
@@ -112,6 +113,9 @@ void Grid::check(const TomlReader& table) const {
               "\"convergence\" takes [grid.x] key = \"setting\", and no [grid.y] or right"},
              {quantity_ == Quantity::stroboscopic && (is_map() || right_), "quantity",
               "\"stroboscopic\" has many numbers per pair, which are drawn as points over x; leave the other axes out"},
+             {compares_methods() && (quantity_ == Quantity::exponent || right_ == name_of(Quantity::exponent)),
+              quantity_ == Quantity::exponent ? "quantity" : "right",
+              "\"exponent\" is computed by a method of its own; an axis of methods changes nothing"},
              {!is_map() && threshold_, "threshold", "is only for maps, which have [grid.y]"},
              {overlay_ == Overlay::energy_bound && !is_of_rest, "overlay",
               "\"energy-bound\" is for two ideal links released at rest, theta2_deg over theta1_deg"},
@@ -145,6 +149,7 @@ void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t 
     if (!x_.is_of_method && !y_.is_of_method) use_common_method(group.pair, pair_at({number, 0, 0}), reader.stop);
     const std::array ends{pair_at({number, 0, 0}), pair_at({number, y_.count - 1, group.x.count - 1})};
     InCommon all{.have_same_method = x_.keeps_method && y_.keeps_method,
+                 .are_compared_by_method = compares_methods(),
                  .difference = difference_,
                  .is_of_one_side = x_.is_of_one_side};
     const auto include = [&](const Cell& cell) {  // a friction may be 0 in some of them
@@ -184,11 +189,18 @@ void Grid::make_map() {
 
 /// The subtitle: system, integrator, and difference of the two pendulums, as far as all pairs share them.
 void Grid::make_subtitle() {
-    SweptKeys swept{.method = words().method};
+    auto swept = swept_keys();
+    swept.method = words().method;
     auto pair = groups_.front().pair;
     if (!is_of_distance(quantity_)) pair.b = pair.a;
+    for (const auto* axis : {&x_, &y_, &color_, &panel_}) axis->put_both(pair);  // the difference is stated separately
+    subtitle_ =
+        pair_subtitle(make_scene(pair), swept, is_of_distance(quantity_) ? x_.difference_words(difference_) : "");
+}
+
+SweptKeys Grid::swept_keys() const {
+    SweptKeys swept;
     for (const auto* axis : {&x_, &y_, &color_, &panel_}) {
-        axis->put_both(pair);  // the difference is stated separately
         if (axis->angle) swept.angles.push_back(*axis->angle);
         swept.step |= axis->is_of_method;
         swept.keys.push_back(axis->key);
@@ -198,8 +210,15 @@ void Grid::make_subtitle() {
                 if (axis->key == "system" && level.table(top, "a").has(key)) swept.keys.push_back("." + key);
             }
     }
-    subtitle_ =
-        pair_subtitle(make_scene(pair), swept, is_of_distance(quantity_) ? x_.difference_words(difference_) : "");
+    return swept;
+}
+
+bool Grid::compares_methods() const {
+    const auto swept = swept_keys();
+    const auto is_of_method = [](const std::string& key) {
+        return key.ends_with(".model") || key.ends_with(".integrator") || key.ends_with(".precision");
+    };
+    return swept.step || std::ranges::any_of(swept.keys, is_of_method);
 }
 
 std::size_t Grid::together() const {
@@ -215,10 +234,11 @@ double Grid::units(std::size_t trial) const {
 std::optional<Experiment::Releases> Grid::releases() const {
     constexpr std::size_t most_links = 3;
     if (pair_.a.is_mechanism() || !pair_.a.physical.is_none() || pair_.a.links() > most_links) return std::nullopt;
+    if (groups_.size() > 1) return std::nullopt;  // the page has one system
     Releases releases{{}, pair_at({0, 0, 0})};
     for (const auto* axis : {&x_, &y_}) {
         if (!axis->exists()) continue;
-        if (!axis->angle) return std::nullopt;
+        if (!axis->angle || axis->key.starts_with("a.") || axis->key.starts_with("b.")) return std::nullopt;
         releases.keys.push_back(axis->key.starts_with("theta") ? fmt::format("system.angle_deg[{}]", *axis->angle)
                                                                : axis->key);
     }
@@ -289,7 +309,8 @@ std::optional<std::string> Grid::nothing_to_draw(std::span<const TrialNumbers> n
     });
     if (right_ || (words().logarithmic ? is_any_above_0 : is_any)) return std::nullopt;
     if (quantity_ == Quantity::stroboscopic) return "the run failed at every value";
-    const auto pairs = fmt::format("{}{}", x_.count, is_map() ? fmt::format(" × {}", y_.count) : "");
+    const auto pairs = fmt::format("{}{}{}", groups_.size() > 1 ? fmt::format("{} × ", groups_.size()) : "", x_.count,
+                                   is_map() ? fmt::format(" × {}", y_.count) : "");
     const bool has_vowel = quantity_ == Quantity::exponent || quantity_ == Quantity::energy_error;
     const auto name = fmt::format("{} {}", has_vowel ? "an" : "a", name_of(quantity_));
     if (is_any) return fmt::format("none of the {} pairs has {} above 0, which a logarithmic scale needs", pairs, name);
@@ -298,7 +319,9 @@ std::optional<std::string> Grid::nothing_to_draw(std::span<const TrialNumbers> n
             "all of the {} pairs failed within {} s; use a smaller step or tolerance, or a shorter scene.duration_s",
             pairs, seconds_text(pair_));
     return fmt::format("none of the {} pairs has {}: {}{}", pairs, name, words().none,
-                       quantity_ == Quantity::parting_time ? ", or apart from the start" : "");
+                       quantity_ == Quantity::parting_time
+                           ? ", or never apart for a second without a break, or apart from the start"
+                           : "");
 }
 
 Json Grid::findings(std::span<const TrialNumbers> numbers) const {

@@ -2,6 +2,7 @@
 
 #include "figure/grid_axis.hpp"
 #include "figure/quantity.hpp"
+#include "scene/captions.hpp"
 
 #include <array>
 #include <optional>
@@ -55,6 +56,9 @@ private:
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();
     void make_subtitle();
+    /// What the axes set, and subtitles leave out.
+    SweptKeys swept_keys() const;
+    bool compares_methods() const;
     template <class Add>
     void visit_columns(const Cell& cell, std::size_t row, std::span<const double> numbers, const Add& add) const;
 

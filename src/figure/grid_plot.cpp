@@ -1,6 +1,7 @@
 #include "analysis/stability.hpp"
 #include "figure/grid.hpp"
 #include "scene/captions.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
@@ -209,10 +210,14 @@ void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& fig
         }
         minimum.push_back(scientific(nearest) + (panel_.exists() ? " in " + panel_.words(p) : ""));
     }
-    figure.captions.push_back(
-        fmt::format("The distance falls with the order of each method; slopes{}: {}. The smallest distance is {}.",
-                    panel_.exists() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
-                    fmt::join(minimum, " and ")));
+    // of the same system, whose distance is the error of the methods
+    const auto keys = paired(keys_of(groups_[0].pair.a), keys_of(groups_[0].pair.b));
+    const bool is_error = std::ranges::all_of(keys, [](const auto& k) { return k.any().is_setting || !k.differs(); });
+    figure.captions.push_back(fmt::format(
+        "{}{}: {}. The smallest distance is {}.",
+        is_error ? "The distance falls with the order of each method; slopes" : "Slopes of the distance over the step",
+        panel_.exists() ? " in " + panel_.words(panel_.count - 1) : "", fmt::join(slopes, ", "),
+        fmt::join(minimum, " and ")));
     for (auto& plot : figure.panels) {
         plot.x = {.label = "step, s (the mean step of adaptive methods)", .logarithmic = true};
         if (mark_step_)

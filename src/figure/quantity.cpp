@@ -40,7 +40,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
          .columns = {"theta_rad", "omega_rad_per_s"},
          .rows = static_cast<std::size_t>(stroboscope.periods),
          .counted = "period",
-         .first_row = stroboscope.transient_periods},
+         .first_row = stroboscope.transient_periods + 1},
         {.label = "CPU time of an Euler step, ns",
          .columns = {"angles_step_ns", "constraints_step_ns"},
          .curves = {"in angles", "with constraints"},
@@ -319,7 +319,8 @@ Measurement::Measurement(const TomlReader& table, std::string_view key, Quantity
     if (quantity == Quantity::energy_error && !scene.a.has_energy_error)
         throw table.error(key, "\"energy_error\" needs a system that conserves energy; a spring is damped");
     const bool has_lanes = all.are_ideal && all.have_same_links;
-    flips_in_lanes_ = quantity == Quantity::flip_time && has_lanes && !a.is_mechanism() && a.links() == 2;
+    flips_in_lanes_ = quantity == Quantity::flip_time && has_lanes && !all.are_compared_by_method &&
+                      !a.is_mechanism() && a.links() == 2;
     if (flips_in_lanes_) words_.method = fmt::format("Taylor series, tolerance {}", scientific(flip_.tolerance));
     if (has_lanes && all.have_same_method && (is_of_distance(quantity) || quantity == Quantity::energy_error))
         run_ = lanes_of(scene);

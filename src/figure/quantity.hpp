@@ -85,8 +85,9 @@ struct QuantityOptions {
 /// What all pairs to measure have in common.
 struct InCommon {
     bool are_ideal = true, have_same_links = true, have_same_method = true;
-    Quad difference = 0;          // that the figure adds to side b of every pair
-    bool is_of_one_side = false;  // it cannot: the key of x belongs to one side
+    bool are_compared_by_method = false;  // by an axis
+    Quad difference = 0;                  // that the figure adds to side b of every pair
+    bool is_of_one_side = false;          // it cannot: the key of x belongs to one side
 };
 
 /// Returns pair i; it stays valid until the next call.

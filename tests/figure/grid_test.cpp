@@ -75,6 +75,22 @@ TEST(Grid, OneByOneFindsWhatLanesFind) {
     }
 }
 
+/// Flips are found by Taylor series, but not where an axis compares methods.
+TEST(Grid, ComparesTheFlipsOfMethods) {
+    const auto figure =
+        figure_from(twins, {"scene.duration_s=6", "system.step_s=1/120", "grid.quantity=flip_time",
+                            "system.angle_deg=[150, 150]", "grid.x.values=[1]", "grid.panel.key=system.integrator",
+                            "grid.panel.values=[\"euler\", \"rk4\", \"taylor\"]"});
+    const auto table = table_text(figure, computed(figure));
+    const auto time_of = [&](const std::string& method) {
+        const auto at = table.find(method + ",1,");
+        EXPECT_NE(at, std::string::npos) << table;
+        return std::stod(table.substr(at + method.size() + 3));
+    };
+    EXPECT_GT(std::abs(time_of("euler") - time_of("taylor")), 1e-2);
+    EXPECT_NEAR(time_of("rk4"), time_of("taylor"), 1e-3);
+}
+
 TEST(Grid, FindsTheSameInAnyOrderOfItsValues) {
     // one link without friction and two with it: not all of them can be in lanes
     const auto of = [](const std::string& quantity, const std::string& values) {

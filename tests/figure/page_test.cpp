@@ -46,6 +46,17 @@ TEST(FigurePage, HoldsTheNumbersOfTheTable) {
     }
 }
 
+/// The page's form has one system, and sets both sides.
+TEST(FigurePage, ReleasesOnlyWhatItsFormCanSet) {
+    const auto has_releases = [](const std::vector<std::string>& sets) {
+        return figure_from(sweep_text, sets).experiment->releases().has_value();
+    };
+    EXPECT_TRUE(has_releases({}));
+    EXPECT_FALSE(has_releases({"grid.color.key=system.gravity_m_per_s2", "grid.color.values=[9.8, 1.6]"}));
+    EXPECT_FALSE(has_releases({"grid.panel.key=system.gravity_m_per_s2", "grid.panel.values=[9.8, 1.6]"}));
+    EXPECT_FALSE(has_releases({"grid.difference=0", "grid.x.key=b.angle_deg[0]"}));
+}
+
 TEST(FigurePage, HoldsTheCellsOfAMapFromTheLowerLeft) {
     const auto figure = figure_from(map_text);
     Figure drawn;
