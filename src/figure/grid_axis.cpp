@@ -58,7 +58,7 @@ void GridAxis::fields(KeyVisitor& visit) {
            .maximum = max_values},
           values);
     visit({.key = "labels",
-           .help = "names of the values in picture and table",
+           .help = "names of the values in the picture, and in the table where they are no numbers",
            .absent = "the values",
            .only = {values.has_value(), "needs values, one name for each"},
            .is_drawn = true},

@@ -253,7 +253,7 @@ private:
             return place_at(side, std::get<Place<double>>(end));
         };
         const auto draw = [&](Point from, Point to, float width) {
-            add_line(from, to, width, color, panel_.area, list);
+            add_line(from, to, width, color, panel_.area.grown(-width, -width), list);
         };
         for (const auto& line : side.lines) {
             if (line.kind == MechanismLine::Kind::rod) draw(end_at(line.from), end_at(line.to), line.width * radius);

@@ -127,8 +127,7 @@ SideTexts side_texts(const std::vector<KeyPair>& pairs, bool of_b, bool are_comp
 }
 
 /// For side b or side a: the difference from the other side.
-SideCaptions difference_captions(SideTexts texts, bool of_b, bool has_label, Wording wording) {
-    auto& [differs, start] = texts;
+SideCaptions difference_captions(Texts differs, Texts start, bool of_b, bool has_label, Wording wording) {
     if (wording == Wording::plain) {
         start.clear();
         for (auto& text : differs)  // the number alone
@@ -243,8 +242,8 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
             words = side.replay ? SideCaptions{"measured", start}
                                 : SideCaptions{"computed", joined(setting_texts(pairs, of_b, false))};
         else
-            words =
-                differ ? SideCaptions{system_words(spec), start} : difference_captions(texts, of_b, has_label, wording);
+            words = differ ? SideCaptions{system_words(spec), start}
+                           : difference_captions(texts.differs, texts.start, of_b, has_label, wording);
         words = {spec.label.value_or(words.heading), spec.note.value_or(words.note)};
     }
     return both;

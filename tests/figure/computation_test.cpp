@@ -1,5 +1,6 @@
 // Resuming from a record.
 #include "figure/computation.hpp"
+
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>

@@ -101,7 +101,7 @@ inline const std::vector<RefusedPreset> refused_system{
         "[system]\nstep_s = \"fast\"",
         "presets/x.toml:2:1: [system] step_s must be a number or a fraction such as \"1/30000\"; it is \"fast\""},
     RefusedPreset{"[system]\nstep_s = -0.1", "presets/x.toml:2:1: [system] step_s must be > 0; it is -0.1"},
-    RefusedPreset{"[a.track]\nfile = \"x.csv\"\noffset_deg = [1e300, 0]",
+    RefusedPreset{"[a.track]\nfile = \"data/double-pendulum-track/piece-00.csv\"\noffset_deg = [1e300, 0]",
                   "presets/x.toml:3:1: [a.track] offset_deg must be from -1000000 to 1000000: beyond, rounding hides "
                   "the motion; one is 1e+300"},
     RefusedPreset{"[system.pivot]\nphase_deg = -1e7",

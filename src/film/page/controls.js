@@ -48,6 +48,14 @@ const quantities = [["angle", "angle_deg", "°", degrees], ["rate", "omega_deg_p
   ["mass", "mass_kg", "kg", 1], ["length", "length_m", "m", 1], ["gravity", "gravity_m_per_s2", "m/s²", 1]];
 let differing = 0;  // numbers in which the film's pendulums differ
 const numbersOf = (chain, [name, , , per]) => [chain[name]].flat().map(v => v * per);
+// Whether the numbers of all pendulums go from the first to the last in equal steps.
+const areEven = () => bodies.every(({ chain }, k) => quantities.every(quantity => {
+  const [first, last] = [bodies[0], bodies.at(-1)].map(body => numbersOf(body.chain, quantity));
+  return numbersOf(chain, quantity).every((v, i) => {
+    const even = first[i] + (last[i] - first[i]) * k / Math.max(bodies.length - 1, 1);
+    return Math.abs(v - even) <= 1e-12 * Math.max(1, Math.abs(v));
+  });
+}));
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
 // With the film's numbers, also after form.reset().
 function makeForm() {
@@ -98,18 +106,26 @@ async function releaseAnew(playsThen) {
   if (!isNewest) return draw();
   const drift = made.drift >= 0 ? `energy drift ${scientific(made.drift)} of the potential range`
     : "the motion is too fast for it and is not finite";
-  const single = differing > 1 ? "; the pendulums differ in one number now" : "";
+  const single = differing > 1 || !areEven() ? "; the pendulums differ in one number now" : "";
   say(`Runge–Kutta 4, steps of 1/${Math.round(1 / of[0].step)} s; ${drift}${single}`);
   if (playsThen && !held) play(true);
   draw();
 }
 const fraction = (n, d) => n % d === 0 ? n / d : `"${n}/${d}"`;
+const listed = (chain, quantity) => `[${numbersOf(chain, quantity).map(v => shortened(v, 15)).join(", ")}]`;
+// The members of an ensemble: their number, or where they do not go in equal steps their numbers.
+function membersOf(chains) {
+  if (chains[0] !== bodies[0].chain || areEven()) return chains.length;
+  const numbers = chain => quantities.filter(([name]) => ["angle", "mass", "length"].includes(name))
+    .map(quantity => `${quantity[1]} = ${listed(chain, quantity)}`).join(", ");
+  return `[\n  ${chains.map(chain => `{ ${numbers(chain)} }`).join(",\n  ")},\n]`;
+}
 // Of the film as it is, or of the form.
 function presetOf(chains) {
   const [samples, seconds] = film.sample_hz;
   const [a, b] = [chains[0], chains.at(-1)].map(chain => [...quantities.map(quantity => {
-    const list = numbersOf(chain, quantity).map(v => shortened(v, 14)).join(", ");
-    return `${quantity[1]} = ${quantity[0] === "gravity" ? list : `[${list}]`}`;
+    const list = listed(chain, quantity);
+    return `${quantity[1]} = ${quantity[0] === "gravity" ? list.slice(1, -1) : list}`;
   }), ...(chain.method ? [`integrator = "${chain.method}"`, `step_s = ${fraction(seconds, samples * chain.steps)}`]
     : ["accuracy = 1e-6"])]);
   const differences = b.filter(line => !a.includes(line)).join("\n");
@@ -117,7 +133,7 @@ function presetOf(chains) {
     'kind = "pair"', `duration_s = ${fraction(film.samples * seconds, samples)}`,
     `sample_hz = ${fraction(samples, seconds)}`, "", "[system]", `links = ${chains[0].angle.length}`, ...a, "",
     ...(differences ? ["[b]", differences, ""] : []),
-    "[video]", `layout = "${layout}"`, ...(isEnsemble ? [`members = ${bodies.length}`] : []), ""].join("\n");
+    "[video]", `layout = "${layout}"`, ...(isEnsemble ? [`members = ${membersOf(chains)}`] : []), ""].join("\n");
 }
 
 // Pointers: a bob is dragged, a strip sets the time, any other place plays or pauses.

@@ -162,21 +162,35 @@ function scientific(v) {
   return `${digits} × ${powerOfTen(Number(e))}`;
 }
 
-// Of a release by hand: where a logarithmic axis does not hold the curve, whole decades that do, drawn over the film's.
-function decadesOf({ axis, area: [left, top, right, bottom] }, list) {
-  const found = list.filter(v => v > 0).sort(), [least, most] = [found[0], found.at(-1)], em = picture.em;
-  if (!axis.logarithmic || !(least < axis.from || most > axis.to)) return axis;
-  const first = Math.floor(Math.log10(least)), last = Math.max(Math.ceil(Math.log10(most)), first + 1);
-  const made = { ...axis, from: 10 ** first, to: 10 ** last };
-  const every = Math.ceil((last - first) * 2.2 * em / (bottom - top));
+// Of a release by hand: where an axis does not hold the curves, one that does, with ticks at decades or round numbers.
+function axisOf({ axis, area: [, top, , bottom] }, curves) {
+  const isDrawn = v => axis.logarithmic ? v > 0 : Number.isFinite(v);
+  let [least, most] = axis.logarithmic ? [Infinity, -Infinity] : [0, 0];
+  for (const curve of curves)
+    for (const v of curve) if (isDrawn(v)) [least, most] = [Math.min(least, v), Math.max(most, v)];
+  if (!(least < axis.from || most > axis.to)) return axis;
+  const [low, high] = axis.logarithmic ? [Math.log10(least), Math.log10(most)] : [least, most];
+  const rough = Math.max((high - low) * 2.2 * picture.em / (bottom - top), 1e-12);
+  const ten = 10 ** Math.floor(Math.log10(rough));
+  const step = axis.logarithmic ? Math.ceil(rough) : ten * [1, 2, 5, 10].find(n => n * ten >= rough);
+  const unit = axis.logarithmic ? 1 : step, first = Math.floor(low / unit);
+  const last = Math.max(Math.ceil(high / unit), first + 1);
+  const of = n => axis.logarithmic ? 10 ** (n * unit) : n * unit, ticks = [];
+  for (let n = first; n <= last; n += step / unit)
+    ticks.push([of(n), axis.logarithmic ? powerOfTen(n) : written(Number(of(n).toPrecision(6)))]);
+  return { ...axis, from: of(first), to: of(last), ticks };
+}
+// The ticks of such an axis, over the film's.
+function drawAxis({ area: [left, top, right, bottom] }, axis) {
+  const em = picture.em, areas = strips.map(strip => strip.area);
+  const from = Math.max(0, ...areas.filter(a => a[2] < left && a[1] < bottom && a[3] > top).map(a => a[2] + 1));
   box(left, top, right - left, bottom - top, 0, theme.background);
-  box(0, top - 0.6 * em, left, bottom - top + 1.2 * em, 0, theme.background);
-  for (let e = first; e <= last; e += every) {
-    const y = along(made, 10 ** e);
+  box(from, top - 0.6 * em, left - from, bottom - top + 1.2 * em, 0, theme.background);
+  for (const [v, words] of axis.ticks) {
+    const y = along(axis, v);
     box(left, y, right - left, Math.max(1, picture.grid), 0, theme.grid);
-    text(powerOfTen(e), [left - 0.55 * em, y + 0.36 * em], em, "right", 400, theme.quiet_text);
+    text(words, [left - 0.55 * em, y + 0.36 * em], em, "right", 400, theme.quiet_text);
   }
-  return made;
 }
 
 function verticalLine(x, top, bottom, color) {
@@ -205,7 +219,9 @@ const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color
 const stripOfPair = Math.max(0, strips.findIndex(strip => strip.kind === "distance"));
 function drawStrip(strip, index) {
   const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[index];
-  const axis = motion === original ? strip.axis : decadesOf(strip, curves[0]), at = t => along(strip.time, t);
+  const axis = motion === original ? strip.axis : (motion.axes ??= [])[index] ??= axisOf(strip, curves);
+  const at = t => along(strip.time, t);
+  if (axis.ticks) drawAxis(strip, axis);
   const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
