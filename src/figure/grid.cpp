@@ -204,7 +204,8 @@ SweptKeys Grid::swept_keys() const {
         if (axis->angle) swept.angles.push_back(*axis->angle);
         swept.step |= axis->is_of_method;
         swept.keys.push_back(axis->key);
-        for (const std::string key : {"model", "integrator", "precision", "angle_deg"})
+        for (const std::string key :
+             {"model", "integrator", "step_s", "tolerance", "accuracy", "precision", "angle_deg"})
             for (const auto& level : axis->levels) {
                 auto top = level.top();
                 if (axis->key == "system" && level.table(top, "a").has(key)) swept.keys.push_back("." + key);
@@ -214,11 +215,12 @@ SweptKeys Grid::swept_keys() const {
 }
 
 bool Grid::compares_methods() const {
+    constexpr std::array<std::string_view, 6> names{".model",     ".integrator", ".step_s",
+                                                    ".tolerance", ".accuracy",   ".precision"};
     const auto swept = swept_keys();
-    const auto is_of_method = [](const std::string& key) {
-        return key.ends_with(".model") || key.ends_with(".integrator") || key.ends_with(".precision");
-    };
-    return swept.step || std::ranges::any_of(swept.keys, is_of_method);
+    return swept.step || std::ranges::any_of(swept.keys, [&](const std::string& key) {
+               return std::ranges::any_of(names, [&](std::string_view name) { return key.ends_with(name); });
+           });
 }
 
 std::size_t Grid::together() const {

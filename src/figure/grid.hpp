@@ -58,6 +58,7 @@ private:
     void make_subtitle();
     /// What the axes set, and subtitles leave out.
     SweptKeys swept_keys() const;
+    /// Whether an axis sets the model, the method, its step or its precision.
     bool compares_methods() const;
     template <class Add>
     void visit_columns(const Cell& cell, std::size_t row, std::span<const double> numbers, const Add& add) const;

@@ -246,6 +246,11 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   "\"system.integrator\"\nvalues = [\"euler\", \"rk4\"]",
                   ":4:1: [grid] quantity",
                   {"is computed by a method of its own; an axis of methods changes nothing"}},
+    RefusedFigure{"grid",
+                  "[grid]\nquantity = \"exponent\"\n[grid.x]\nfrom = 10\nto = 20\npoints = 2\n[grid.color]\nkey = "
+                  "\"system\"\nvalues = [{ accuracy = 1e-6 }, { accuracy = 1e-9 }]",
+                  ":4:1: [grid] quantity",
+                  {"is computed by a method of its own; an axis of methods changes nothing"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"period\"", ":4:1: [grid] quantity", {"needs one link; there are 2"}},
     RefusedFigure{"fractal", "", ":2:1: [scene] kind", {"\"grid\"", "it is \"fractal\""}}};
 

@@ -164,7 +164,7 @@ function scientific(v) {
 
 // Of a release by hand: where an axis does not hold the curves, one that does, with ticks at decades or round numbers.
 function axisOf({ axis, area: [, top, , bottom] }, curves) {
-  const isDrawn = v => axis.logarithmic ? v > 0 : Number.isFinite(v);
+  const isDrawn = v => Number.isFinite(v) && (!axis.logarithmic || v > 0);
   let [least, most] = axis.logarithmic ? [Infinity, -Infinity] : [0, 0];
   for (const curve of curves)
     for (const v of curve) if (isDrawn(v)) [least, most] = [Math.min(least, v), Math.max(most, v)];
