@@ -17,8 +17,13 @@ namespace doppel {
 //
 // rate() uses the same law between events, however far a trial step goes.
 
+/// Of models that have these functions for others, but never switch.
+template <class Model>
+inline constexpr bool never_switches = false;
+
 template <class Model>
 concept HasEvents = requires(Model& model, typename Model::State& y) {
+    requires !never_switches<Model>;
     model.switches();
     model.take_modes(y);
     model.settle(y);

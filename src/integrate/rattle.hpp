@@ -7,6 +7,7 @@
 #include "physics/rod_chain.hpp"
 
 #include <array>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -20,9 +21,9 @@ bool forces_depend_on_velocity([[maybe_unused]] const Model& model) {
     return false;
 }
 
-/// RATTLE as a composition: several substeps make one step. Their fractions γ of it are symmetric and sum to 1; `Which`
-/// has those before the middle one, in decimal. A substep of size h from (q, v) to (q1, v1), both on the constraints,
-/// is
+/// RATTLE as a composition: several substeps make one step. Their fractions γ of it are symmetric and sum to 1;
+/// `fractions` are those before the middle one, in decimal. A substep of size h from (q, v) to (q1, v1), both on the
+/// constraints, is
 ///     u  = v + h/2 a(q, v) + M⁻¹ Jᵀ(q) λ ,     q1 = q + h u ,     λ such that C(q1) = 0 ,
 ///     v1 = u + h/2 a(q1, v1) + M⁻¹ Jᵀ(q1) μ ,                     μ such that J(q1) v1 = 0 ,
 /// where a = M⁻¹ F is the acceleration without constraints. u is corrected by the multipliers, never by (q1 − q) / h,
@@ -32,18 +33,20 @@ bool forces_depend_on_velocity([[maybe_unused]] const Model& model) {
 /// remains of second order and time-reversible, although no longer symplectic.
 /// Errors  exit 3 if λ or v1 is not found.
 /// Source  Andersen 1983; Hairer, Lubich & Wanner, Geometric Numerical Integration, §VII.1.4 and §V.3.2.
-template <Unstabilised Model, class Which>
+template <Unstabilised Model>
 class ComposedRattle {
 public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    ComposedRattle(Model& model, const State& start, const Scalar& step)
-        : model_(model),
+    ComposedRattle(Model& model, const State& start, const Scalar& step, std::string_view name,
+                   std::span<const std::string_view> fractions)
+        : name_(name),
+          model_(model),
           friction_(forces_depend_on_velocity(model)),
           y_(start),
           step_(step),
-          sizes_(2 * Which::fractions.size() + 1, step),
+          sizes_(2 * fractions.size() + 1, step),
           q_(start.head(start.size() / 2)),
           v_(start.tail(start.size() / 2)),
           q0_(q_),
@@ -54,9 +57,9 @@ public:
           force_(guess_),
           force_before_(guess_),
           newton_(model, q_) {
-        const std::size_t middle = Which::fractions.size();
+        const std::size_t middle = fractions.size();
         for (std::size_t i = 0; i < middle; ++i) {
-            sizes_[i] = sizes_[2 * middle - i] = number(Which::fractions[i]) * step;
+            sizes_[i] = sizes_[2 * middle - i] = number(fractions[i]) * step;
             sizes_[middle] -= Scalar(2) * sizes_[i];
         }
         model_.free_acceleration(q_, v_, a_);
@@ -142,8 +145,8 @@ private:
             model_.free_acceleration(q_, v_, a_);
             if (unchanged(half, i >= newton_.many)) return;
         }
-        throw method_failed("{}: step {}: friction is too strong for steps of {:g} s; choose a smaller step_s",
-                            Which::method.name, done_ + 1, static_cast<double>(step_));
+        throw method_failed("{}: step {}: friction is too strong for steps of {:g} s; choose a smaller step_s", name_,
+                            done_ + 1, static_cast<double>(step_));
     }
 
     /// Whether the forces at the new velocity are unchanged to rounding. If large forces cancel, this never happens;
@@ -161,9 +164,10 @@ private:
             "{}: step {}: the constraints still have an error of {:.2g} after {} corrections; choose a smaller step_s "
             "than "
             "{:g}",
-            Which::method.name, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
+            name_, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
     }
 
+    std::string_view name_;
     Model& model_;
     bool friction_;
     State y_;
@@ -177,12 +181,19 @@ private:
     Newton<Model> newton_;
 };
 
+/// With the fractions of `Which`.
+template <Unstabilised Model, class Which>
+struct RattleStepper : ComposedRattle<Model> {
+    RattleStepper(Model& model, const typename Model::State& start, const typename Model::Scalar& step)
+        : ComposedRattle<Model>(model, start, step, Which::method.name, Which::fractions) {}
+};
+
 struct Rattle {
     static constexpr Method method{"rattle", "RATTLE", 2, false,
                                    "keeps rods; symplectic and time-reversible without friction"};
     static constexpr std::array<std::string_view, 0> fractions{};
     template <Unstabilised Model>
-    using Stepper = ComposedRattle<Model, Rattle>;
+    using Stepper = RattleStepper<Model, Rattle>;
 };
 
 /// Kahan & Li 1997: of the symmetric compositions of nine steps with Σγ = 1, Σγ³ = Σγ⁵ = Σγ³m² = 0 (m: the time of a
@@ -194,7 +205,7 @@ struct Rattle6 {
         "0.3921614440073141392756553300383809325954", "0.3325991367893594386042721253257905699416",
         "-0.7062461725576393598098453372227639944854", "0.08221359629355080023044270533411341434285"};
     template <Unstabilised Model>
-    using Stepper = ComposedRattle<Model, Rattle6>;
+    using Stepper = RattleStepper<Model, Rattle6>;
 };
 
 }  // namespace doppel

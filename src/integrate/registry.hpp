@@ -72,6 +72,13 @@ private:
     typename Which::template Stepper<Model> method_;
 };
 
+/// Whether the number of links is known only at run time.
+template <class Model>
+consteval bool has_any_length() {
+    if constexpr (Constrained<Model>) return Model::Half::RowsAtCompileTime == Eigen::Dynamic;
+    return Model::State::RowsAtCompileTime == Eigen::Dynamic;
+}
+
 /// Whether a method is compiled for this model. It is if it needs more than the right-hand side, or if a virtual call
 /// would be too slow: for a few stages of a few dozen operations. (With calls, midpoint takes 1.45 times as long as
 /// inlined, rk4 of three links 1.2 times.) Chains with a fixed number of links are only used for right-hand sides.
@@ -79,16 +86,16 @@ private:
 template <class Which, class Model>
 consteval bool is_compiled_for() {
     using Any = AnySystem<typename Model::State>;
-    constexpr bool has_any_size = Model::State::RowsAtCompileTime == Eigen::Dynamic;
-    if (!supports<Which, Model>) return false;
-    if (std::is_same_v<Model, Any>) return true;
-    if (!supports<Which, Any>)
-        return has_any_size || std::is_same_v<Which, Taylor> ||
-               std::is_same_v<Model, DoublePendulum<typename Model::Scalar>>;
     constexpr bool has_few_stages =
         std::is_same_v<Which, SemiImplicitEuler> || std::is_same_v<Which, Midpoint> || std::is_same_v<Which, Rk4>;
+    if (!supports<Which, Model>) return false;
+    if (std::is_same_v<Model, Any>) return has_any_length<Model>() || !has_few_stages;
+    if (!supports<Which, Any>)
+        return has_any_length<Model>() || std::is_same_v<Which, Taylor> ||
+               std::is_same_v<Model, DoublePendulum<typename Model::Scalar>>;
     if (std::is_same_v<Which, Euler>) return has_incremental_euler<Model>;
-    return has_few_stages && Hamiltonian<Model> && std::is_same_v<typename Model::Scalar, double> && !has_any_size;
+    return has_few_stages && Hamiltonian<Model> && std::is_same_v<typename Model::Scalar, double> &&
+           !has_any_length<Model>();
 }
 
 /// The method of that name compiled for that model; null if it is not.

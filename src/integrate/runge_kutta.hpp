@@ -271,6 +271,13 @@ private:
         repeat(steps);
     }
 
+    void stage_slope(const State& y, State& slope) { model_.rate_of_stage(y, slope, angles_); }
+    // one copy for all stages, of 9 kB
+    DOPPEL_COMPONENTS_APART [[gnu::flatten, gnu::noinline]] void stage_slope(
+        const State& y, State& slope) requires OfBodies<Model> && is_flattened<Model> {
+        model_.rate_of_stage(y, slope, angles_);
+    }
+
     void step(State& y) {
         // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
         const auto slope = [&]<std::size_t i>() {
@@ -284,7 +291,7 @@ private:
                 at_ = y;
                 move<row>(at_, std::make_index_sequence<i>());
                 if constexpr (reuses_angles)
-                    model_.rate_of_stage(at_, slopes_[i], angles_);
+                    stage_slope(at_, slopes_[i]);
                 else
                     model_.rate(at_, slopes_[i]);
             }

@@ -63,6 +63,9 @@ public:
     virtual Scalar longest_step() const = 0;
 };
 
+template <class Y>
+inline constexpr bool never_switches<AnySystem<Y>> = Y::RowsAtCompileTime != Eigen::Dynamic;
+
 /// A model as such a system: owned, or by reference (`Model&`).
 template <class Held>
 class HeldSystem final : public AnySystem<typename std::remove_reference_t<Held>::State> {
@@ -70,6 +73,7 @@ public:
     using Model = std::remove_reference_t<Held>;
     using State = typename Model::State;
     using Scalar = typename Model::Scalar;
+    static_assert(!HasEvents<Model> || HasEvents<AnySystem<State>>, "a model of fixed size has no events");
 
     template <class From>
     explicit HeldSystem(From& model) : model_(model) {}

@@ -170,7 +170,7 @@ private:
     }
 
     /// Holds joints at rest if friction can hold them; the others start to slide.
-    void choose_modes(const State& y) {
+    [[gnu::noinline]] void choose_modes(const State& y) {
         const auto n = layout.coordinates;
         const auto omega = y.segment(layout.half, n);
         for (Eigen::Index i = 0; i < n; ++i) {
@@ -256,7 +256,7 @@ private:
 
     /// The torques λ that keep the held joints at rest: (D M⁻¹ Dᵀ) λ = −D θ″, where D converts the rates of links to
     /// those of joints.
-    void add_holding_torques(const std::vector<Eigen::Index>& joints) {
+    [[gnu::noinline]] void add_holding_torques(const std::vector<Eigen::Index>& joints) {
         const auto m = static_cast<Eigen::Index>(joints.size());
         Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> matrix(m, m);
         doppel::State<Scalar, Eigen::Dynamic> right(m);
