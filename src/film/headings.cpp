@@ -98,8 +98,8 @@ void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, cons
     const float left = std::round(panel.left + width[0] + gap), right = std::round(panel.right - width[1] - gap);
     const float top = std::round(base - 0.6f * size), bottom = std::round(base);
     for (float x = left; x < right; ++x)  // columns overlap, so that no seam shows in PDF and SVG
-        layout.words.push_back(
-            Box{x, top, right, bottom, 0, member_color(layout.style, double{x - left} / double{right - left - 1})});
+        layout.words.push_back(Box{x, top, right, bottom, 0,
+                                   member_color(layout.style.theme, double{x - left} / double{right - left - 1})});
 }
 
 /// The common part of the members' captions ("θ₁ ="), and what differs for each ("120.01°").
@@ -115,9 +115,10 @@ std::pair<std::string, std::vector<std::string>> legend_words(const Scene& scene
                                 : list.symbol == "m" ? chain.mass[j]
                                                      : chain.length[j];
             const auto& given = members[k].*list.member;
-            words[k] += fmt::format(
-                "{}{}{}", words[k].empty() ? "" : ", ",
-                given.empty() ? fmt::format("{:.6g}", static_cast<double>(number)) : text_of(given[j]), list.unit);
+            constexpr std::size_t longest = 12;  // letters of what was written by hand
+            auto text = given.empty() ? "" : text_of(given[j]);
+            if (text.empty() || text.size() > longest) text = fmt::format("{:.6g}", static_cast<double>(number));
+            words[k] += fmt::format("{}{}{}", words[k].empty() ? "" : ", ", text, list.unit);
         }
     };
     for (const auto& list : Release::lists)

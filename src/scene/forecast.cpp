@@ -104,12 +104,17 @@ std::optional<std::string> early_error(const Scene& scene, const Side& side, lon
     if (side.replay || (side.choice && side.choice->horizon >= last)) return std::nullopt;
     if (side.choice)
         return fmt::format("the accuracy is kept up to {} s", with_digits(scene.time(side.choice->horizon), 3));
-    const auto history =
-        error_history(side.motion, reference_trajectory(side.motion, last, side.reach, diverged_error, stop, 0),
-                      diverged_error, stop);
-    if (history.error.empty() || !(history.error.back() > diverged_error)) return std::nullopt;
-    const long first = static_cast<long>(history.error.size()) - 1;
-    return first <= last ? std::optional(error_words(side, scene.time(first))) : std::nullopt;
+    for (const double max_work : {0.0, max_quad_work}) {
+        const auto reference = reference_trajectory(side.motion, last, side.reach, diverged_error, stop, max_work);
+        const auto history = error_history(side.motion, reference, diverged_error, stop);
+        if (history.error.empty() || !(history.error.back() > diverged_error)) return std::nullopt;
+        const auto first = history.error.size() - 1;
+        constexpr double matters = 0.02;  // of the error: then a reference in double is not exact enough
+        if (max_work == 0 && reference.uncertainty[first] > matters * diverged_error) continue;
+        return static_cast<long>(first) <= last ? std::optional(error_words(side, scene.time(static_cast<long>(first))))
+                                                : std::nullopt;
+    }
+    return std::nullopt;
 }
 
 }  // namespace doppel

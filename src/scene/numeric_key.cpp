@@ -113,7 +113,8 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
 }
 
 /// Checks the number for one side, and copies the properties of its field.
-void find_in(SideSpec side, const TomlReader& table, std::string_view key, NumericKey& number) {
+void find_in(SideSpec side, const Rational& sample_hz, const TomlReader& table, std::string_view key,
+             NumericKey& number) {
     const Place place(number.inside);
     const auto found = find_number(side, place);
     const auto refuse = [&](std::string_view why) { throw table.error(key, "\"{}\" {}", number.path, why); };
@@ -130,6 +131,8 @@ void find_in(SideSpec side, const TomlReader& table, std::string_view key, Numer
     if (!field.only.applies && !field.only.error.empty()) refuse(field.only.error);
     if (!is_array && number.element) refuse("is a number, not an array");
     number.bounds = field.bounds;
+    constexpr double rounding = 1e-6;
+    if (found.step) number.bounds.high = (1 + rounding) / sample_hz.value();
     number.label = label_of(number, field);
     if (number.element && values.empty()) refuse(fmt::format("needs {} in the preset", field.key));
     if (number.element && *number.element >= values.size())
@@ -173,8 +176,8 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
 NumericKey::NumericKey(const TomlReader& table, std::string_view key, std::string given, const Preset& preset)
     : path(std::move(given)) {
     split(table, key, *this);
-    if (sides != Sides::b) find_in(preset.a, table, key, *this);
-    if (sides != Sides::a) find_in(preset.b, table, key, *this);
+    if (sides != Sides::b) find_in(preset.a, preset.sample_hz, table, key, *this);
+    if (sides != Sides::a) find_in(preset.b, preset.sample_hz, table, key, *this);
     keeps_method = !is_whole && !is_step && inside != "accuracy" && inside != "tolerance";
 }
 

@@ -1,5 +1,6 @@
 #include "base/text.hpp"
 #include "integrate/methods.hpp"
+#include "scene/numeric_key.hpp"
 #include "scene/resolved.hpp"
 #include "scene/toml_reader.hpp"
 
@@ -147,10 +148,18 @@ bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) 
     return fonts.guarded(key, [&] { video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font)); });
 }
 
+/// Gives members without this list, if others have it, numbers from side a to side b as the preset has them.
+void fill(std::vector<Release>& members, const Release::List& list, const Preset& preset) {
+    if (std::ranges::all_of(members, [&](const Release& member) { return (member.*list.member).empty(); })) return;
+    for (std::size_t k = 0; k < members.size(); ++k)
+        if (auto& numbers = members[k].*list.member; numbers.empty())
+            numbers = between(preset.a, preset.b, Quad(k) / Quad(members.size() - 1)).*list.of_side;
+}
+
 /// If members of an ensemble are listed, its pair is the first and the last one. Throws if the file gives a side other
 /// numbers, or lists with too many or too few of them.
 void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
-    const auto& members = preset.video.members.releases;
+    auto& members = preset.video.members.releases;
     if (members.empty()) return;
     for (std::size_t k = 0; k < members.size(); ++k)
         for (const auto& list : Release::lists)
@@ -158,6 +167,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
                 throw video.error("members", "must have {} numbers each, one a link; {} of [{}] has {}",
                                   preset.a.links(), list.key, k, count);
     for (const auto& list : Release::lists) {
+        fill(members, list, preset);
         const auto &first = members.front().*list.member, &last = members.back().*list.member;
         const auto check_side = [&](const char* table, const std::vector<Quad>& given,
                                     const std::vector<Quad>& member) {

@@ -157,7 +157,8 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
       name_(name),
       motion_(motion_of(scene, side, name)),
       proportion_(motion_->observe(), side.energy_unit, side.reach) {
-    if (const auto period = drive_period(name == 'a' ? scene.preset.a : scene.preset.b)) energy_.emplace(*period);
+    if (const auto period = drive_period(name == 'a' ? scene.preset.a : scene.preset.b, scene.preset.duration_s))
+        energy_.emplace(*period);
 }
 
 std::optional<double> SideRun::energy_error(const Observation& seen) const {
@@ -199,10 +200,11 @@ Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& s
     return seen;
 }
 
-std::optional<double> drive_period(const SideSpec& spec) {
+std::optional<double> drive_period(const SideSpec& spec, const Rational& duration_s) {
     std::optional<double> longest;
     const auto add = [&](const Quad& amplitude, const Quad& frequency_hz) {
-        if (amplitude != 0) longest = std::max(longest.value_or(0), 1 / static_cast<double>(frequency_hz));
+        const double period = 1 / static_cast<double>(frequency_hz);
+        if (amplitude != 0 && period < duration_s.value()) longest = std::max(longest.value_or(0), period);
     };
     add(spec.physical.pivot.amplitude_m, spec.physical.pivot.frequency_hz);
     for (const auto& torque : spec.physical.torques) add(torque.amplitude_N_m, torque.frequency_hz);

@@ -179,8 +179,8 @@ struct RunFailure : Error {
     long sample;  // the first wrong one
 };
 
-/// The longest drive period of a side, s; nothing without a drive.
-std::optional<double> drive_period(const SideSpec& spec);
+/// The longest drive period of a side that is shorter than the motion, s; nothing without a drive.
+std::optional<double> drive_period(const SideSpec& spec, const Rational& duration_s);
 
 /// The mean of a quantity over the last period, from its values at samples, interpolated linearly.
 class PeriodMean {

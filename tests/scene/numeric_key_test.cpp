@@ -113,6 +113,7 @@ TEST(NumericKey, OfAStepTakesTheNearestThatDividesASample) {
     EXPECT_EQ(step.with(1.0 / 1000).a.step_s, (Rational{1, 960}));  // 8 steps in a sample of 1/120 s
     EXPECT_EQ(step.key->taken(Quad(1.0 / 1000), step.preset), Quad(1) / 960);
     EXPECT_FALSE(step.key->keeps_method);
+    EXPECT_NEAR(step.key->bounds.high, 1.0 / 120, 1e-7);  // a sample
 }
 
 TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
