@@ -149,10 +149,10 @@ DisplayList Composer::end_card(double opacity) const {
     const bool exact = wording_of(state_.scene) == Wording::exact;
     std::vector<Label> below{card_line(outcome(), 1.3 * font.heading, Weight::bold, theme.trace)};
     if (exact && state_.outcome.start_distance > 0)
-        below.push_back(
-            card_line(fmt::format("from a state-space distance of {} to {}", scientific(state_.outcome.start_distance),
-                                  scientific(state_.outcome.largest_distance)),
-                      font.heading, Weight::regular, theme.text));
+        below.push_back(card_line(
+            fmt::format("state-space distance: {} at the start, at most {}", scientific(state_.outcome.start_distance),
+                        scientific(state_.outcome.largest_distance)),
+            font.heading, Weight::regular, theme.text));
     if (state_.scene.preset.video.shows("credit"))
         below.push_back(card_line(fmt::format("Doppel {} · {}", version(), state_.scene.preset.name), font.subtitle,
                                   Weight::regular, theme.quiet_text));

@@ -493,13 +493,21 @@ public:
         if (style_.width.mark > 0)
             list.push_back(vertical_line(x, area.top, area.bottom, px(style_.width.mark), theme_.cursor));
         for (std::size_t k = 0; style_.width.trace > 0 && k < now.size(); ++k) {
-            auto trace = traces_[k];
-            if (state_.is_between()) extend(trace, now[k]);
-            list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
+            auto curve = traces_[k];
+            if (state_.is_between()) extend(curve, now[k]);
+            for (const auto& trace : curve.pieces)
+                list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
         }
+        const float row = 1.2f * px(style_.font.strip);
         float foot = area.bottom - 0.45f * px(style_.font.strip);
-        for (const auto& mark : marks) draw_text(mark, foot, list);  // above all lines
-        if (now.size() != 1 || traces_[0].is_empty() || !(style_.width.trace > 0)) return;
+        const auto are_too_high = [&] {
+            std::size_t rows = 0;
+            for (const auto& mark : marks) rows += words_at(mark).rows.size();
+            return static_cast<float>(rows) * row > foot - area.top + 0.25f * row;
+        };
+        while (marks.size() > 1 && are_too_high()) marks.erase(marks.begin());  // limits come first
+        for (const auto& mark : marks) draw_text(mark, foot, list);             // above all lines
+        if (now.size() != 1 || !now[0].value || !is_inside(*now[0].value) || !(style_.width.trace > 0)) return;
         const Point head{x, strip_.value.at(*now[0].value)};
         list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
     }
@@ -508,10 +516,31 @@ private:
     std::vector<StripCurve> curves() const {
         return strip_curves(strip_.kind, state_.scene, state_.snapshot.pair, state_.outcome.start_distance, style_);
     }
-    /// A curve begins where it enters its axis.
-    void extend(Trace& trace, const StripCurve& now) const {
-        if (now.value && !(trace.is_empty() && *now.value < strip_.value.low))
-            trace.add({strip_.time.at(state_.time()), strip_.value.at(*now.value)});
+    /// A curve, cut where it leaves its axis.
+    struct CutCurve {
+        std::vector<Trace> pieces;
+        Point last{};
+        bool was_inside = false;
+    };
+
+    bool is_inside(double value) const {
+        constexpr double rounding = 1e-6;
+        const double share = strip_.value.share(value);
+        return share >= -rounding && share <= 1 + rounding;
+    }
+    /// Pieces end and begin at the ends of the axis; the first one begins in it.
+    void extend(CutCurve& curve, const StripCurve& now) const {
+        if (!now.value) return;
+        const Point at{strip_.time.at(state_.time()), strip_.value.at(*now.value)};
+        const bool inside = is_inside(*now.value);
+        if (inside && !curve.was_inside) {
+            const bool is_first = curve.pieces.empty();
+            curve.pieces.emplace_back();
+            if (!is_first) curve.pieces.back().add(curve.last);
+        }
+        if (inside || curve.was_inside) curve.pieces.back().add(at);
+        curve.last = at;
+        curve.was_inside = inside;
     }
     /// Whether this strip shows the marks of the pair: that of the distance, otherwise the first.
     bool is_of_pair() const {
@@ -526,16 +555,25 @@ private:
                                          px(style_.width.mark), theme_.quiet_text));
     }
 
-    /// The text at the foot of a line, where curves are high up, above the texts before: beside the line, or on
-    /// separate lines if there is little space.
-    void draw_text(const TimeMark& mark, float& foot, DisplayList& list) const {
-        const auto& [time, text] = mark;
+    /// The text of a mark beside its line, in several rows if there is little space.
+    struct MarkWords {
+        float x, gap;
+        bool is_right;
+        std::vector<std::string> rows;
+    };
+    MarkWords words_at(const TimeMark& mark) const {
         const auto& area = strip_.area;
-        const float t = layout_.text, size = px(style_.font.strip), x = strip_.time.at(time), gap = 10 * t;
-        const float width = text_width(text, size), right = area.right - x - 2 * gap, left = x - area.left - 2 * gap;
-        const bool is_right = right >= std::min(width, left);
-        const auto rows =
-            wrapped(text, size, Weight::regular, std::clamp(is_right ? right : left, 5 * size, area.width()));
+        const float size = px(style_.font.strip), x = strip_.time.at(mark.time_s), gap = 10 * layout_.text;
+        const float right = area.right - x - 2 * gap, left = x - area.left - 2 * gap;
+        const bool is_right = right >= std::min(text_width(mark.text, size), left);
+        const float width = std::clamp(is_right ? right : left, 5 * size, area.width());
+        return {x, gap, is_right, wrapped(mark.text, size, Weight::regular, width)};
+    }
+    /// At the foot of the line, where curves are high up, above the texts before.
+    void draw_text(const TimeMark& mark, float& foot, DisplayList& list) const {
+        const auto& area = strip_.area;
+        const float t = layout_.text, size = px(style_.font.strip);
+        const auto [x, gap, is_right, rows] = words_at(mark);
         for (auto words = rows.rbegin(); words != rows.rend(); ++words, foot -= 1.2f * size) {
             const float row = text_width(*words, size), first = area.left + 2 * t;
             const float from =
@@ -549,7 +587,7 @@ private:
     }
 
     const StripLayout& strip_;
-    std::vector<Trace> traces_;  // one for each curve
+    std::vector<CutCurve> traces_;  // one for each curve
 };
 
 }  // namespace

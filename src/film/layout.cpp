@@ -30,6 +30,13 @@ Theme themed(const VideoSpec& video) {
     return theme;
 }
 
+/// The colour of a member: listed ones have distinct hues, others the colour scale.
+Color color_of(const Members& members, std::size_t k, const Theme& theme) {
+    if (members.releases.empty())
+        return member_color(theme, static_cast<double>(k) / static_cast<double>(members.size() - 1));
+    return members.releases[k].color.value_or(theme.palette[k % theme.palette.size()]);
+}
+
 bool is_dark(const Theme& theme) {
     const auto& color = theme.background;
     return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
@@ -366,7 +373,11 @@ Style make_style(const VideoSpec& video, float unit, float text) {
     style.width.grid = std::max(style.width.grid, video.widths.grid > 0 ? 1.0 : 0);
     style.width.mark = std::max(style.width.mark, video.widths.mark > 0 ? 1.0 : 0);
     style.glow = unit * static_cast<float>(video.glow_px.value_or(style.theme.glow));
-    if (video.layout == Arrangement::ensemble) style.glow = 0;
+    if (video.layout != Arrangement::ensemble) return style;
+    style.glow = 0;
+    if (!video.side_colors)
+        style.theme.sides = {color_of(video.members, 0, style.theme),
+                             color_of(video.members, video.members.size() - 1, style.theme)};
     return style;
 }
 
@@ -374,9 +385,9 @@ float size_of_many(std::size_t pendulums) {
     return std::sqrt(8 / static_cast<float>(std::max<std::size_t>(pendulums, 8)));
 }
 
-Color member_color(const Style& style, double share) {
+Color member_color(const Theme& theme, double share) {
     // leaves out the end of the scale with too little contrast to the background
-    return is_dark(style.theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
+    return is_dark(theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
 }
 
 double ShownPendulum::least_bob() const {
@@ -388,13 +399,9 @@ double ShownPendulum::least_bob() const {
 std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& style, bool share_panel) {
     std::vector<ShownPendulum> shown;
     const auto& theme = style.theme;
-    const auto& listed = scene.preset.video.members.releases;
-    const auto last = static_cast<double>(std::max<std::size_t>(scene.members.size(), 2) - 1);
-    // listed members have distinct hues, others the colour scale
     for (std::size_t k = 0; const auto& member : scene.members) {
         shown.push_back({member, scene.a, member.physical ? scene.a.mass : member.chain->cast<double>().mass,
-                         listed.empty() ? member_color(style, static_cast<double>(k) / last)
-                                        : listed[k].color.value_or(theme.palette[k % theme.palette.size()])});
+                         color_of(scene.preset.video.members, k, theme)});
         ++k;
     }
     const bool is_ensemble = !shown.empty();

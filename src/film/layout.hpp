@@ -36,8 +36,8 @@ Style make_style(const VideoSpec& video, float unit, float text);
 /// The size of one of many pendulums in a panel, relative to a single one; up to eight are as large as one.
 float size_of_many(std::size_t pendulums);
 
-/// The colour of a member of an ensemble, from the first (0) to the last (1).
-Color member_color(const Style& style, double share);
+/// The colour of an ensemble's member from the first (0) to the last (1), if they are not listed.
+Color member_color(const Theme& theme, double share);
 
 /// A pendulum of a film: that of a side, or an ensemble's member with the side that has the same lines.
 struct ShownPendulum {

@@ -27,14 +27,21 @@ constexpr std::array<const char*, strip_kinds> titles{"state-space distance",
                                                       "angular rates, °/s",
                                                       "energy, J"};
 
+/// Of an ensemble, the sides are its first and its last member.
+std::string side_name(const Scene& scene, bool is_a) {
+    return scene.members.empty() ? is_a ? "a" : "b" : is_a ? "first" : "last";
+}
+
 std::string strip_title(StripKind kind, const Scene& scene) {
     const auto &a = scene.preset.a, &b = scene.preset.b;
     std::string title = titles[static_cast<std::size_t>(kind)];
     const bool is_a = kind == StripKind::energies_a;
     if ((is_a || kind == StripKind::energies_b) && !scene.is_single())
-        return fmt::format("energy of {}, J", (is_a ? a : b).label.value_or(is_a ? "a" : "b"));
-    if (kind == StripKind::total_energy && (drive_period(a) || drive_period(b)))
-        return title + ", mean over a drive period";
+        return fmt::format("energy of {}, J", (is_a ? a : b).label.value_or(side_name(scene, is_a)));
+    const auto is_driven = [&](const SideSpec& side) {
+        return drive_period(side, scene.preset.duration_s).has_value();
+    };
+    if (kind == StripKind::total_energy && (is_driven(a) || is_driven(b))) return title + ", mean over a drive period";
     if (kind != StripKind::distance) return title;
     if (wording_of(scene) == Wording::plain) title = "their distance";
     if (!scene.members.empty()) return title + ", first to last";
@@ -43,8 +50,8 @@ std::string strip_title(StripKind kind, const Scene& scene) {
 
 /// A curve for each link or rod; for many, the first and the last one. The inner ones are paler.
 template <class Value>
-void add_links(std::vector<StripCurve>& curves, char side, std::size_t count, const Value& value, Color color,
-               Color pale, double width) {
+void add_links(std::vector<StripCurve>& curves, const std::string& side, std::size_t count, const Value& value,
+               Color color, Color pale, double width) {
     constexpr std::size_t maximum = 3;
     const float paleness = count < 2 ? 0 : 0.6f;
     for (std::size_t k = 0; k < count; ++k)
@@ -135,7 +142,8 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
         // the first is drawn first and is wider, so that both are visible where they coincide
         const double of_side = (scene.is_single() ? 1 : is_a ? 1.5 : 0.6) * width;
         const auto add_all = [&](std::size_t count, const auto& value) {
-            add_links(curves, letter, count, value, color, theme.text, of_side);
+            add_links(curves, side_name(scene, is_a) + (scene.members.empty() ? "" : " "), count, value, color,
+                      theme.text, of_side);
         };
         switch (kind) {
             case StripKind::rod_error:

@@ -48,7 +48,6 @@ public:
     /// x must increase from point to point.
     void add(Point point);
 
-    bool is_empty() const { return kept_.empty(); }
     /// All kept points and the newest point.
     std::vector<Stroke::Vertex> vertices() const;
 

@@ -139,8 +139,8 @@ TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
         if (const auto* box = std::get_if<Box>(&item)) bar.push_back(*box);
     ASSERT_GT(bar.size(), 200u);
     EXPECT_LT(bar[0].bottom, layout.panels[0].area.top);
-    EXPECT_EQ(bar[0].color, member_color(layout.style, 0));
-    EXPECT_EQ(bar.back().color, member_color(layout.style, 1));
+    EXPECT_EQ(bar[0].color, member_color(layout.style.theme, 0));
+    EXPECT_EQ(bar.back().color, member_color(layout.style.theme, 1));
     EXPECT_EQ(bar.back().left + 1, bar.back().right);
     const auto composer = composed(scene, 60);
     EXPECT_TRUE(says(composer->frame(), "first to last"));

@@ -17,8 +17,9 @@ TEST(Shown, IsExactlyWhatIsRequested) {
         return fmt::format("{}",
                            fmt::join(words_of({composer->backdrop(), composer->frame(), composer->end_card(1)}), "|"));
     };
-    const std::string outcome = "|together to the end, 30 s|from a state-space distance of 7.4 × 10⁻⁵ to 7.4 × 10⁻⁵",
-                      credit = fmt::format("|Doppel {} · butterfly", version());
+    const std::string
+        outcome = "|together to the end, 30 s|state-space distance: 7.4 × 10⁻⁵ at the start, at most 7.4 × 10⁻⁵",
+        credit = fmt::format("|Doppel {} · butterfly", version());
     EXPECT_EQ(words(R"(["title", "subtitle", "clock", "labels", "credit"])"),
               "T|S|real time|A|B|N|0.00 s|T" + outcome + credit);
     EXPECT_EQ(words("[]"), "T" + outcome);  // the card has a key of its own

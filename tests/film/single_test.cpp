@@ -1,4 +1,6 @@
+#include "film/recording.hpp"
 #include "film/runs.hpp"
+#include "film/strips.hpp"
 #include "film/words.hpp"
 #include "render/pixels.hpp"
 #include "scene/resolved.hpp"
@@ -123,6 +125,22 @@ TEST(Single, TheLegendOfMembersCanBeReadInASmallPicture) {
     expect_apart(labels, {640, 360}, "legend");
     EXPECT_TRUE(
         std::ranges::any_of(labels, [](const Label& label) { return label.text == "0.5 kg, 0.5 kg, 0.25 m, 0.65 m"; }));
+}
+
+TEST(Single, MembersTakeNumbersOfTheirOwnSidesAndStripsTheirColours) {
+    const std::string text =
+        "[scene]\nduration_s = 1\n[system]\nintegrator = \"dop853\"\n[video]\nlayout = \"ensemble\"\npanels = "
+        "[\"pendulums\", \"angles\"]\nmembers = [{angle_deg = [60, 60], color = \"#ff0000\"}, {angle_deg = [90, 90]}, "
+        "{angle_deg = [90, 90], length_m = [2, 2]}]\n";
+    const auto scene = scene_of_text(text);
+    EXPECT_EQ(scene.members[1].chain->length[0], 1);  // not halfway to the last member's
+    EXPECT_EQ(scene.preset.b.length_m[0], 2);
+    const auto style = make_layout(scene).style;
+    const auto curves = strip_curves(StripKind::angles, scene, blank_snapshot(scene).pair, 0, style);
+    EXPECT_EQ(curves[1].name, "first 2");
+    EXPECT_EQ(curves[1].color, (Color{1, 0, 0, 1}));
+    EXPECT_EQ(curves[3].name, "last 2");
+    EXPECT_EQ(curves[3].color, style.theme.palette[2]);
 }
 
 /// Its legend makes the panel narrower, which makes the legend higher again.
