@@ -44,7 +44,7 @@ function choose(place) {
   for (const [name, value] of Object.entries(corner)) mark.setAttribute(name, value);
   for (const [label, value] of panels.length > 1 && panel.title ? [[panel.title], ...lines] : lines) {
     readout.append(element("span", { class: value === undefined ? "whole" : "" }, label));
-    if (value !== undefined) readout.append(element("b", {}, written(Number(value.toPrecision(6)))));
+    if (value !== undefined) readout.append(element("b", {}, written(shortened(value, 6))));
   }
   const beside = (px, side) => px < side / 2 ? "16px" : "calc(-100% - 16px)";  // on the side with more space
   Object.assign(readout.style, { left: `${100 * x / size[0]}%`, top: `${100 * y / size[1]}%`,
@@ -52,7 +52,7 @@ function choose(place) {
 }
 function open() {
   if (chosen && release.length)
-    releaseAt(Object.fromEntries(release.map((key, i) => [key, Number(chosen.values[i].toPrecision(12))])));
+    releaseAt(Object.fromEntries(release.map((key, i) => [key, shortened(chosen.values[i])])));
 }
 
 figure.onpointermove = figure.onpointerdown = event => {

@@ -46,12 +46,11 @@ function drawLevel(z) {
 // At most `most` round numbers from low to high; powers of ten for several decades.
 function ticks(axis, low, high, most) {
   low = Math.max(low, axis.from), high = Math.min(high, axis.to);
-  const raw = (high - low) / Math.max(most, 1), power = 10 ** Math.floor(Math.log10(raw)), found = [];
-  const angle = axis.label.endsWith("°") && raw > 10 && [15, 30, 45, 90].find(n => n >= raw);
-  const step = angle || [1, 2, 5, 10].find(n => n * power >= raw) * power;
+  const raw = (high - low) / Math.max(most, 1), found = [];
+  const step = axis.label.endsWith("°") && raw > 10 && [15, 30, 45, 90].find(n => n >= raw) || roundStep(raw);
   if (axis.logarithmic && high / low > 20)
     for (let power = Math.ceil(Math.log10(low)); 10 ** power <= high; ++power) found.push(10 ** power);
-  else for (let i = Math.ceil(low / step); i * step <= high; ++i) found.push(Number((i * step).toPrecision(12)));
+  else for (let i = Math.ceil(low / step); i * step <= high; ++i) found.push(shortened(i * step));
   return found;
 }
 
@@ -134,7 +133,7 @@ canvas.onpointermove = event => {
   const here = [event.offsetX, event.offsetY], before = pointers.get(event.pointerId);
   $("#at").textContent = [map.x, map.y].map((axis, i) => {
     const share = i ? 1 - cellY(here[1]) / map.rows : cellX(here[0]) / map.columns;
-    return `${axis.label}: ${written(Number(axisValue(axis, share).toPrecision(6)))}`;
+    return `${axis.label}: ${written(shortened(axisValue(axis, share), 6))}`;
   }).join("   ");
   if (!before) return;
   const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1];

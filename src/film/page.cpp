@@ -60,6 +60,7 @@ Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJ
     const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance, state.layout.style);
     auto words = placed_caption(strip, state.scene, state.layout, curves, start_distance == 0);
     Json json{{"kind", name_of(strip.kind)},
+              {"left", json_of(strip.cell.left)},
               {"area", json_of(strip.area)},
               {"time", axis_json(strip.time)},
               {"axis", axis_json(strip.value)}};
@@ -121,15 +122,27 @@ Json end_json(const End<double>& end) {
     return {place[0], place[1]};
 }
 
-/// A pendulum's masses, lines and chain.
-Json body_json(const ShownPendulum& pendulum) {
+/// The step of its angles in the file, rad; 0 if the file contains the positions of its bobs, because they do not
+/// follow from angles and lengths of links. The errors of a chain of N links add up randomly.
+double angle_step(const ShownPendulum& pendulum, int bits) {
+    const auto& side = pendulum.side;
+    const bool is_by_angles = side.has_angles && side.motion.model == Model::angles && !side.replay;
+    return is_by_angles ? std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(pendulum.mass.size())) : 0;
+}
+
+/// A pendulum's masses, lines and chain, and what the file contains of its motion.
+Json body_json(const ShownPendulum& pendulum, int bits) {
     using Kind = MechanismLine::Kind;
     Json lines = Json::array();
     for (const auto& line : pendulum.side.lines)
         if (line.kind == Kind::rod || line.kind == Kind::spring)
             lines.push_back(
                 {line.kind == Kind::rod ? "rod" : "spring", end_json(line.from), end_json(line.to), line.width});
+    const double step = angle_step(pendulum, bits);
     return {{"mass", pendulum.mass},
+            {"turn", step},
+            {"length", step > 0 ? Json(pendulum.motion.chain->cast<double>().length) : Json()},
+            {"moves", pendulum.side.pivot_reach > 0},
             {"color", hexadecimal(pendulum.color)},
             {"rod", hexadecimal(pendulum.rod)},
             {"bob", hexadecimal(pendulum.bob)},
@@ -167,14 +180,10 @@ std::string packed(std::vector<std::uint32_t> words, std::size_t count, int orde
     return deflated(bytes);
 }
 
-/// Whether the positions of its bobs follow from the angles and lengths of its links.
-bool is_by_angles(const Side& side) {
-    return side.has_angles && side.motion.model == Model::angles && !side.replay;
-}
-
 /// What the file contains of one sample.
 struct Numbers {
     std::vector<double> places;  // of all pendulums: angles or coordinates of bobs, then of the pivot if it moves
+    std::vector<double> steps;   // of each of them, if it is an angle, rad; otherwise 0
     std::vector<double> curves;  // of all strips, then of a phase panel
 };
 
@@ -183,17 +192,20 @@ Numbers page_numbers(const Scene& scene, const Snapshot& snapshot, double start_
     const auto& pair = snapshot.pair;
     const auto& video = scene.preset.video;
     Numbers numbers;
-    auto& [places, curves] = numbers;
+    auto& [places, steps, curves] = numbers;
     const auto pendulums = computes ? std::vector<ShownPendulum>() : shown_pendulums(scene);
     for (std::size_t k = 0; k < pendulums.size(); ++k) {
         const auto& side = pendulums[k].side;
         const auto& seen = &side == &scene.a ? pair.a : pair.b;
+        const double step = angle_step(pendulums[k], video.position_bits);
         for (const auto& bob : snapshot.members.empty() ? seen.bobs : snapshot.members[k])
-            if (is_by_angles(side))
+            if (step > 0)
                 places.push_back(std::remainder(bob.theta, 2 * pi));
             else
                 places.insert(places.end(), {bob.x, bob.y});
+        steps.resize(places.size(), step);
         if (side.pivot_reach > 0) places.insert(places.end(), {seen.pivot.x, seen.pivot.y});
+        steps.resize(places.size(), 0);
     }
     for (const auto kind : video.strips)
         if (!computes || kind == StripKind::rod_error || kind == StripKind::rod_force)
@@ -212,16 +224,20 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
     const auto& video = scene.preset.video;
     const auto style = make_style(video, 1, 1);
     const auto clock = clock_text(scene, 0);
+    auto preset = scene.preset;  // the film's own, as a video
+    preset.duration_s = *quotient({samples, 1}, preset.sample_hz);
+    if (!video.transparent) preset.video.format = {};
     Json bodies = Json::array(), pictures = Json::array();
     for (const auto& pendulum : shown_pendulums(scene, style, !has_panel_for_each(video)))
-        bodies.push_back(body_json(pendulum));
+        bodies.push_back(body_json(pendulum, video.position_bits));
     pictures.push_back(picture_json(scene, bounds, first));
     if (!is_tall(video)) {
         auto upright = scene;
         upright.preset.video.size = {1080, 1920};
         pictures.push_back(picture_json(upright, bounds, first));
     }
-    Json json{{"title", scene.preset.title},
+    Json json{{"title", preset.title},
+              {"preset", resolved_toml(preset)},
               {"caption", scene_caption(scene, wording_of(scene))},
               {"layout", name_of(video.layout)},
               {"show", video.show},
@@ -229,10 +245,10 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
               {"follow", video.view.follow},
               {"view", video.view.height_m || video.view.center_m || video.view.follow > 0},
               {"samples", samples},
-              {"sample_s", quotient({1, 1}, scene.preset.sample_hz)->value()},
+              {"sample_s", quotient({1, 1}, preset.sample_hz)->value()},
               {"duration_s", scene.time(samples)},
               {"trail_s", video.trail_s},
-              {"sample_hz", {scene.preset.sample_hz.numerator, scene.preset.sample_hz.denominator}},
+              {"sample_hz", {preset.sample_hz.numerator, preset.sample_hz.denominator}},
               {"poster_s", video.poster_s ? Json(video.poster_s->value()) : Json(nullptr)},
               {"fps", scene.fps.value()},
               {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
@@ -295,11 +311,7 @@ bool page_computes(const Scene& scene) {
 }
 
 FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& parts)
-    : scene_(scene),
-      bounds_(bounds),
-      place_(parts.file(scene.preset.name + ".html")),
-      computes_(page_computes(scene)),
-      parts_(parts) {}
+    : scene_(scene), bounds_(bounds), computes_(page_computes(scene)), parts_(parts) {}
 
 void FilmPage::add(const Snapshot& snapshot) {
     if (snapshot.pair.share > 0) return;
@@ -312,36 +324,25 @@ void FilmPage::add(const Snapshot& snapshot) {
     ++samples_;
 }
 
-/// Angles in steps of 2^−bits of a turn, times √N for a chain of N links, whose errors add up randomly; `low` is −half
-/// the range. Coordinates in steps of 2^−bits of their range. Stores second differences in time.
+/// Angles from half a turn below zero on in their steps, coordinates in steps of 2^−bits of their range; second
+/// differences in time.
 Json FilmPage::motion_json() const {
     const int bits = scene_.preset.video.position_bits;
-    std::vector<double> turns;  // the step of a channel of angles, rad; 0: of coordinates
-    Json pendulums = Json::array();
-    for (const auto& pendulum : shown_pendulums(scene_)) {
-        const auto& side = pendulum.side;
-        const auto links = pendulum.mass.size();
-        const double turn = is_by_angles(side) ? std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(links)) : 0;
-        turns.resize(turns.size() + (turn > 0 ? links : 2 * links), turn);
-        if (side.pivot_reach > 0) turns.resize(turns.size() + 2, 0);
-        pendulums.push_back({{"turn", turn}, {"moves", side.pivot_reach > 0}});
-        if (turn > 0) pendulums.back()["length"] = pendulum.motion.chain->cast<double>().length;
-    }
+    const auto steps = page_numbers(scene_, first_, first_.pair.distance, computes_).steps;
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t c = 0; c < turns.size(); ++c)
+    for (std::size_t c = 0; c < places_.size(); ++c)
         for (const float number : places_[c])
-            if (turns[c] == 0) low = std::min<double>(low, number), high = std::max<double>(high, number);
+            if (steps[c] == 0) low = std::min<double>(low, number), high = std::max<double>(high, number);
     if (!(high > low)) low = 0, high = 1;
     const double step = (high - low) / (std::ldexp(1, bits) - 1);
     std::vector<std::uint32_t> words;
-    for (std::size_t c = 0; c < turns.size(); ++c)
+    for (std::size_t c = 0; c < places_.size(); ++c)
         for (const float number : places_[c])
             words.push_back(static_cast<std::uint32_t>(
-                std::lround(turns[c] > 0 ? number / turns[c] + std::ldexp(1, bits - 1) : (number - low) / step)));
+                std::lround(steps[c] > 0 ? number / steps[c] + std::ldexp(1, bits - 1) : (number - low) / step)));
     return {{"bits", bits},
             {"low", low},
             {"step", step},
-            {"pendulums", pendulums},
             {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
 }
 
@@ -352,8 +353,9 @@ void FilmPage::finish() {
     for (const auto& curve : curves_)
         for (const float number : curve) bits.push_back(std::bit_cast<std::uint32_t>(number));
     if (!bits.empty()) film["curves"] = packed(std::move(bits), curves_[0].size(), 1, sizeof(float));
-    write_file(place_, page_text(player(scene_, std::move(film))));
-    parts_.finished(scene_.preset.name + ".html");
+    const auto name = scene_.preset.name + ".html";
+    write_file(parts_.file(name), page_text(player(scene_, std::move(film))));
+    parts_.finished(name);
 }
 
 std::optional<HtmlPage> film_player(Scene scene) {

@@ -2,7 +2,12 @@
 "use strict";
 const $ = selector => document.querySelector(selector), pageData = JSON.parse($("#data").textContent);
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
-const written = value => String(value).replace("-", "−");
+const written = value => String(value).replace("-", "−"), shortened = (v, digits = 12) => Number(v.toPrecision(digits));
+// The least of 1, 2, 5, 10 … that is at least `least`.
+function roundStep(least) {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return power * [1, 2, 5, 10].find(n => n * power >= least);
+}
 function element(tag, attributes, ...inner) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);

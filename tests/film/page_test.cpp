@@ -133,7 +133,9 @@ TEST(Page, HasTheSizeThatCheckSays) {
 }
 
 /// The numbers of all channels, as the page's script reads them.
-std::vector<std::vector<double>> channels_of(const Json& motion, std::size_t count) {
+std::vector<std::vector<double>> channels_of(const Json& film) {
+    const auto& motion = film.at("motion");
+    const auto count = film.at("samples").get<std::size_t>() + 1;
     const unsigned bits = motion.at("bits"), bytes = bits > 16 ? 3 : 2, most = (1U << bits) - 1;
     const auto planes = test::inflated(motion.at("words"));
     std::vector<unsigned> words(planes.size() / bytes);
@@ -149,7 +151,7 @@ std::vector<std::vector<double>> channels_of(const Json& motion, std::size_t cou
         auto& channel = channels.emplace_back();
         for (std::size_t i = 0; i < count; ++i) channel.push_back(low + step * (words[at++] & most));
     };
-    for (const auto& pendulum : motion.at("pendulums")) {
+    for (const auto& pendulum : film.at("bodies")) {
         const double turn = pendulum.at("turn");
         for (int i = 0; i < (turn > 0 ? 2 : 4); ++i)
             turn > 0 ? add(-std::ldexp(turn, static_cast<int>(bits) - 1), turn)
@@ -168,7 +170,7 @@ TEST_P(PageMotion, IsHeldInSteps) {
     const auto text = html(std::string("[scene]\nduration_s = 2\n") + keys) + fmt::format("position_bits = {}\n", bits);
     const auto data = data_of(page_of(text));
     const auto& motion = data.at("motion");
-    const auto channels = channels_of(motion, data.at("samples").get<std::size_t>() + 1);
+    const auto channels = channels_of(data);
     const auto scene = scene_of_text(text);
     for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) {
         const auto i = static_cast<std::size_t>(snapshot.pair.sample);
@@ -177,7 +179,7 @@ TEST_P(PageMotion, IsHeldInSteps) {
             EXPECT_LE(std::abs(std::remainder((*channel++)[i] - number, 2 * pi)), 0.5 * step + 3e-7) << i;
         };
         for (std::size_t k = 0; k < 2; ++k) {
-            const auto& pendulum = motion.at("pendulums")[k];
+            const auto& pendulum = data.at("bodies")[k];
             const auto& seen = k == 0 ? snapshot.pair.a : snapshot.pair.b;
             for (const auto& bob : seen.bobs) {
                 if (pendulum.at("turn") > 0) {

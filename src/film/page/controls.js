@@ -1,14 +1,14 @@
 // controls.js: time, and releases by hand.
 "use strict";
 const form = $("#release"), say = words => { $("#status").textContent = words; };
-const isOfFigure = pageData.panels !== undefined, shortened = (v, digits = 12) => Number(v.toPrecision(digits));
+const isOfFigure = pageData.panels !== undefined;
 
 // Time
 
 let isPlaying = false, lastFrame = 0;
 function seek(to) {
   time = clamp(to, 0, film.duration_s);
-  const distance = motion?.distance?.[sampleNow()], told = distance >= 0 ? `, distance ${scientific(distance)}` : "";
+  const distance = motion?.curves?.distance?.[0][sampleNow()], told = distance >= 0 ? `, distance ${scientific(distance)}` : "";
   $("#time").value = time;
   $("#time").setAttribute("aria-valuetext", `${time.toFixed(2)} seconds${told}`);
   $("#now").value = `${time.toFixed(2)} s`;
@@ -46,16 +46,8 @@ const goBy = frames => ({ shiftKey }) => {
 
 const quantities = [["angle", "angle_deg", "°", degrees], ["rate", "omega_deg_per_s", "°/s", degrees],
   ["mass", "mass_kg", "kg", 1], ["length", "length_m", "m", 1], ["gravity", "gravity_m_per_s2", "m/s²", 1]];
-let differing = 0;  // numbers in which the film's pendulums differ
+let isFilmInForm = true;  // whether its pendulums differ as the form says
 const numbersOf = (chain, [name, , , per]) => [chain[name]].flat().map(v => v * per);
-// Whether the numbers of all pendulums go from the first to the last in equal steps.
-const areEven = () => bodies.every(({ chain }, k) => quantities.every(quantity => {
-  const [first, last] = [bodies[0], bodies.at(-1)].map(body => numbersOf(body.chain, quantity));
-  return numbersOf(chain, quantity).every((v, i) => {
-    const even = first[i] + (last[i] - first[i]) * k / Math.max(bodies.length - 1, 1);
-    return Math.abs(v - even) <= 1e-12 * Math.max(1, Math.abs(v));
-  });
-}));
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
 // With the film's numbers, also after form.reset().
 function makeForm() {
@@ -66,14 +58,16 @@ function makeForm() {
       const label = `${name}${first.length > 1 ? ` ${i + 1}` : ""}, ${unit}`, value = shortened(number);
       row.append(element("input", { name: name + i, type: "number", step: "any", "aria-label": label, value }));
       form.key.append(new Option(label, name + i, number !== last[i]));
-      if (number === last[i]) return;
-      ++differing;
-      form.by.defaultValue = shortened(last[i] - number, 6);
+      if (number !== last[i]) form.by.defaultValue = shortened(last[i] - number, 6);
     });
     $("#numbers").append(row);
   }
   form.by.parentElement.hidden = layout === "single";
   form.reset();
+  isFilmInForm = bodies.every(({ chain }, k) => quantities.every(quantity => {
+    const found = numbersOf(chainOfForm(k), quantity), near = v => 1e-12 * Math.max(1, v) + 1e-6 * Math.abs(form.by.value);
+    return numbersOf(chain, quantity).every((v, i) => Math.abs(v - found[i]) <= near(Math.abs(v)));
+  }));
 }
 const differenceIn = (name, k) =>
   name === form.key.value && k > 0 ? form.by.valueAsNumber * k / (bodies.length - 1) : 0;
@@ -106,34 +100,22 @@ async function releaseAnew(playsThen) {
   if (!isNewest) return draw();
   const drift = made.drift >= 0 ? `energy drift ${scientific(made.drift)} of the potential range`
     : "the motion is too fast for it and is not finite";
-  const single = differing > 1 || !areEven() ? "; the pendulums differ in one number now" : "";
+  const single = !isFilmInForm ? "; the pendulums differ in one number now" : "";
   say(`Runge–Kutta 4, steps of 1/${Math.round(1 / of[0].step)} s; ${drift}${single}`);
   if (playsThen && !held) play(true);
   draw();
 }
-const fraction = (n, d) => n % d === 0 ? n / d : `"${n}/${d}"`;
-const listed = (chain, quantity) => `[${numbersOf(chain, quantity).map(v => shortened(v, 15)).join(", ")}]`;
-// The members of an ensemble: their number, or where they do not go in equal steps their numbers.
-function membersOf(chains) {
-  if (chains[0] !== bodies[0].chain || areEven()) return chains.length;
-  const numbers = chain => quantities.filter(([name]) => ["angle", "mass", "length"].includes(name))
-    .map(quantity => `${quantity[1]} = ${listed(chain, quantity)}`).join(", ");
-  return `[\n  ${chains.map(chain => `{ ${numbers(chain)} }`).join(",\n  ")},\n]`;
-}
-// Of the film as it is, or of the form.
+// The film's preset with the numbers of a release.
 function presetOf(chains) {
-  const [samples, seconds] = film.sample_hz;
-  const [a, b] = [chains[0], chains.at(-1)].map(chain => [...quantities.map(quantity => {
-    const list = listed(chain, quantity);
-    return `${quantity[1]} = ${quantity[0] === "gravity" ? list.slice(1, -1) : list}`;
-  }), ...(chain.method ? [`integrator = "${chain.method}"`, `step_s = ${fraction(seconds, samples * chain.steps)}`]
-    : ["accuracy = 1e-6"])]);
-  const differences = b.filter(line => !a.includes(line)).join("\n");
-  return [`title = "${chains[0] === bodies[0].chain ? "The film again" : "Released anew"}"`, "", "[scene]",
-    'kind = "pair"', `duration_s = ${fraction(film.samples * seconds, samples)}`,
-    `sample_hz = ${fraction(samples, seconds)}`, "", "[system]", `links = ${chains[0].angle.length}`, ...a, "",
-    ...(differences ? ["[b]", differences, ""] : []),
-    "[video]", `layout = "${layout}"`, ...(isEnsemble ? [`members = ${membersOf(chains)}`] : []), ""].join("\n");
+  const [samples, seconds] = film.sample_hz, sections = film.preset.split(/^(?=\[)/m);
+  const sides = layout === "single" ? [chains[0]] : [chains[0], chains.at(-1)];
+  return ['title = "Released anew"\n\n', ...sections.filter(section => section.startsWith("[scene]")),
+    ...sides.map((chain, k) => [`[${"ab"[k]}]`, `links = ${chain.mass.length}`, ...quantities.map(quantity => {
+      const list = numbersOf(chain, quantity).map(v => shortened(v, 15));
+      return `${quantity[1]} = ${quantity[0] === "gravity" ? list : `[${list.join(", ")}]`}`;
+    }), 'integrator = "rk4"', `step_s = "${seconds}/${samples * chain.steps}"`, "\n"].join("\n")),
+    ...sections.filter(section => section.startsWith("[video"))
+  ].join("").replace(/^members = .*/m, `members = ${chains.length}`);
 }
 
 // Pointers: a bob is dragged, a strip sets the time, any other place plays or pauses.
@@ -207,9 +189,10 @@ const clicks = {
     draw();
   },
   copy: () => {
-    const chains = bodies.map((body, k) => motion === original ? body.chain : chainOfForm(k)), fault = faultOf(chains);
+    const chains = bodies.map((_, k) => chainOfForm(k)), fault = motion === original ? "" : faultOf(chains);
     if (fault) return say(fault);
-    const area = Object.assign($("#preset"), { value: presetOf(chains), hidden: false });
+    const value = motion === original ? film.preset : presetOf(chains);
+    const area = Object.assign($("#preset"), { value, hidden: false });
     area.select();
     const tell = () => say("copied; save it as NAME.toml, and run: doppel render NAME.toml");
     navigator.clipboard?.writeText(area.value).then(tell, () => {});

@@ -18,13 +18,13 @@ async function unpacked(base64, wordBytes, order) {
 }
 
 // The motion that the page holds: for each pendulum places [xs, ys] of its pivot and its bobs.
-async function embeddedMotion({ bits, low, step, pendulums, words }) {
+async function embeddedMotion({ bits, low, step, words }) {
   const steps = await unpacked(words, bits / 8, 2), most = 2 ** bits - 1;
   let at = 0;
   const channel = (from, unit) => numbers(() => from + unit * (steps[at++] & most));
   const place = () => [channel(low, step), channel(low, step)];
-  return { pendulums: pendulums.map(({ turn, length, moves }, k) => {
-    const angle = () => channel(-turn * 2 ** (bits - 1), turn), found = bodies[k].mass.map(turn ? angle : place);
+  return { curves: {}, pendulums: bodies.map(({ mass, turn, length, moves }) => {
+    const found = mass.map(() => turn ? channel(-turn * 2 ** (bits - 1), turn) : place());
     const pivot = moves ? place() : still;
     return { pivot, bobs: turn ? placesOf(found, length, pivot) : found };
   }) };
@@ -37,42 +37,44 @@ function placesOf(angles, length, pivot) {
 }
 
 // The motion of chains from their states, at one sample or all; with the curves that follow from states, by the kind of
-// the strip; of a phase panel angles, rates and angles of the first link.
+// the strip; of a phase panel angles, rates and angles of the first link, of both pendulums.
 function motionOf(of, states) {
-  const size = 2 * of[0].mass.length, list = (k, from) => states[k].filter((_, i) => i % size === from);
+  const links = of[0].mass.length, size = 2 * links, list = (k, from) => states[k].filter((_, i) => i % size === from);
   const pendulums = of.map(({ length }, k) =>
     ({ pivot: still, bobs: placesOf(length.map((_, b) => list(k, b)), length, still) }));
   if (states[0].length === size) return { of, pendulums };
-  const ends = [...new Set([0, of.length - 1])];
-  const bobs = ends.map(k => Array.from(still[0], (_, i) => chains.bobs(of[k], states[k], size * i)));
-  const distance = numbers(i => chains.distance(bobs[0][i], bobs.at(-1)[i]));
+  const sides = [...new Set([0, of.length - 1])].map(k => {
+    const { mass, length, gravity } = of[k];
+    const bobs = Array.from(still[0], (_, i) => chains.bobs(of[k], states[k], size * i));
+    const lowest = gravity * sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));  // J, below the pivot's level
+    const total = numbers(i => chains.energy(gravity, bobs[i])), kinetic = numbers(i => chains.energy(0, bobs[i]));
+    const above = total.map(now => now + lowest), potential = above.map((now, i) => now - kinetic[i]);
+    const inDegrees = first => length.map((_, b) => list(k, first + b).map(v => v * degrees));
+    const phase = film.phase && [film.phase.link, links + film.phase.link, 0].map(i => list(k, i));
+    return { bobs, range: 2 * lowest, total, energies: [kinetic, potential, above], phase,
+      angles: inDegrees(0), rates: inDegrees(links) };
+  });
+  const first = sides[0], last = sides.at(-1), range = Math.max(first.range, last.range);
+  const distance = numbers(i => chains.distance(first.bobs[i], last.bobs[i]));
   const growth = distance.map((d, i) => 20 * i >= film.samples && d > 0 && distance[0] > 0
     ? Math.log(d / distance[0]) / (i * film.sample_s) : NaN);
-  const levels = ({ mass, length }) => sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));
-  const ranges = ends.map(k => 2 * of[k].gravity * levels(of[k])), range = mostOf(ranges);
-  const totals = ends.map((k, e) => numbers(i => chains.energy(of[k].gravity, bobs[e][i])));
-  const energy = totals.map(total => total.map(now => Math.abs(now - total[0]) / range));
-  const parts = totals.map((total, e) => {  // kinetic, potential from the lowest place on, and both
-    const kinetic = numbers(i => chains.energy(0, bobs[e][i])), above = total.map(now => now + ranges[e] / 2);
-    return [kinetic, above.map((now, i) => now - kinetic[i]), above];
-  });
-  const inDegrees = first => ends.flatMap(k => of[k].length.map((_, b) => list(k, first + b).map(v => v * degrees)));
-  const phase = film.phase && ends.map(k => [film.phase.link, size / 2 + film.phase.link, 0].map(i => list(k, i)));
-  const computed = { distance: [distance], exponent: [growth], energy, angles: inDegrees(0), rates: inDegrees(size / 2),
-    "energies-a": parts[0], "energies-b": parts.at(-1), "total-energy": parts.map(part => part[2]) };
-  return { of, pendulums, computed, phase, drift: mostOf(energy.map(mostOf)) };
+  const energy = sides.map(({ total }) => total.map(now => Math.abs(now - total[0]) / range));
+  const all = name => sides.flatMap(side => side[name]);
+  const curves = { distance: [distance], exponent: [growth], energy, angles: all("angles"), rates: all("rates"),
+    "energies-a": first.energies, "energies-b": last.energies, "total-energy": sides.map(side => side.energies[2]),
+    phase: all("phase") };
+  return { of, pendulums, curves, drift: mostOf(energy.map(mostOf)) };
 }
 
-// Adds the curves of strips: computed ones, of the film also those that the page holds: floats, of a phase panel at the
-// end.
+// With the curves of the film's charts: computed ones, of the film also those that the page holds as floats.
 async function withCurves(motion, isOriginal) {
   const held = film.curves && isOriginal ? new Float32Array((await unpacked(film.curves, 4, 1)).buffer) : [];
   let at = 0;
   const next = () => isOriginal ? held.subarray(at, at += count) : numbers(() => NaN);
-  motion.curves = strips.map(({ kind, pens }) => motion.computed?.[kind] ?? pens.map(next));
-  if (film.phase) motion.phase ??= [0, 1].map(() => [next(), next(), next()]);
-  motion.distance = motion.curves[strips.findIndex(strip => strip.kind === "distance")]?.[0];
-  motion.since = motion.distance ? divergence(motion.distance) : NaN;
+  const shown = strips.map(({ kind, pens }) => [kind, motion.curves[kind] ?? pens.map(next)]);
+  if (film.phase) shown.push(["phase", motion.curves.phase ?? Array.from({ length: 6 }, next)]);
+  motion.curves = Object.fromEntries(shown);
+  motion.since = motion.curves.distance ? divergence(motion.curves.distance[0]) : NaN;
   return motion;
 }
 

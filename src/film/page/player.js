@@ -157,35 +157,28 @@ const along = (axis, v) => pixelAt(axis, clamp(axisShare(axis, v), 0, 1));
 const powerOfTen = e => ["1", "10"][e] ?? "10" + [...String(e)].map(c => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("");
 function scientific(v) {
   if (!(v > 0)) return "0";
-  if (v >= 0.1 && v < 1000) return String(Number(v.toPrecision(2)));
+  if (v >= 0.1 && v < 1000) return String(shortened(v, 2));
   const [digits, e] = v.toExponential(1).split("e");
   return `${digits} × ${powerOfTen(Number(e))}`;
 }
 
 // Of a release by hand: where an axis does not hold the curves, one that does, with ticks at decades or round numbers.
 function axisOf({ axis, area: [, top, , bottom] }, curves) {
-  const isDrawn = v => Number.isFinite(v) && (!axis.logarithmic || v > 0);
-  let [least, most] = axis.logarithmic ? [Infinity, -Infinity] : [0, 0];
-  for (const curve of curves)
-    for (const v of curve) if (isDrawn(v)) [least, most] = [Math.min(least, v), Math.max(most, v)];
-  if (!(least < axis.from || most > axis.to)) return axis;
-  const [low, high] = axis.logarithmic ? [Math.log10(least), Math.log10(most)] : [least, most];
+  const { logarithmic } = axis, isDrawn = v => Number.isFinite(v) && (!logarithmic || v > 0);
+  const drawn = curves.reduce((all, curve) => all.concat([...curve.filter(isDrawn)]), logarithmic ? [] : [0]);
+  if (drawn.every(v => v >= axis.from && v <= axis.to)) return axis;
+  const along = drawn.map(v => logarithmic ? Math.log10(v) : v), high = mostOf(along), low = -mostOf(along.map(v => -v));
   const rough = Math.max((high - low) * 2.2 * picture.em / (bottom - top), 1e-12);
-  const ten = 10 ** Math.floor(Math.log10(rough));
-  const step = axis.logarithmic ? Math.ceil(rough) : ten * [1, 2, 5, 10].find(n => n * ten >= rough);
-  const unit = axis.logarithmic ? 1 : step, first = Math.floor(low / unit);
-  const last = Math.max(Math.ceil(high / unit), first + 1);
-  const of = n => axis.logarithmic ? 10 ** (n * unit) : n * unit, ticks = [];
-  for (let n = first; n <= last; n += step / unit)
-    ticks.push([of(n), axis.logarithmic ? powerOfTen(n) : written(Number(of(n).toPrecision(6)))]);
-  return { ...axis, from: of(first), to: of(last), ticks };
+  const step = logarithmic ? Math.ceil(rough) : roundStep(rough), first = Math.floor(low / step);
+  const ticks = Array.from({ length: Math.max(Math.ceil(high / step) - first, 1) + 1 }, (_, i) => (first + i) * step)
+    .map(n => logarithmic ? [10 ** n, powerOfTen(n)] : [n, written(shortened(n, 6))]);
+  return { ...axis, from: ticks[0][0], to: ticks.at(-1)[0], ticks };
 }
 // The ticks of such an axis, over the film's.
-function drawAxis({ area: [left, top, right, bottom] }, axis) {
-  const em = picture.em, areas = strips.map(strip => strip.area);
-  const from = Math.max(0, ...areas.filter(a => a[2] < left && a[1] < bottom && a[3] > top).map(a => a[2] + 1));
+function drawAxis({ area: [left, top, right, bottom], left: outside }, axis) {
+  const em = picture.em;
   box(left, top, right - left, bottom - top, 0, theme.background);
-  box(from, top - 0.6 * em, left - from, bottom - top + 1.2 * em, 0, theme.background);
+  box(outside, top - 0.6 * em, left - outside, bottom - top + 1.2 * em, 0, theme.background);
   for (const [v, words] of axis.ticks) {
     const y = along(axis, v);
     box(left, y, right - left, Math.max(1, picture.grid), 0, theme.grid);
@@ -216,17 +209,17 @@ function drawMarks({ area: [left, , right, bottom], time }, marks) {
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
-const stripOfPair = Math.max(0, strips.findIndex(strip => strip.kind === "distance"));
-function drawStrip(strip, index) {
-  const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[index];
-  const axis = motion === original ? strip.axis : (motion.axes ??= [])[index] ??= axisOf(strip, curves);
+const kindOfPair = (strips.find(strip => strip.kind === "distance") ?? strips[0])?.kind;
+function drawStrip(strip) {
+  const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[kind];
+  const axis = motion === original ? strip.axis : (motion.axes ??= {})[kind] ??= axisOf(strip, curves);
   const at = t => along(strip.time, t);
   if (axis.ticks) drawAxis(strip, axis);
   const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
   const marks = motion === original ? [...film.limits] : [];  // their lines are in the backdrop
-  if (index === stripOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6)) {
+  if (kind === kindOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6)) {
     marks.push([since, `diverged at ${since.toFixed(1)} s${motion === original ? film.true_divergence : ""}`]);
     dashedLine(strip, since);
   }
@@ -240,7 +233,7 @@ function drawStrip(strip, index) {
     stroke(color, width, () => polyline(known));
     if (curves.length === 1 && known.length && !isStill) drawHead(known.at(-1), color);
   }
-  if (index === stripOfPair) drawMarks(strip, marks);
+  if (kind === kindOfPair) drawMarks(strip, marks);
 }
 
 // Rates over angles: paths, or the points at which θ1 passes a whole number of turns upwards.
@@ -248,7 +241,8 @@ function drawPhase({ area, angle, rate }) {
   const turn = 2 * Math.PI, wrapped = a => a - turn * Math.round(a / turn);
   const at = ([a, w]) => [along(angle, wrapped(a) * degrees), along(rate, w * degrees)];
   for (const k of [1, 0]) {
-    const [angles, rates, first] = motion.phase[k], { color } = bodies[k], points = trailOf(at, [angles, rates]);
+    const [angles, rates, first] = motion.curves.phase.slice(3 * k), { color } = bodies[k];
+    const points = trailOf(at, [angles, rates]);
     for (let i = 1; i <= sampleNow() && film.phase.kind === "section"; ++i) {
       const whole = turn * Math.floor(first[i] / turn), share = (whole - first[i - 1]) / (first[i] - first[i - 1]);
       const passed = [angles, rates].map(list => list[i - 1] + share * (list[i] - list[i - 1]));
@@ -266,7 +260,7 @@ function drawWords() {
   if (shows("title") && picture.words.length) drawLabel(picture.words[0], "Released anew");
   for (const { area, shown } of picture.panels) {
     const { angle } = motion.of[shown[0]], color = isEnsemble ? theme.text : bodies[shown[0]].color;
-    const words = angle.map(a => `${written(Number((a * degrees).toPrecision(8)))}°`).join("   ");
+    const words = angle.map(a => `${written(shortened(a * degrees, 8))}°`).join("   ");
     text(words, [area[0], area[1] - 12 * picture.text], picture.font, "left", 700, color);
   }
 }
@@ -280,7 +274,7 @@ function draw() {
   const poses = posesNow();
   drawWords();
   for (const panel of picture.panels) drawPanel(panel, poses);
-  if (picture.phase && motion.phase) drawPhase(picture.phase);
+  if (picture.phase && !motion.isStill) drawPhase(picture.phase);
   if (motion.curves) picture.strips.forEach(drawStrip);
   if (picture.clock) drawLabel(picture.clock, `${time.toFixed(film.decimals)} s`);
   if (picture.speed) drawLabel(picture.speed, speedAt(time)[2]);
