@@ -46,48 +46,49 @@ const goBy = frames => ({ shiftKey }) => {
 
 const quantities = [["angle", "angle_deg", "°", degrees], ["rate", "omega_deg_per_s", "°/s", degrees],
   ["mass", "mass_kg", "kg", 1], ["length", "length_m", "m", 1], ["gravity", "gravity_m_per_s2", "m/s²", 1]];
-let isFilmInForm = true;  // whether its pendulums differ as the form says
-const numbersOf = (chain, [name, , , per]) => [chain[name]].flat().map(v => v * per);
+const steps = Math.ceil(4000 * film.sample_s);  // in a sample
+let isFilmInForm = true;                        // whether its pendulums differ as the form says
+const numbersOf = ({ chain }) => quantities.map(([name, , , per]) => [chain[name]].flat().map(v => v * per));
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
 // With the film's numbers, also after form.reset().
 function makeForm() {
-  for (const quantity of quantities) {
-    const [name, , unit] = quantity, row = element("p", {}, `${name}, ${unit}`);
-    const [first, last] = [bodies[0], bodies.at(-1)].map(({ chain }) => numbersOf(chain, quantity));
-    first.forEach((number, i) => {
-      const label = `${name}${first.length > 1 ? ` ${i + 1}` : ""}, ${unit}`, value = shortened(number);
+  const [first, last] = [bodies[0], bodies.at(-1)].map(numbersOf);
+  quantities.forEach(([name, , unit], q) => {
+    const row = element("p", {}, `${name}, ${unit}`);
+    first[q].forEach((number, i) => {
+      const label = `${name}${first[q].length > 1 ? ` ${i + 1}` : ""}, ${unit}`, value = shortened(number);
       row.append(element("input", { name: name + i, type: "number", step: "any", "aria-label": label, value }));
-      form.key.append(new Option(label, name + i, number !== last[i]));
-      if (number !== last[i]) form.by.defaultValue = shortened(last[i] - number, 6);
+      form.key.append(new Option(label, name + i, number !== last[q][i]));
+      if (number !== last[q][i]) form.by.defaultValue = shortened(last[q][i] - number, 6);
     });
     $("#numbers").append(row);
-  }
+  });
   form.by.parentElement.hidden = layout === "single";
   form.reset();
-  isFilmInForm = bodies.every(({ chain }, k) => quantities.every(quantity => {
-    const found = numbersOf(chainOfForm(k), quantity), near = v => 1e-12 * Math.max(1, v) + 1e-6 * Math.abs(form.by.value);
-    return numbersOf(chain, quantity).every((v, i) => Math.abs(v - found[i]) <= near(Math.abs(v)));
-  }));
+  isFilmInForm = bodies.every((body, k) => {
+    const found = numbersOfForm(k).flat(), tolerance = 1e-6 * Math.abs(form.by.valueAsNumber);
+    return numbersOf(body).flat().every((v, i) => Math.abs(v - found[i]) <= tolerance + 1e-12 * Math.max(1, Math.abs(v)));
+  });
 }
 const differenceIn = (name, k) =>
   name === form.key.value && k > 0 ? form.by.valueAsNumber * k / (bodies.length - 1) : 0;
+const numbersOfForm = k => quantities.map(([name]) =>
+  inputsOf(name).map(input => input.valueAsNumber + differenceIn(input.name, k)));
 function chainOfForm(k) {
-  const steps = Math.ceil(4000 * film.sample_s), chain = { method: "rk4", step: film.sample_s / steps, steps };
-  for (const [name, , , per] of quantities)
-    chain[name] = inputsOf(name).map(input => (input.valueAsNumber + differenceIn(input.name, k)) / per);
-  return { ...chain, gravity: chain.gravity[0] };
+  const [angle, rate, mass, length, [gravity]] = numbersOfForm(k).map((list, q) => list.map(v => v / quantities[q][3]));
+  return { angle, rate, mass, length, gravity, method: "rk4", step: film.sample_s / steps, steps };
 }
 // Why there is no such motion; empty if there is one.
-function faultOf(of) {
-  const numbers = of.flatMap(chain => quantities.flatMap(quantity => numbersOf(chain, quantity)));
-  if (numbers.some(Number.isNaN)) return "every field needs a number";
-  if (of.some(({ mass, length, gravity }) => Math.min(...mass, ...length, gravity) <= 0))
+function faultOfForm() {
+  const all = bodies.map((_, k) => numbersOfForm(k));
+  if (all.flat(2).some(Number.isNaN)) return "every field needs a number";
+  if (all.some(([, , ...positive]) => positive.flat().some(v => v <= 0)))
     return "masses, lengths and gravity must be greater than 0";
-  return of.some(({ angle }) => mostOf(angle.map(Math.abs)) > 1e6 / degrees) ? "angles must be within 10⁶ degrees" : "";
+  return all.some(([angles]) => angles.some(v => Math.abs(v) > 1e6)) ? "angles must be within 10⁶ degrees" : "";
 }
 // Shows how the pendulums start, and with it, once they are known, the curves of the new motion; then plays it.
 async function releaseAnew(playsThen) {
-  const of = bodies.map((_, k) => chainOfForm(k)), { curves, since } = motion ?? {}, fault = faultOf(of);
+  const of = bodies.map((_, k) => chainOfForm(k)), { curves, since } = motion ?? {}, fault = faultOfForm();
   if (fault) return say(fault);
   play(false);
   motion = { ...motionOf(of, of.map(({ angle, rate }) => [...angle, ...rate])), curves, since, isStill: true };
@@ -105,17 +106,17 @@ async function releaseAnew(playsThen) {
   if (playsThen && !held) play(true);
   draw();
 }
-// The film's preset with the numbers of a release.
-function presetOf(chains) {
+// The film's preset with the numbers of the form.
+function presetOfForm() {
   const [samples, seconds] = film.sample_hz, sections = film.preset.split(/^(?=\[)/m);
-  const sides = layout === "single" ? [chains[0]] : [chains[0], chains.at(-1)];
-  return ['title = "Released anew"\n\n', ...sections.filter(section => section.startsWith("[scene]")),
-    ...sides.map((chain, k) => [`[${"ab"[k]}]`, `links = ${chain.mass.length}`, ...quantities.map(quantity => {
-      const list = numbersOf(chain, quantity).map(v => shortened(v, 15));
-      return `${quantity[1]} = ${quantity[0] === "gravity" ? list : `[${list.join(", ")}]`}`;
-    }), 'integrator = "rk4"', `step_s = "${seconds}/${samples * chain.steps}"`, "\n"].join("\n")),
+  const side = (name, k) => [`[${name}]`, `links = ${bodies[k].mass.length}`, ...numbersOfForm(k).map((list, q) => {
+    const numbers = list.map(v => shortened(v, 15)).join(", ");
+    return `${quantities[q][1]} = ${q === 4 ? numbers : `[${numbers}]`}`;
+  }), 'integrator = "rk4"', `step_s = "${seconds}/${samples * steps}"`, "\n"].join("\n");
+  return ['title = "Released anew"\n\n', ...sections.filter(section => section.startsWith("[scene]")), side("a", 0),
+    ...(layout === "single" ? [] : [side("b", bodies.length - 1)]),
     ...sections.filter(section => section.startsWith("[video"))
-  ].join("").replace(/^members = .*/m, `members = ${chains.length}`);
+  ].join("").replace(/^members = .*/m, `members = ${bodies.length}`);
 }
 
 // Pointers: a bob is dragged, a strip sets the time, any other place plays or pauses.
@@ -189,9 +190,9 @@ const clicks = {
     draw();
   },
   copy: () => {
-    const chains = bodies.map((_, k) => chainOfForm(k)), fault = motion === original ? "" : faultOf(chains);
+    const fault = motion === original ? "" : faultOfForm();
     if (fault) return say(fault);
-    const value = motion === original ? film.preset : presetOf(chains);
+    const value = motion === original ? film.preset : presetOfForm();
     const area = Object.assign($("#preset"), { value, hidden: false });
     area.select();
     const tell = () => say("copied; save it as NAME.toml, and run: doppel render NAME.toml");

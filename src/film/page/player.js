@@ -65,9 +65,14 @@ function viewOf({ center, origin, scale, shown }, poses) {
   return place => still(place).map((c, i) => c + center[i] - seen[i]);
 }
 
-// A path of points [x, y, age, s] that fades and narrows with its age, in pieces of even light; broken where it jumps.
-function fadingPath(points, width, color, jump = Infinity) {
-  const pieces = new Map(), shares = Math.max(8, 20 * film.trail_s) / film.trail_s;
+// The path of what `at` finds of the samples of `lists`, up to now: it fades and narrows with its age, in pieces of even
+// light; it is broken where it jumps.
+function drawTrail(at, lists, width, color, jump = Infinity) {
+  const pieces = new Map(), shares = Math.max(8, 20 * film.trail_s) / film.trail_s, points = [];
+  const first = motion.isStill ? Infinity : Math.max(0, Math.ceil((time - film.trail_s) / film.sample_s));
+  for (let i = first; i <= sampleNow(); ++i)
+    points.push([...at(lists.map(list => list[i])), time - i * film.sample_s]);
+  points.push([...at(lists.map(value)), 0]);
   points.forEach(([x, y, age], i) => {
     const [from, to] = [points[i - 1], points[i + 1]].map(next =>
       next && Math.abs(next[0] - x) <= jump ? [(x + next[0]) / 2, (y + next[1]) / 2] : [x, y]);
@@ -86,13 +91,6 @@ function fadingPath(points, width, color, jump = Infinity) {
     }
   }
   g.globalAlpha = 1;
-}
-// Where `at` finds a trail's samples, and it now, with their age, s.
-function trailOf(at, lists) {
-  const first = Math.max(0, Math.ceil((time - film.trail_s) / film.sample_s)), points = [];
-  for (let i = first; i <= sampleNow() && !motion.isStill; ++i)
-    points.push([...at(lists.map(list => list[i])), time - i * film.sample_s]);
-  return [...points, [...at(lists.map(value)), 0]];
 }
 
 // Rods, springs as zigzags, and pivots where ends are fixed.
@@ -142,7 +140,7 @@ function drawPanel(panel, poses) {
     drawBobs(other, poses, at, area, ghost);
   }
   for (const k of film.trail_s > 0 && picture.trail > 0 ? fromBehind : [])
-    fadingPath(trailOf(at, motion.pendulums[k].bobs.at(-1)), picture.trail, bodies[k].trail);
+    drawTrail(at, motion.pendulums[k].bobs.at(-1), picture.trail, bodies[k].trail);
   for (const k of fromBehind) {
     drawLines(k, poses[k], at, rod, bodies[k].rod);
     if (!isMany) drawBobs(k, poses, at, area);
@@ -176,9 +174,9 @@ function axisOf({ axis, area: [, top, , bottom] }, curves) {
 }
 // The ticks of such an axis, over the film's.
 function drawAxis({ area: [left, top, right, bottom], left: outside }, axis) {
-  const em = picture.em;
+  const em = picture.em, from = outside - 0.6 * em;
   box(left, top, right - left, bottom - top, 0, theme.background);
-  box(outside, top - 0.6 * em, left - outside, bottom - top + 1.2 * em, 0, theme.background);
+  box(from, top - 0.6 * em, left - from, bottom - top + 1.2 * em, 0, theme.background);
   for (const [v, words] of axis.ticks) {
     const y = along(axis, v);
     box(left, y, right - left, Math.max(1, picture.grid), 0, theme.grid);
@@ -242,15 +240,14 @@ function drawPhase({ area, angle, rate }) {
   const at = ([a, w]) => [along(angle, wrapped(a) * degrees), along(rate, w * degrees)];
   for (const k of [1, 0]) {
     const [angles, rates, first] = motion.curves.phase.slice(3 * k), { color } = bodies[k];
-    const points = trailOf(at, [angles, rates]);
     for (let i = 1; i <= sampleNow() && film.phase.kind === "section"; ++i) {
       const whole = turn * Math.floor(first[i] / turn), share = (whole - first[i - 1]) / (first[i] - first[i - 1]);
       const passed = [angles, rates].map(list => list[i - 1] + share * (list[i] - list[i - 1]));
       if (share > 0 && share <= 1) disc(at(passed), 1.2 * picture.trace, faded(color, 0.8));
     }
     if (film.phase.kind === "section") continue;
-    fadingPath(points, picture.trail, color, (area[2] - area[0]) / 2);
-    drawHead(points.at(-1), color);
+    drawTrail(at, [angles, rates], picture.trail, color, (area[2] - area[0]) / 2);
+    drawHead(at([angles, rates].map(value)), color);
   }
 }
 
