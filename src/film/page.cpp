@@ -138,10 +138,8 @@ Json body_json(const ShownPendulum& pendulum, int bits) {
         if (line.kind == Kind::rod || line.kind == Kind::spring)
             lines.push_back(
                 {line.kind == Kind::rod ? "rod" : "spring", end_json(line.from), end_json(line.to), line.width});
-    const double step = angle_step(pendulum, bits);
     return {{"mass", pendulum.mass},
-            {"turn", step},
-            {"length", step > 0 ? Json(pendulum.motion.chain->cast<double>().length) : Json()},
+            {"length", angle_step(pendulum, bits) > 0 ? Json(pendulum.motion.chain->cast<double>().length) : Json()},
             {"moves", pendulum.side.pivot_reach > 0},
             {"color", hexadecimal(pendulum.color)},
             {"rod", hexadecimal(pendulum.rod)},
@@ -324,25 +322,25 @@ void FilmPage::add(const Snapshot& snapshot) {
     ++samples_;
 }
 
-/// Angles from half a turn below zero on in their steps, coordinates in steps of 2^−bits of their range; second
-/// differences in time.
+/// Each channel from `low` on in steps: an angle from half a turn below zero, a coordinate in steps of 2^−bits of its
+/// range. The words are second differences in time.
 Json FilmPage::motion_json() const {
     const int bits = scene_.preset.video.position_bits;
     const auto steps = page_numbers(scene_, first_, first_.pair.distance, computes_).steps;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t c = 0; c < places_.size(); ++c)
-        for (const float number : places_[c])
-            if (steps[c] == 0) low = std::min<double>(low, number), high = std::max<double>(high, number);
-    if (!(high > low)) low = 0, high = 1;
-    const double step = (high - low) / (std::ldexp(1, bits) - 1);
+    Json channels = Json::array();
     std::vector<std::uint32_t> words;
-    for (std::size_t c = 0; c < places_.size(); ++c)
+    for (std::size_t c = 0; c < places_.size(); ++c) {
+        const auto [least, most] = std::ranges::minmax(places_[c]);
+        const bool is_angle = steps[c] > 0;
+        const double range = most > least ? static_cast<double>(most) - least : 1;
+        const double step = is_angle ? steps[c] : range / (std::ldexp(1, bits) - 1);
+        const double low = is_angle ? -std::ldexp(step, bits - 1) : least;
+        channels.push_back({low, step});
         for (const float number : places_[c])
-            words.push_back(static_cast<std::uint32_t>(
-                std::lround(steps[c] > 0 ? number / steps[c] + std::ldexp(1, bits - 1) : (number - low) / step)));
+            words.push_back(static_cast<std::uint32_t>(std::lround((number - low) / step)));
+    }
     return {{"bits", bits},
-            {"low", low},
-            {"step", step},
+            {"channels", channels},
             {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
 }
 

@@ -66,8 +66,8 @@ function makeForm() {
   form.by.parentElement.hidden = layout === "single";
   form.reset();
   isFilmInForm = bodies.every((body, k) => {
-    const found = numbersOfForm(k).flat(), tolerance = 1e-6 * Math.abs(form.by.valueAsNumber);
-    return numbersOf(body).flat().every((v, i) => Math.abs(v - found[i]) <= tolerance + 1e-12 * Math.max(1, Math.abs(v)));
+    const found = numbersOfForm(k).flat(), near = v => 1e-12 * Math.max(1, v) + 1e-6 * Math.abs(form.by.value);
+    return numbersOf(body).flat().every((v, i) => Math.abs(v - found[i]) <= near(Math.abs(v)));
   });
 }
 const differenceIn = (name, k) =>

@@ -18,15 +18,13 @@ async function unpacked(base64, wordBytes, order) {
 }
 
 // The motion that the page holds: for each pendulum places [xs, ys] of its pivot and its bobs.
-async function embeddedMotion({ bits, low, step, words }) {
+async function embeddedMotion({ bits, channels, words }) {
   const steps = await unpacked(words, bits / 8, 2), most = 2 ** bits - 1;
-  let at = 0;
-  const channel = (from, unit) => numbers(() => from + unit * (steps[at++] & most));
-  const place = () => [channel(low, step), channel(low, step)];
-  return { curves: {}, pendulums: bodies.map(({ mass, turn, length, moves }) => {
-    const found = mass.map(() => turn ? channel(-turn * 2 ** (bits - 1), turn) : place());
-    const pivot = moves ? place() : still;
-    return { pivot, bobs: turn ? placesOf(found, length, pivot) : found };
+  const lists = channels.map(([low, step], c) => numbers(i => low + step * (steps[c * count + i] & most)));
+  const next = () => lists.shift(), place = () => [next(), next()];
+  return { curves: {}, pendulums: bodies.map(({ mass, length, moves }) => {
+    const found = mass.map(length ? next : place), pivot = moves ? place() : still;
+    return { pivot, bobs: length ? placesOf(found, length, pivot) : found };
   }) };
 }
 // Places of bobs from the angles of their links.
@@ -46,7 +44,7 @@ function motionOf(of, states) {
   const sides = [...new Set([0, of.length - 1])].map(k => {
     const { mass, length, gravity } = of[k];
     const bobs = Array.from(still[0], (_, i) => chains.bobs(of[k], states[k], size * i));
-    const lowest = gravity * sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));  // J, below the pivot's level
+    const lowest = gravity * sumOf(mass.map((m, i) => m * sumOf(length.slice(0, i + 1))));  // J, below zero
     const total = numbers(i => chains.energy(gravity, bobs[i])), kinetic = numbers(i => chains.energy(0, bobs[i]));
     const above = total.map(now => now + lowest), potential = above.map((now, i) => now - kinetic[i]);
     const inDegrees = first => length.map((_, b) => list(k, first + b).map(v => v * degrees));

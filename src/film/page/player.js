@@ -65,8 +65,8 @@ function viewOf({ center, origin, scale, shown }, poses) {
   return place => still(place).map((c, i) => c + center[i] - seen[i]);
 }
 
-// The path of what `at` finds of the samples of `lists`, up to now: it fades and narrows with its age, in pieces of even
-// light; it is broken where it jumps.
+// The path up to now of what `at` finds of the samples of `lists`: it fades and narrows with its age, in pieces of
+// even light, and is broken where it jumps.
 function drawTrail(at, lists, width, color, jump = Infinity) {
   const pieces = new Map(), shares = Math.max(8, 20 * film.trail_s) / film.trail_s, points = [];
   const first = motion.isStill ? Infinity : Math.max(0, Math.ceil((time - film.trail_s) / film.sample_s));
@@ -165,7 +165,8 @@ function axisOf({ axis, area: [, top, , bottom] }, curves) {
   const { logarithmic } = axis, isDrawn = v => Number.isFinite(v) && (!logarithmic || v > 0);
   const drawn = curves.reduce((all, curve) => all.concat([...curve.filter(isDrawn)]), logarithmic ? [] : [0]);
   if (drawn.every(v => v >= axis.from && v <= axis.to)) return axis;
-  const along = drawn.map(v => logarithmic ? Math.log10(v) : v), high = mostOf(along), low = -mostOf(along.map(v => -v));
+  const exponents = drawn.map(v => logarithmic ? Math.log10(v) : v);
+  const high = mostOf(exponents), low = -mostOf(exponents.map(v => -v));
   const rough = Math.max((high - low) * 2.2 * picture.em / (bottom - top), 1e-12);
   const step = logarithmic ? Math.ceil(rough) : roundStep(rough), first = Math.floor(low / step);
   const ticks = Array.from({ length: Math.max(Math.ceil(high / step) - first, 1) + 1 }, (_, i) => (first + i) * step)
