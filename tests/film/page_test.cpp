@@ -215,6 +215,15 @@ TEST(Page, DoesNoHarmWithAnyWords) {
     EXPECT_NE(data_of(page).at("title").get<std::string>().find("</script><script>harm()"), std::string::npos);
 }
 
+TEST(Page, HasTheFilmsOwnPreset) {
+    const auto text = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
+    auto preset = scene_of_text(text).preset;
+    preset.video.format = FilmFormat::mp4;
+    const std::string own = data_of(page_of(text)).at("preset");
+    EXPECT_EQ(own, resolved_toml(preset));
+    EXPECT_EQ(resolved_toml(scene_of_text(own).preset), own);
+}
+
 TEST(Page, IsAWholeFilm) {
     const auto text = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
     test::expect_error(ExitCode::bad_input, {"must begin at 0"}, [&] { page_of(text, {.from_s = Rational{1, 1}}); });
