@@ -5,7 +5,8 @@ const { size, panels, release } = pageData;  // pixels of the picture; keys of a
 let chosen = null, again = false;            // a place; whether the pointer was at the same place before
 
 const numbersIn = text => text ? text.split(" ").map(Number) : [];
-const within = share => share > -1e-6 && share < 1 + 1e-6;
+const isInPanel = ([px, py], { x, y }) =>
+  [shareAt(x, px), shareAt(y, py)].every(share => share > -1e-6 && share < 1 + 1e-6);
 
 // A place: its texts as [label, value], and its position in pixels of the picture.
 function cell(panel, column, row) {
@@ -58,7 +59,7 @@ function open() {
 figure.onpointermove = figure.onpointerdown = event => {
   const area = figure.getBoundingClientRect(), before = chosen;
   const x = (event.clientX - area.left) / area.width * size[0], y = (event.clientY - area.top) / area.height * size[1];
-  const panel = panels.find(one => within(shareAt(one.x, x)) && within(shareAt(one.y, y)));
+  const panel = panels.find(one => isInPanel([x, y], one));
   choose(panel ? nearest(panel, x, y) : null);
   if (event.type === "pointerdown") again = before?.x === chosen?.x && before?.y === chosen?.y;
 };
@@ -75,21 +76,18 @@ function stepBy(right, up, next = 0) {
   if (up) return nearest(panel, x, undefined, [other]) ?? chosen;
   return point(panel, curve, clamp(index + right, 0, curve.points.length - 1));
 }
-const moves = { Escape: () => choose(null), Enter: open };
-for (const [key, right, up, next] of [["ArrowLeft", -1, 0], ["ArrowRight", 1, 0], ["ArrowUp", 0, 1], ["ArrowDown", 0, -1],
-  ["PageUp", 0, 0, -1], ["PageDown", 0, 0, 1]])
-  moves[key] = ({ shiftKey }) => choose(stepBy(right * (shiftKey ? 10 : 1), up * (shiftKey ? 10 : 1), next));
-if (panels.length) onKeys(moves, figure);
+const move = (...step) => ({ shiftKey }) => choose(stepBy(...step.map(n => n * (shiftKey ? 10 : 1))));
+if (panels.length)
+  onKeys({ ArrowLeft: move(-1, 0), ArrowRight: move(1, 0), ArrowUp: move(0, 1), ArrowDown: move(0, -1),
+    PageUp: move(0, 0, -1), PageDown: move(0, 0, 1), Escape: () => choose(null), Enter: open }, figure);
 
 for (const panel of panels) {
   if (panel.map) panel.map.values = numbersIn(panel.map.values);
   for (const curve of panel.curves) {
-    const [xs, ys] = [numbersIn(curve.x), numbersIn(curve.y)], axis = curve.right && panel.right || panel.y;
-    const points = xs.map((x, i) => ({ values: [x, ys[i]], shares: [axisShare(panel.x, x), axisShare(axis, ys[i])] }))
-      .filter(({ shares }) => shares.every(within));
-    curve.axis = axis;
-    curve.points = points.map(({ values, shares }) =>
-      ({ values, at: [pixelAt(panel.x, shares[0]), pixelAt(axis, shares[1])] }));
+    const ys = numbersIn(curve.y), axis = curve.axis = curve.right && panel.right || panel.y;
+    const at = (x, y) => [pixelAt(panel.x, axisShare(panel.x, x)), pixelAt(axis, axisShare(axis, y))];
+    curve.points = numbersIn(curve.x).map((x, i) => ({ values: [x, ys[i]], at: at(x, ys[i]) }))
+      .filter(point => isInPanel(point.at, panel));
   }
 }
 figure.parentElement.style.maxWidth = `max(680px, ${85 * size[0] / size[1]}vh)`;
