@@ -39,9 +39,11 @@ Json panel_json(const Plot& plot, const PlotRanges& axes) {
     return panel;
 }
 
-/// The data URL of the smaller picture: SVG is large if it shows clouds of points.
-/// `is_coarse`: each cell of its map is to be seen.
-std::string picture_url(const FigurePreset& figure, const Page& page, bool is_coarse) {
+/// The data URL of the smaller picture: SVG is large if it shows clouds of points. Each cell of a coarse map is to be
+/// seen.
+std::string picture_url(const FigurePreset& figure, const std::vector<Plot>& panels, const Page& page) {
+    const bool is_coarse =
+        std::ranges::any_of(panels, [](const Plot& plot) { return plot.map && plot.map->columns <= 256; });
     const double width_pt = layout_of(figure.chart).width_pt;
     auto svg = page_file(page, PictureFormat::svg, width_pt, {{"title", figure.title}});
     constexpr std::string_view image = "<image ";
@@ -100,9 +102,6 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
     const auto page = compose_chart(figure.chart, drawn, theme);
     const auto [width, height] =
         std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
-    constexpr int few_cells = 256;
-    const bool is_coarse =
-        std::ranges::any_of(drawn.panels, [](const Plot& plot) { return plot.map && plot.map->columns <= few_cells; });
     HtmlPage whole{.kind = "figure"};
     auto keys = Json::array();
     if (auto releases = figure.experiment->releases()) {
@@ -120,7 +119,7 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
 </main>
 <footer>{5}<p>Point at the figure, or use arrow keys, with Shift in larger steps.{6}{7}</p></footer>
 {8})html",
-                             heading, markup(figure.title), picture_url(figure, page, is_coarse), width, height,
+                             heading, markup(figure.title), picture_url(figure, drawn.panels, page), width, height,
                              captions, drawn.panels.size() > 1 ? " Page Up and Page Down change the panel." : "",
                              keys.empty() ? "" : " A click or Enter releases the pendulum there.", whole.body);
     const auto file = [](std::string_view name) { return embedded_file(figure_files(), name); };

@@ -115,13 +115,6 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     return json;
 }
 
-/// The number of a bob, or a place.
-Json end_json(const End<double>& end) {
-    if (const auto* bob = std::get_if<std::size_t>(&end)) return *bob;
-    const auto& place = std::get<Place<double>>(end);
-    return {place[0], place[1]};
-}
-
 /// The step of its angles in the file, rad; 0 if the file contains the positions of its bobs, because they do not
 /// follow from angles and lengths of links. The errors of a chain of N links add up randomly.
 double angle_step(const ShownPendulum& pendulum, int bits) {
@@ -134,10 +127,11 @@ double angle_step(const ShownPendulum& pendulum, int bits) {
 Json body_json(const ShownPendulum& pendulum, int bits) {
     using Kind = MechanismLine::Kind;
     Json lines = Json::array();
+    const auto end_json = [](const auto& bob_or_place) { return Json(bob_or_place); };
     for (const auto& line : pendulum.side.lines)
         if (line.kind == Kind::rod || line.kind == Kind::spring)
-            lines.push_back(
-                {line.kind == Kind::rod ? "rod" : "spring", end_json(line.from), end_json(line.to), line.width});
+            lines.push_back({line.kind == Kind::rod ? "rod" : "spring", std::visit(end_json, line.from),
+                             std::visit(end_json, line.to), line.width});
     return {{"mass", pendulum.mass},
             {"length", angle_step(pendulum, bits) > 0 ? Json(pendulum.motion.chain->cast<double>().length) : Json()},
             {"moves", pendulum.side.pivot_reach > 0},
