@@ -8,7 +8,8 @@ const isOfFigure = pageData.panels !== undefined;
 let isPlaying = false, lastFrame = 0;
 function seek(to) {
   time = clamp(to, 0, film.duration_s);
-  const distance = motion?.curves?.distance?.[0][sampleNow()], told = distance >= 0 ? `, distance ${scientific(distance)}` : "";
+  const distance = motion?.curves?.distance?.[0][sampleNow()];
+  const told = distance >= 0 ? `, distance ${scientific(distance)}` : "";
   $("#time").value = time;
   $("#time").setAttribute("aria-valuetext", `${time.toFixed(2)} seconds${told}`);
   $("#now").value = `${time.toFixed(2)} s`;

@@ -22,7 +22,8 @@ const stroke = (strokeStyle, lineWidth, trace) =>
 const polyline = points => points.forEach(([x, y], i) => i ? g.lineTo(x, y) : g.moveTo(x, y));
 const box = (left, top, width, height, corner, color) =>
   fill(color, () => g.roundRect(left, top, width, height, corner));
-const line = (from, to, radius, color) => stroke(color, 2 * radius, () => polyline([from, to]));
+const line = (from, [x, y], radius, color) =>  // a canvas draws none of length 0
+  stroke(color, 2 * radius, () => polyline([from, [x + 1e-3, y]]));
 const ring = ([x, y], radius, width, color) => stroke(color, width, () => g.arc(x, y, radius, 0, 7));
 function disc([x, y], radius, color, glow = 0) {
   const light = g.createRadialGradient(x, y, radius, x, y, radius + glow);
@@ -224,13 +225,19 @@ function drawStrip(strip) {
   }
   verticalLine(x, area[1], area[3], theme.cursor);
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
-    const [color, width] = pens[c];
-    const points = Array.from(list.subarray(0, last + 1), (v, i) => [at(i * film.sample_s), along(axis, v)]);
-    if (!isStill) points.push([x, along(axis, value(list))]);
-    const first = list.findIndex(v => axisShare(axis, v) >= 0);  // a curve begins where it enters its axis
-    const known = points.filter(([, y], i) => first >= 0 && i >= first && y >= 0);
-    stroke(color, width, () => polyline(known));
-    if (curves.length === 1 && known.length && !isStill) drawHead(known.at(-1), color);
+    const [color, width] = pens[c], pieces = [];  // cut where the curve leaves its axis; the first begins in it
+    const isInside = v => Math.abs(axisShare(axis, v) - 0.5) <= 0.500001;
+    let before = null, wasInside = false;
+    const add = (t, v) => {
+      const point = [at(t), along(axis, v)], inside = isInside(v);
+      if (inside && !wasInside) pieces.push(pieces.length ? [before] : []);
+      if (inside || wasInside) pieces.at(-1).push(point);
+      [before, wasInside] = [point, inside];
+    };
+    list.subarray(0, last + 1).forEach((v, i) => add(i * film.sample_s, v));
+    if (!isStill) add(time, value(list));
+    stroke(color, width, () => pieces.forEach(polyline));
+    if (curves.length === 1 && wasInside && !isStill) drawHead(before, color);
   }
   if (kind === kindOfPair) drawMarks(strip, marks);
 }
@@ -252,15 +259,20 @@ function drawPhase({ area, angle, rate }) {
   }
 }
 
-// Of a release by hand the angles above the pendulums, in place of the film's words.
+// Of a release by hand the angles above the pendulums, and another number in which they differ, in place of the film's
+// words.
 function drawWords() {
   if (motion === original) return drawAll(picture.words);
   if (shows("title") && picture.words.length) drawLabel(picture.words[0], "Released anew");
-  for (const { area, shown } of picture.panels) {
-    const { angle } = motion.of[shown[0]], color = isEnsemble ? theme.text : bodies[shown[0]].color;
-    const words = angle.map(a => `${written(shortened(a * degrees, 8))}°`).join("   ");
-    text(words, [area[0], area[1] - 12 * picture.text], picture.font, "left", 700, color);
-  }
+  const [, name, at] = /(\D+)(\d+)/.exec(form.key.value), [what, unit] = form.key.selectedOptions[0].text.split(", ");
+  const number = k => [motion.of[k][name]].flat()[at] * quantities.find(([key]) => key === name)[3];
+  for (const { area, shown } of picture.panels)
+    (isEnsemble ? shown.slice(0, 1) : shown).forEach((k, i, all) => {
+      const words = motion.of[k].angle.map(a => `${written(shortened(a * degrees, 8))}°`);
+      if (name !== "angle" && !isEnsemble) words.push(`${what} = ${written(shortened(number(k), 8))} ${unit}`);
+      text(words.join("   "), [area[2 * i], area[1] - 12 * picture.text], picture.font, i ? "right" : "left", 700,
+        isEnsemble ? theme.text : bodies[k].color, (area[2] - area[0]) / all.length - picture.font);
+    });
 }
 
 function draw() {
