@@ -82,16 +82,22 @@ bool shows(const Plot& plot, const Curve& line) {
     return false;
 }
 
-/// Counts the regular releases of a curve, and removes equilibria: their exponent is not that of a motion.
-std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, std::string_view unit) {
-    long regular = 0, changing = 0;
+/// Counts the regular releases of a curve, and removes equilibria: their exponent is not that of a motion. `rates` are
+/// the natural rates of the releases, 1/s: where the interval that contains 0 reaches a tenth of it, the run is too short
+/// to call a release regular.
+std::string exponent_words(Curve& exponents, const std::vector<double>& unsettled, const std::vector<double>& rates,
+                           std::string_view unit) {
+    constexpr double resolution = 0.1;
+    long regular = 0, unknown = 0, changing = 0;
     bool contracts = false;
     std::string equilibria;
     const auto count = exponents.x.size();
     for (std::size_t i = 0; i < count; ++i) {
         const double exponent = exponents.y[i], uncertainty = exponents.uncertainty[i];
-        regular += is_regular({exponent, uncertainty});
-        changing += !is_regular({exponent, uncertainty}) && unsettled[i] != 0;
+        if (!is_regular({exponent, uncertainty}))
+            changing += unsettled[i] != 0;
+        else
+            ++(exponent + 1.5 * uncertainty > resolution * rates[i] ? unknown : regular);
         contracts = contracts || exponent < -1.5 * uncertainty;
         if (exponent == 0 || uncertainty != 0) continue;
         equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i], unit,
@@ -100,8 +106,13 @@ std::string exponent_words(Curve& exponents, const std::vector<double>& unsettle
     }
     const auto which =
         contracts ? "regular or come to rest: their exponent is not above 0" : "regular: their exponent is not above 0";
-    auto words = regular == 0 ? fmt::format("None of {} releases is regular", count)
-                              : fmt::format("{} of {} releases are {}", regular, count, which);
+    auto words = regular > 0    ? fmt::format("{} of {} releases are {}", regular, count, which)
+                 : unknown == 0 ? fmt::format("None of {} releases is regular", count)
+                                : "";
+    if (unknown > 0)
+        words += fmt::format("{} cannot be told from 0 in a run this short",
+                             regular > 0 ? fmt::format("; that of {} more", unknown)
+                                         : fmt::format("The exponent of {} of {} releases", unknown, count));
     words += ". The band is the 68 % interval of the exponent";
     if (changing > 0)
         words += fmt::format(
@@ -156,9 +167,12 @@ void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group,
             if (measurement.quantity() == Quantity::exponent) {
                 drawn.uncertainty = curve(numbers, group, column + 1).y;
                 const auto unsettled = curve(numbers, group, column + 2).y;
+                std::vector<double> rates;
+                for (std::size_t x = 0; x < drawn.x.size(); ++x)
+                    rates.push_back(1 / NaturalUnits(physical_of(pair_at({group, 0, x}).a).cast<double>()).time);
                 const auto said = joined_words(group, ", ");
                 figure.captions.push_back((said.empty() ? "" : said + ": ") +
-                                          exponent_words(drawn, unsettled, x_.angle ? "°" : ""));
+                                          exponent_words(drawn, unsettled, rates, x_.angle ? "°" : ""));
             }
             if (const auto dashed = "Dashed: " + (of.curves.empty() ? of.short_label : of.curves[i]) + ".";
                 drawn.dashed && std::ranges::count(figure.captions, dashed) == 0)

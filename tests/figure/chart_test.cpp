@@ -170,4 +170,18 @@ TEST(Chart, WithOnlyChaoticOrbitsSaysThatNoneIsRegular) {
     EXPECT_NE(words.find("None of 2 releases is regular. The band is the 68 % interval"), std::string::npos) << words;
 }
 
+TEST(Chart, CallsOrbitsRegularIfTheirExponentIsKnown) {
+    const auto caption = [](int seconds) {
+        const auto figure =
+            figure_of("fig2-right", {"grid.quantity=\"exponent\"", "grid.x.from=10", "grid.x.to=30", "grid.x.step=20",
+                                     fmt::format("grid.exponent_duration_s={}", seconds)});
+        Figure page;
+        figure.experiment->draw(computed(figure), page);
+        return page.captions.at(0);
+    };
+    const std::string band = ". The band is the 68 % interval of the exponent.";
+    EXPECT_EQ(caption(500), "2 of 2 releases are regular: their exponent is not above 0" + band);
+    EXPECT_EQ(caption(20), "The exponent of 2 of 2 releases cannot be told from 0 in a run this short" + band);
+}
+
 }  // namespace doppel::chart_test
