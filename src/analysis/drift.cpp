@@ -118,6 +118,7 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
 
 Growth growth_of(std::span<const double> times_s, std::span<const double> errors, double failed_at_s) {
     constexpr double decades = 2, doublings = 2;  // the range of time that the fits use
+    constexpr double least = 0.25;                // exponent of a growth: half-way between the powers 0 and ½
     std::vector<double> times, log_times, log_errors;
     for (std::size_t i = 0; i < errors.size(); ++i) {
         if (!(errors[i] > 0)) continue;
@@ -134,8 +135,10 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
     if (times.size() > 1) growth.exponent = fitted(log_times, decades * std::log(10));
     const double p = growth.exponent;
     using Kind = Growth::Kind;
-    // thresholds half-way between the powers 0, ½, 1 and 2; no error at all also counts as bounded
-    growth.kind = p >= 1.5 ? Kind::steeper : p >= 0.75 ? Kind::linear : p >= 0.25 ? Kind::root : Kind::bounded;
+    // thresholds half-way between the powers 0, ½, 1 and 2; no error at all also counts as bounded, and so does one that
+    // has reached its maximum: it grows no more in the last decade
+    const bool still_grows = p >= least && fitted(log_times, std::log(10)) >= least;
+    growth.kind = !still_grows ? Kind::bounded : p >= 1.5 ? Kind::steeper : p >= 0.75 ? Kind::linear : Kind::root;
     if (!(failed_at_s > 0)) return growth;
     return {Kind::failed, p, std::log(2) / fitted(times, doublings * std::log(2))};
 }

@@ -574,17 +574,20 @@ private:
     /// The final energy errors, and how to read the curves.
     std::string caption(std::span<const TrialNumbers> numbers) const override {
         std::vector<std::string> bounded;
-        bool breaks = false;
+        bool breaks = false, grow = false;
         for (std::size_t run = 0; run < runs_.size(); ++run) {
-            const auto kind = growth(numbers, run, false).kind;
-            breaks |= kind == Growth::Kind::failed;
-            if (runs_[run].shows_energy && kind == Growth::Kind::bounded) bounded.push_back(runs_[run].label);
+            const auto found = growth(numbers, run, false);
+            breaks |= found.kind == Growth::Kind::failed;
+            grow |=
+                !style_of(found).law.empty() || (has_rods(run) && !style_of(growth(numbers, run, true)).law.empty());
+            if (runs_[run].shows_energy && found.kind == Growth::Kind::bounded) bounded.push_back(runs_[run].label);
         }
-        return fmt::format("{}; ∝ tells how the others grow{}.",
+        return fmt::format("{}{}{}.",
                            bounded.empty()
                                ? "No method keeps the error of the energy bounded"
                                : fmt::format("The error of the energy stays bounded with {}", fmt::join(bounded, ", ")),
-                           breaks ? ", a dot marks a failed run" : "");
+                           grow ? "; ∝ tells how the others grow" : "",
+                           breaks ? fmt::format("{} a dot marks a failed run", grow ? "," : ";") : "");
     }
 
     SideSpec release_;
