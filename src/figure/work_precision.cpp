@@ -262,6 +262,19 @@ public:
         if (studies_.empty())
             throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems[0].name,
                               name_of(problems[0].motion.model));
+        // what is chosen must not be left out; all names are no choice
+        const auto require_all = [&](const char* key, const auto& names, std::size_t all, const char* other,
+                                     const auto& name_of_solver) {
+            for (const auto& name : names)
+                if (names.size() < all && std::ranges::none_of(studies_, [&](const auto& study) {
+                        return name_of_solver(study.second) == name;
+                    }))
+                    throw table.error(key, "must each run {} with one of the {}; \"{}\" does not", problems[0].name,
+                                      other, name);
+        };
+        require_all("methods", methods_, names_of_methods().size(), "models", [](const Solver& s) { return s.method; });
+        require_all("models", model_names_, names_of<Model>.size(), "methods",
+                    [](const Solver& s) { return name_of(s.model); });
     }
 
     void fields(KeyVisitor& visit) {

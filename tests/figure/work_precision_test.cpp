@@ -282,6 +282,10 @@ TEST(WorkPrecision, RefusesWrongSettings) {
     expect_error_text({"work_precision.methods=[\"magic\"]"}, "\"magic\" is not");
     expect_error_text({"work_precision.methods=[\"rattle\"]", "work_precision.models=[\"angles\"]"},
                       "that it supports");
+    expect_error_text({"work_precision.methods=[\"rattle\", \"rk4\"]", "work_precision.models=[\"angles\"]"},
+                      "must each run P1 with one of the models; \"rattle\" does not");
+    expect_error_text({"work_precision.methods=[\"gauss4\"]", "work_precision.models=[\"angles\", \"mechanism\"]"},
+                      "must each run P1 with one of the methods; \"mechanism\" does not");
     expect_error_text({"work_precision.scene=\"springs\"", "work_precision.models=[\"angles\"]"},
                       "supports \"mechanism\"");
     expect_error_text({"work_precision.scene=\"rods\"", "work_precision.models=[\"mechanism\"]"},
