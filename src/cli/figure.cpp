@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -24,6 +26,15 @@ std::vector<Override> overrides(const FigureCommandOptions& options) {
     if (options.scale != 0)
         all.push_back({"chart.scale", fmt::format("{}", options.scale), fmt::format("--scale {}", options.scale)});
     return all;
+}
+
+/// Tiles have one pixel a cell: throws Error (exit 2) where the command line gives a picture its format or size.
+void refuse_picture_keys(const std::vector<Override>& given) {
+    constexpr std::array<std::string_view, 6> of_size{"chart.size",      "chart.scale",   "chart.width_cm",
+                                                      "chart.height_cm", "chart.font_pt", "chart.dpi"};
+    for (const auto& [key, value, origin] : given)
+        if (std::ranges::count(of_size, key) > 0 || (key == "chart.format" && value.find("png") == std::string::npos))
+            throw bad_input("{}: is for a picture; --tiles writes PNGs of one pixel a cell", origin);
 }
 
 /// "all" means every built-in figure.
@@ -50,8 +61,10 @@ void make_figures(const FigureCommandOptions& options) {
         figures.push_back(read_figure(preset, overrides(options), watch_interrupts()));
         replacing.inputs.emplace_back(preset.path);
     }
-    if (options.tiles)
+    if (options.tiles) {
         for (const auto& figure : figures) require_map(figure);
+        refuse_picture_keys(overrides(options));
+    }
     if (options.out == "-" && (options.tiles || options.merge || !options.shard.empty()))
         throw bad_input("-o -: standard output takes one picture, and no {}", options.tiles ? "tiles"
                                                                               : options.merge
