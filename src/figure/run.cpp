@@ -174,11 +174,12 @@ std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOp
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report) {
     const int jobs = options.jobs > 0 ? options.jobs : cores();
+    const std::string kind = options.tiles ? "map of tiles" : "figure";
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
             const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
-            Transaction files(options.out / figures[k].name, "run", "figure", options.replacing);
+            Transaction files(options.out / figures[k].name, "run", kind, options.replacing);
             auto result = write_figure(figures[k], trials, {.jobs = jobs}, options.tiles, files, stop);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
@@ -191,7 +192,7 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     std::vector<Group> groups, timed_groups;
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) {
-        files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, "figure", options.replacing));
+        files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, kind, options.replacing));
         for (const auto& name : figure_files(figure, options))
             if (!name.ends_with('/') && !options.shard) files.back()->require(name);
     }

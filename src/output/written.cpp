@@ -50,6 +50,7 @@ Json manifest_of(const fs::path& path) {
 
 std::string kind_of_manifest(const Json& manifest) {
     if (manifest.contains("certificate") && !manifest.contains("frames")) return "certificate";
+    if (manifest.contains("tiles")) return "map of tiles";
     return manifest.contains("models") ? "fit" : manifest.contains("figure") ? "figure" : "film";
 }
 
@@ -84,11 +85,12 @@ Origin origin_of(const fs::path& folder, const std::string& name, const WrittenF
         return {.is_ours = true, .kind = kind_of_manifest(manifest)};
     const auto [first, last] = written.equal_range(name);
     if (first == last) return {.is_ours = made_by(path)};
-    const bool stands = std::any_of(first, last, [&](const auto& entry) {
+    const auto current = std::find_if(first, last, [&](const auto& entry) {
         const WrittenFile& file = entry.second;
         return file.sha256.empty() || (file.bytes == fs::file_size(path) && file.sha256 == sha256_of_file(path));
     });
-    return {.is_ours = true, .is_changed = !stands, .kind = first->second.kind};
+    const bool is_changed = current == last;
+    return {.is_ours = true, .is_changed = is_changed, .kind = (is_changed ? first : current)->second.kind};
 }
 
 bool made_by(const fs::path& path, std::string_view program) {

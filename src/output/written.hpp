@@ -13,7 +13,7 @@ namespace doppel {
 struct WrittenFile {
     std::uintmax_t bytes = 0;
     std::string sha256;
-    std::string kind = {};  // of the run whose manifest lists the file: "film", "figure", "fit", "certificate"
+    std::string kind = {};  // of the run whose manifest lists the file: "film", "figure", "map of tiles", …
 };
 
 /// The files that the manifests in a folder list, by name ("frames/000000.png"), without the manifests. If several

@@ -36,6 +36,19 @@ std::map<std::string, std::string> tiles_in(const fs::path& out) {
     return all;
 }
 
+TEST(Tiles, DoNotReplaceThePageOfAFigure) {
+    const auto out = fresh_folder();
+    const auto html = figure_from(flips, {"grid.x.points=8", "grid.y.points=8", "chart.format=\"html\""});
+    FigureOptions options{.out = out};
+    run_figure(html, options);
+    expect_error(ExitCode::io_failed, {"x.html was made by a figure, and this is a map of tiles", "--force"},
+                 [&] { make(out, small(8, 8)); });
+    make(out, small(8, 8), {.replacing = {.force = true}});
+    make(out, small(8, 8));
+    expect_error(ExitCode::io_failed, {"x.html was made by a map of tiles, and this is a figure"},
+                 [&] { run_figure(html, options); });
+}
+
 TEST(Tiles, AreTheCellsOfTheMap) {
     const auto out = fresh_folder();
     const auto figure = small();
