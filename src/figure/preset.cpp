@@ -9,6 +9,7 @@ namespace doppel {
 namespace {
 
 constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
+constexpr double most_growth = 3;                 // of the height, where only the width on paper is given
 constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/panel.hpp), layout px
 constexpr double paths_scale = 4;                 // for output made of paths
 constexpr double page_scale = 2;                  // for a page, whose picture may be pixels
@@ -18,14 +19,14 @@ constexpr double smallest = 16, largest = 16384;  // px; more than any OpenGL su
 void check_chart(const TomlReader& table, const ChartSpec& chart) {
     const auto layout = layout_of(chart);
     const auto [width, height] = layout.picture;
-    const double height_pt = layout.width_pt * height / width;
+    const double height_pt = layout.width_pt * height / width * (chart.height_cm ? 1 : most_growth);
     // in text heights: the smallest chart with space for axes, labels and a curve
     constexpr double min_width = 12, min_height = 10;
     if (const double maximum = std::min(layout.width_pt / min_width, height_pt / min_height);
         chart.width_cm && chart.font_pt > maximum)
-        throw table.error("font_pt",
-                          "is too large for a chart of {:.3g}×{:.3g} cm; at most {:.2g} pt is possible; it is {:g}",
-                          layout.width_pt / pt_per_cm, height_pt / pt_per_cm, maximum, chart.font_pt);
+        throw table.error("font_pt", "is too large for a chart of {:.3g}{}; at most {:g} pt is possible; it is {:g}",
+                          *chart.width_cm, chart.height_cm ? fmt::format("×{:.3g} cm", *chart.height_cm) : " cm width",
+                          std::floor(10 * maximum) / 10, chart.font_pt);
     if (std::min(width, height) < smallest || std::max(width, height) > largest) {
         const auto what = chart.width_cm
                               ? fmt::format("{:g} cm at {} dpi", *chart.width_cm, chart.dpi)
@@ -92,7 +93,6 @@ ChartLayout layout_of(const ChartSpec& chart, double growth) {
 }
 
 Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& theme) {
-    constexpr double most_growth = 3;
     constexpr float readable_panel = 90, readable_text = 16;  // px, where labels have 20
     const auto is_small = [](const PageItem& item) {
         const auto* text = std::get_if<Label>(&item);

@@ -99,10 +99,17 @@ TEST(Chart, KeysOfPaperNeedItsWidth) {
     expect_error(ExitCode::bad_input, {"with width_cm, dpi sets it"}, [] {
         small_sweep({"chart.width_cm=8.6", "chart.scale=2"});
     });
-    expect_error(ExitCode::bad_input, {"is too large for a chart of 3×1.69 cm; at most 4.8 pt is possible; it is 40"},
+    expect_error(ExitCode::bad_input, {"is too large for a chart of 3 cm width; at most 7 pt is possible; it is 40"},
                  [] {
                      small_sweep({"chart.width_cm=3", "chart.font_pt=40"});
                  });
+    expect_error(ExitCode::bad_input, {"a chart of 5×2.82 cm; at most 7.9 pt is possible; it is 8"}, [] {
+        small_sweep({"chart.width_cm=5", "chart.height_cm=2.82"});
+    });
+    // without a height of its own, it is higher where its texts need it
+    const auto narrow = small_sweep({"chart.width_cm=5"});
+    const auto page = compose_figure(narrow, computed(narrow));
+    EXPECT_GT(page.size.height, layout_of(narrow.chart).picture.height);
     expect_error(ExitCode::bad_input, {"must leave a picture of 16 to 16384 px a side"}, [] {
         small_sweep({"chart.width_cm=200", "chart.dpi=1200"});
     });
@@ -181,7 +188,11 @@ TEST(Chart, CallsOrbitsRegularIfTheirExponentIsKnown) {
     };
     const std::string band = ". The band is the 68 % interval of the exponent.";
     EXPECT_EQ(caption(500), "2 of 2 releases are regular: their exponent is not above 0" + band);
-    EXPECT_EQ(caption(20), "The exponent of 2 of 2 releases cannot be told from 0 in a run this short" + band);
+    EXPECT_EQ(caption(20),
+              "1 of 2 releases are regular: their exponent is not above 0; that of 1 more cannot be told "
+              "from 0 in a run this short" +
+                  band);
+    EXPECT_EQ(caption(5), "The exponent of 2 of 2 releases cannot be told from 0 in a run this short" + band);
 }
 
 }  // namespace doppel::chart_test
