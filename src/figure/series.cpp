@@ -5,6 +5,7 @@
 #include "film/pair_table.hpp"
 #include "scene/captions.hpp"
 #include "scene/certificate.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
@@ -232,6 +233,7 @@ public:
                               shown);
         settings_ = resolved_settings(settings_text(keys));
         unit_ = "pairs";
+        subtitle_ = pair_subtitle(make_scene(curves_.front().pair), swept_keys());
         shown_ = curves_.size();
         trials_ = shown_ * (check_tolerance_ ? 2 : 1);
         axes_.x = {.label = "time, s", .low = 0, .high = times_s_.back()};
@@ -308,17 +310,30 @@ private:
         return values;
     }
 
+    /// What differs between the pairs, and the subtitle leaves out.
+    SweptKeys swept_keys() const {
+        SweptKeys swept;
+        const auto& first = curves_.front().pair;
+        for (const auto& [column, label, film_column, pair] : curves_)
+            for (const auto& keys : {differing_keys(first.a, pair.a), differing_keys(first.b, pair.b)})
+                for (const auto& key : keys)
+                    if (!key.any().key.empty()) swept.keys.push_back(fmt::format(".{}", key.any().key));
+        return swept;
+    }
+
     /// The description of the curves.
     std::string shown_words() const {
+        const auto side = [](const PairCurve& curve) {
+            return curve.film_column->starts_with("a_") ? " (a)" : curve.film_column->starts_with("b_") ? " (b)" : "";
+        };
+        const std::string_view first = side(curves_.front());
+        const bool is_one = std::ranges::all_of(curves_, [&](const auto& curve) { return side(curve) == first; });
         std::vector<std::string> all;
-        bool of_a = true, of_b = true;
-        for (const auto& curve : curves_) {
-            of_a &= curve.film_column->starts_with("a_");
-            of_b &= curve.film_column->starts_with("b_");
-            if (auto words = column_words(*curve.film_column); std::ranges::count(all, words) == 0)
+        for (const auto& curve : curves_)
+            if (auto words = column_words(*curve.film_column) + (is_one ? "" : side(curve));
+                std::ranges::count(all, words) == 0)
                 all.push_back(std::move(words));
-        }
-        return fmt::format("{}{}", fmt::join(all, "; "), of_a ? " (a)" : of_b ? " (b)" : "");
+        return fmt::format("{}{}", fmt::join(all, "; "), is_one ? first : "");
     }
 
     /// The time up to which both tolerances agree within 1 %, s.

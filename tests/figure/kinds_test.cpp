@@ -206,6 +206,18 @@ TEST(Subtitle, IsOfTheSystem) {
               "chains in angles, released from 120°; tangent equations by Dormand–Prince 8");
 }
 
+TEST(Subtitle, OfASeriesIsOfWhatItsPairsShare) {
+    const std::string text =
+        "[scene]\nkind = \"series\"\n[system]\nangle_deg = [100, 100]\nintegrator = \"dop853\"\n"
+        "[b]\nangle_deg = [100.1, 100]\n";
+    EXPECT_EQ(figure_from(text).subtitle,
+              "two links in angles, θ₂ = 100°, θ₁ = 100° against θ₁ = 100.1°; Dormand–Prince 8(5,3), tolerance 10⁻¹²");
+    EXPECT_EQ(figure_from(text + "[[curve]]\ncolumn = \"one\"\n[[curve]]\ncolumn = \"two\"\n"
+                                 "system.mass_kg = [3, 1]\nsystem.integrator = \"taylor\"\n")
+                  .subtitle,
+              "two links, θ₂ = 100°, θ₁ = 100° against θ₁ = 100.1°");
+}
+
 TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
     const auto figure = figure_of("flip-map", {"grid.x.points=40", "grid.y.points=40", "scene.duration_s=5"});
     const auto table = table_of(figure);
@@ -267,7 +279,8 @@ film_column = "b_kinetic_J"
     EXPECT_NEAR(table.rows[0][2], pi / 6, 1e-15);
     Figure page;
     figure.experiment->draw(computed(figure), page);
-    EXPECT_EQ(page.panels.at(0).y.label, "θ₂, rad; kinetic, J");
+    EXPECT_EQ(page.panels.at(0).y.label, "θ₂, rad (a); kinetic, J (b)");
+    EXPECT_EQ(figure.subtitle, "two links in angles; explicit Euler, 1/30 000 s");
     // each column of the film's table is a number
     for (const auto& column : {"a_theta1_rad", "b_omega2_rad_per_s", "a_x1_m", "a_y2_m", "b_vx1_m_per_s",
                                "b_vy2_m_per_s", "a_energy_J", "a_energy_error", "b_length_error_m", "a_potential_J"})
