@@ -107,7 +107,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
     if (!(span > 0 && room > 0)) return {};
     // from the smallest step that could fit, up to the first that does
     const long double minimum = span * std::max(1.0f, labels.spacing) / room;
-    std::vector<Tick> best;
+    std::vector<Tick> single;
     for (int exponent = decade_below(minimum); exponent <= decade_below(span) + 1; ++exponent) {
         for (const long long nice : {1, 2, 5}) {
             const Step step{nice, exponent};
@@ -115,10 +115,18 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
             auto ticks = multiples(step, low, high);
             if (!fits(ticks, axis, labels)) continue;
             if (ticks.size() >= 2) return ticks;
-            if (ticks.size() > best.size()) best = std::move(ticks);
+            if (ticks.size() > single.size()) single = std::move(ticks);
         }
     }
-    return best;
+    // better than a single label: the first and the last of the largest step whose ends are far enough apart
+    for (int exponent = decade_below(span); exponent >= decade_below(minimum); --exponent) {
+        for (const long long nice : {5, 2, 1}) {
+            auto ticks = multiples({nice, exponent}, low, high);
+            for (std::size_t i = 1; i + 1 < ticks.size(); ++i) ticks[i].text = "";
+            if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
+        }
+    }
+    return single;
 }
 
 /// Multiples of the requested step, to ten digits; none if no two of them fit.

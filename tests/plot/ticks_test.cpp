@@ -156,6 +156,13 @@ TEST(ChartTicks, OfAFewDecadesAreEnoughToReadValuesBy) {
     EXPECT_EQ(beside_strip(-170, 220, false), (Labels{"−100", "0", "100", "200"}));
 }
 
+TEST(ChartTicks, AreTwoWhereOneRoundNumberWouldBeAlone) {
+    const TickLabels words{.gap = 10, .spacing = 30, .across = false};
+    EXPECT_EQ(texts({-3.3, 3.3, 0, 60}, {}, words), (Texts{"−2", "2"}));
+    EXPECT_EQ(texts({-9, 4, 0, 60}, {}, words), (Texts{"−8", "4"}));
+    EXPECT_EQ(texts({-3.3, 3.3, 0, 25}, {}, words), (Texts{"0"}));
+}
+
 TEST(AxisItems, HaveNumbersInTheMarginAndTheirUnitAfterTheLast) {
     const Axis time{0, 30, 40, 560};
     const Area area{40, 10, 560, 200}, within{0, 0, 600, 240};
