@@ -129,11 +129,17 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
     return single;
 }
 
-/// Multiples of the requested step, to ten digits; none if no two of them fit.
+/// The value > 0, to ten digits.
+Step step_of(double value) {
+    Step step{.exponent = decade_below(value) - 9};
+    step.multiple = std::llround(value / std::pow(10.0L, step.exponent));
+    for (; step.multiple % 10 == 0; step.multiple /= 10) ++step.exponent;
+    return step;
+}
+
+/// Multiples of the requested step; none if no two of them fit.
 std::vector<Tick> requested_ticks(const Axis& axis, const TickLabels& labels, double every) {
-    int exponent = decade_below(every) - 9;
-    auto number = static_cast<long long>(std::llround(every / std::pow(10.0L, exponent)));
-    for (; number % 10 == 0; number /= 10) ++exponent;
+    const auto [number, exponent] = step_of(every);
     for (long long times = 1; times <= 64; times *= 2) {
         auto ticks =
             multiples({number * times, exponent}, std::min(axis.low, axis.high), std::max(axis.low, axis.high));
@@ -197,6 +203,11 @@ float TickLabels::length(const std::string& text) const {
     return across ? text_width(text, size) : size;
 }
 
+Tick tick_at(double value) {
+    if (value == 0) return {0, "0"};
+    return {value, tick_text(step_of(std::abs(value)), value < 0 ? -1 : 1, std::abs(value))};
+}
+
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high)) return {};
     if (axis.logarithmic) return logarithmic_ticks(axis, labels);
@@ -207,12 +218,15 @@ std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::o
     return linear_ticks(axis, labels);
 }
 
-std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every) {
+std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every,
+                               const std::vector<Tick>& own) {
     const float length = std::abs(axis.to - axis.from);
     // in small charts the numbers are closer together
     const float spacing = across ? std::max(length / 15, std::min(3.6f * em, length / 4))
                                  : std::max({length / 11, std::min(2.4f * em, length / 5), 1.6f * em});
-    const TickLabels labels{.size = em, .gap = (across ? 1.1f : 0.5f) * em, .spacing = spacing, .across = across};
+    TickLabels labels{.size = em, .gap = (across ? 1.1f : 0.5f) * em, .spacing = 0, .across = across};
+    if (!own.empty() && fits(own, axis, labels)) return own;
+    labels.spacing = spacing;
     return chart_ticks(axis, labels, every);
 }
 

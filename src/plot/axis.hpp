@@ -12,7 +12,11 @@ namespace doppel {
 struct Tick {
     double value;
     std::string text;
+
+    friend bool operator==(const Tick&, const Tick&) = default;
 };
+/// A tick labelled with its value, to ten digits.
+Tick tick_at(double value);
 
 /// Maps the values low…high (both > 0 if logarithmic; low > high: inverted) to the pixels from…to, linearly or
 /// logarithmically. If low = high, all values map to the middle.
@@ -55,8 +59,10 @@ struct TickLabels {
 /// million on. None if doubles cannot distinguish neighbouring ticks.
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every = {});
 
-/// The ticks with the spacing of figures and films: labels of `em` px below a chart (`across`) or beside it.
-std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every = {});
+/// The ticks with the spacing of figures and films: labels of `em` px below a chart (`across`) or beside it. `own` = the
+/// ticks, ascending, that are taken where their labels fit.
+std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every = {},
+                               const std::vector<Tick>& own = {});
 
 /// How an axis is drawn. Sizes in px.
 struct AxisStyle {

@@ -26,6 +26,19 @@ struct Bar {
     float thickness = 0, text_left = 0, width = 0, none_top = 0;
 };
 
+/// The ticks of a colour bar. A threshold, where two colours meet, is always one.
+std::vector<Tick> bar_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> threshold) {
+    auto ticks = chart_ticks(axis, labels, threshold);
+    const auto is_there = [&](const Tick& tick) { return tick.value == threshold && !tick.text.empty(); };
+    if (!threshold || std::ranges::any_of(ticks, is_there)) return ticks;
+    if (const double share = axis.share(*threshold); !(share >= 0 && share <= 1)) return ticks;
+    std::erase_if(ticks, [&](const Tick& tick) {
+        return std::abs(axis.at(tick.value) - axis.at(*threshold)) < labels.size + labels.gap;
+    });
+    ticks.push_back(tick_at(*threshold));
+    return ticks;
+}
+
 Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     Bar bar{.scale = MapScale(map)};
     const float em = style.tick;
@@ -41,7 +54,7 @@ Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     bar.axis.from = std::round(bar.none.empty() ? height : std::max(bar.none_top - 0.8f * em, 0.3f * height));
     bar.axis.to = 0;
     bar.ticks =
-        chart_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false}, map.threshold);
+        bar_ticks(bar.axis, {.size = em, .gap = 0.6f * em, .spacing = 2.4f * em, .across = false}, map.threshold);
     bar.width = bar.text_left + std::max(widest(bar.ticks, em), widest(bar.none, em));
     return bar;
 }

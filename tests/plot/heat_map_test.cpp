@@ -67,6 +67,16 @@ TEST(HeatMap, OfAThresholdHasTwoColors) {
     EXPECT_FALSE(same(2, 3));
 }
 
+TEST(HeatMap, BarNamesTheThreshold) {
+    auto map = strip({0, 1});
+    for (const double threshold : {0.013, 0.47}) {
+        map.threshold = threshold;
+        auto words = words_in(composed(
+            {.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map}}}, {800, 450}, themes[1]));
+        EXPECT_GE(words[tick_at(threshold).text], 1) << threshold;
+    }
+}
+
 TEST(HeatMap, ShowsWhatIsBadInItsColor) {
     auto map = strip({0.5f, std::nanf("")});
     for (const auto& theme : themes) {
