@@ -334,6 +334,11 @@ PlotAxis GridAxis::plot_axis() const {
     constexpr double turn = 360;  // degrees
     if (angle) axis.every = *axis.high - *axis.low < turn ? 30 : 45;
     if (is_whole()) axis.every = 1;
+    for (std::size_t i = 0; values && i < count; ++i) {
+        auto& tick = axis.ticks.emplace_back(tick_at(static_cast<double>(numbers_[i])));
+        if (!labels.empty()) tick.text = labels[i];
+    }
+    std::ranges::sort(axis.ticks, {}, &Tick::value);
     if (!are_cells || !are_centers()) return axis;
     const double cells = static_cast<double>(count - 1);
     const double half = (*axis.high - *axis.low) / (2 * cells), ratio = std::pow(*axis.high / *axis.low, 0.5 / cells);

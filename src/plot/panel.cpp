@@ -65,7 +65,7 @@ void draw_axes(const Panel& panel) {
     const auto draw = [&](const Axis& axis, const PlotAxis& requested, Edge edge, bool has_numbers, Color text) {
         const bool has_grid = !plot.map && edge != Edge::right;
         const AxisStyle own{edge, style.tick, style.line, theme.grid, theme.frame, text, has_grid, has_numbers};
-        const auto ticks = spaced_ticks(axis, edge == Edge::bottom, style.tick, requested.every);
+        const auto ticks = spaced_ticks(axis, edge == Edge::bottom, style.tick, requested.every, requested.ticks);
         for (const auto& item : page_list(axis_items(axis, ticks, area, panel.held, own))) list.push_back(item);
     };
     draw(panel.axes.x, plot.x, Edge::bottom, panel.words.x, theme.quiet_text);
@@ -191,15 +191,18 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     made.bottom = words.x ? 1.75f * em + (plot.x.label.empty() ? 0 : 1.45f * style.axis) : 0.34f * em;
     const float tall = std::max(height - made.top(style) - made.bottom, 1.0f);
     made.left = 0.34f * em;
-    if (words.y) made.left = 0.55f * em + widest(spaced_ticks(placed(ranges.y, tall, 0), false, em, plot.y.every), em);
+    if (words.y)
+        made.left =
+            0.55f * em + widest(spaced_ticks(placed(ranges.y, tall, 0), false, em, plot.y.every, plot.y.ticks), em);
     if (ranges.right)
         made.right =
-            0.55f * em + widest(spaced_ticks(placed(*ranges.right, tall, 0), false, em, plot.right->every), em);
+            0.55f * em +
+            widest(spaced_ticks(placed(*ranges.right, tall, 0), false, em, plot.right->every, plot.right->ticks), em);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
     if (!words.x) return made;
     // the first and last label below the axis extend beyond it by half their width
     const float wide = std::max(width - made.left - made.right, 1.0f);
-    const auto below = spaced_ticks(placed(ranges.x, 0, wide), true, em, plot.x.every);
+    const auto below = spaced_ticks(placed(ranges.x, 0, wide), true, em, plot.x.every, plot.x.ticks);
     const float half = widest(below, em) / 2;
     made.left = std::max(made.left, std::min(half, 0.2f * width));
     made.right = std::max(made.right, std::min(half, 0.2f * width));

@@ -17,6 +17,7 @@ struct PlotAxis {
     std::optional<double> low, high;  // fitted to the contents if not given; low > high: inverted
     bool logarithmic = false;
     std::optional<double> every;  // distance of ticks, as long as their labels fit: 45 for degrees
+    std::vector<Tick> ticks;      // ascending, in place of those, where their labels fit
 
     friend bool operator==(const PlotAxis&, const PlotAxis&) = default;
 };

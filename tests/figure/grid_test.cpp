@@ -367,6 +367,7 @@ TEST(Grid, MapsTakeValuesAndWholeNumbersAsCentres) {
     EXPECT_TRUE(panel.y.logarithmic);
     EXPECT_NEAR(*panel.y.low, std::sqrt(0.125), 1e-15);
     EXPECT_NEAR(*panel.y.high, std::sqrt(8.0), 1e-15);
+    EXPECT_EQ(panel.y.ticks, (std::vector<Tick>{{0.5, "0.5"}, {1, "1"}, {2, "2"}}));
     const auto even =
         page_of(figure_from(top + "[grid.y]\nkey = \"system.length_m\"\nvalues = [1, 1.5, 2]\n")).panels.at(0).y;
     EXPECT_FALSE(even.logarithmic);

@@ -163,6 +163,19 @@ TEST(ChartTicks, AreTwoWhereOneRoundNumberWouldBeAlone) {
     EXPECT_EQ(texts({-3.3, 3.3, 0, 25}, {}, words), (Texts{"0"}));
 }
 
+TEST(ChartTicks, AreTheGivenOnesWhereTheirLabelsFit) {
+    std::vector<Tick> own;
+    for (const double value : {0.25, 0.5, 1.0, 2.0, 4.0}) own.push_back(tick_at(value));
+    const auto beside = [&](float length) {
+        Texts all;
+        for (const auto& tick : spaced_ticks({0.2, 5, 0, length, true}, false, 18, {}, own)) all.push_back(tick.text);
+        return all;
+    };
+    EXPECT_EQ(beside(300), (Texts{"0.25", "0.5", "1", "2", "4"}));
+    EXPECT_EQ(beside(90), (Texts{"0.3", "1", "3"}));
+    EXPECT_EQ(tick_at(-0.00002).text, "−2 × 10⁻⁵");
+}
+
 TEST(AxisItems, HaveNumbersInTheMarginAndTheirUnitAfterTheLast) {
     const Axis time{0, 30, 40, 560};
     const Area area{40, 10, 560, 200}, within{0, 0, 600, 240};
