@@ -30,10 +30,10 @@ std::vector<Override> overrides(const FigureCommandOptions& options) {
 
 /// Tiles have one pixel a cell: throws Error (exit 2) where the command line gives a picture its format or size.
 void refuse_picture_keys(const std::vector<Override>& given) {
-    constexpr std::array<std::string_view, 6> of_size{"chart.size",      "chart.scale",   "chart.width_cm",
-                                                      "chart.height_cm", "chart.font_pt", "chart.dpi"};
+    constexpr std::array<std::string_view, 3> of_page{"chart.theme", "chart.title", "chart.captions"};
     for (const auto& [key, value, origin] : given)
-        if (std::ranges::count(of_size, key) > 0 || (key == "chart.format" && value.find("png") == std::string::npos))
+        if (key.starts_with("chart.") && std::ranges::count(of_page, key) == 0 &&
+            value.find("png") == std::string::npos)
             throw bad_input("{}: is for a picture; --tiles writes PNGs of one pixel a cell", origin);
 }
 

@@ -205,7 +205,11 @@ public:
         if (reader.only_keys) return;
         if (entries.empty()) columns_.push_back(shown);
         bool differ = false;
+        const auto& first = curves_.front().pair;
+        SweptKeys swept;
         for (auto& curve : curves_) {
+            for (const auto& keys : {differing_keys(first.a, curve.pair.a), differing_keys(first.b, curve.pair.b)})
+                for (const auto& key : keys) swept.keys.push_back(fmt::format(".{}", key.any().key));
             curve.pair.energy_columns = true;
             const auto scene = make_scene(curve.pair);  // reports errors now
             times_s_.clear();
@@ -233,7 +237,7 @@ public:
                               shown);
         settings_ = resolved_settings(settings_text(keys));
         unit_ = "pairs";
-        subtitle_ = pair_subtitle(make_scene(curves_.front().pair), swept_keys());
+        subtitle_ = pair_subtitle(make_scene(first), swept);
         shown_ = curves_.size();
         trials_ = shown_ * (check_tolerance_ ? 2 : 1);
         axes_.x = {.label = "time, s", .low = 0, .high = times_s_.back()};
@@ -308,17 +312,6 @@ private:
             values.push_back(numbers_of(scene, now, start)[column]);
         }
         return values;
-    }
-
-    /// What differs between the pairs, and the subtitle leaves out.
-    SweptKeys swept_keys() const {
-        SweptKeys swept;
-        const auto& first = curves_.front().pair;
-        for (const auto& [column, label, film_column, pair] : curves_)
-            for (const auto& keys : {differing_keys(first.a, pair.a), differing_keys(first.b, pair.b)})
-                for (const auto& key : keys)
-                    if (!key.any().key.empty()) swept.keys.push_back(fmt::format(".{}", key.any().key));
-        return swept;
     }
 
     /// The description of the curves.

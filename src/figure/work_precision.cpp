@@ -13,7 +13,9 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string_view>
+#include <tuple>
 
 namespace doppel {
 namespace {
@@ -255,26 +257,29 @@ public:
         TomlWriter chart;
         further_fields(chart);
         chart_settings_ = chart.text();
-        const auto solvers = solvers_of(table);
+        check_distinct(table, "methods", methods_);
+        std::set<std::string_view> used;  // methods and models
         for (std::size_t p = 0; p < problems.size(); ++p)
-            for (const auto& solver : solvers)
-                if (solver.supports(problems[p])) studies_.push_back({p, solver});
-        if (studies_.empty())
-            throw table.error("models", "must name one that is supported; {} supports \"{}\"", problems[0].name,
-                              name_of(problems[0].motion.model));
+            for (const auto& model_name : model_names_)
+                for (const auto model = value_named<Model>(model_name); const auto& name : methods_of(model, methods_))
+                    if (const Solver solver{model, name}; solver.supports(problems[p])) {
+                        studies_.push_back({p, solver});
+                        used.insert({name_of(model), find_method(name)->name});
+                    }
+        const auto& problem = problems[0];
+        const auto hint = problem.is_plain_chain()
+                              ? ""
+                              : fmt::format("; {} supports \"{}\"", problem.name, name_of(problem.motion.model));
         // what is chosen must not be left out; all names are no choice
-        const auto require_all = [&](const char* key, const auto& names, std::size_t all, const char* other,
-                                     const auto& name_of_solver) {
-            for (const auto& name : names)
-                if (names.size() < all && std::ranges::none_of(studies_, [&](const auto& study) {
-                        return name_of_solver(study.second) == name;
-                    }))
-                    throw table.error(key, "must each run {} with one of the {}; \"{}\" does not", problems[0].name,
-                                      other, name);
-        };
-        require_all("methods", methods_, names_of_methods().size(), "models", [](const Solver& s) { return s.method; });
-        require_all("models", model_names_, names_of<Model>.size(), "methods",
-                    [](const Solver& s) { return name_of(s.model); });
+        for (const auto& [key, others, names, all] :
+             {std::tuple{"methods", "models", &methods_, names_of_methods().size()},
+              std::tuple{"models", "methods", &model_names_, names_of<Model>.size()}}) {
+            if (names->empty()) throw table.error(key, "must name at least one");
+            for (const auto& name : *names)
+                if (names->size() < all && !used.contains(name))
+                    throw table.error(key, "must each run {} with one of the {}; \"{}\" does not{}", problem.name,
+                                      others, name, hint);
+        }
     }
 
     void fields(KeyVisitor& visit) {
@@ -408,18 +413,6 @@ public:
 private:
     std::size_t rounds() const { return cost == Cost::time ? static_cast<std::size_t>(repeats) : 1; }
     bool has_angles() const { return problems.front().has_angles(); }
-
-    std::vector<Solver> solvers_of(TomlReader& table) const {
-        check_distinct(table, "methods", methods_);
-        std::vector<Solver> solvers;
-        for (const auto& model_name : model_names_)
-            for (const auto model = value_named<Model>(model_name); const auto& name : methods_of(model, methods_))
-                solvers.push_back({model, name});
-        if (solvers.empty())
-            throw table.error(table.has("methods") ? "methods" : "models",
-                              "must leave a method with a model that it supports");
-        return solvers;
-    }
 
     TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
         const std::size_t first = problems.size();

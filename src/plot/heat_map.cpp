@@ -29,9 +29,8 @@ struct Bar {
 /// The ticks of a colour bar. A threshold, where two colours meet, is always one.
 std::vector<Tick> bar_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> threshold) {
     auto ticks = chart_ticks(axis, labels, threshold);
-    const auto is_there = [&](const Tick& tick) { return tick.value == threshold && !tick.text.empty(); };
-    if (!threshold || std::ranges::any_of(ticks, is_there)) return ticks;
-    if (const double share = axis.share(*threshold); !(share >= 0 && share <= 1)) return ticks;
+    const double share = threshold ? axis.share(*threshold) : NAN;
+    if (!(share >= 0 && share <= 1)) return ticks;
     std::erase_if(ticks, [&](const Tick& tick) {
         return std::abs(axis.at(tick.value) - axis.at(*threshold)) < labels.size + labels.gap;
     });

@@ -281,7 +281,7 @@ TEST(WorkPrecision, RefusesWrongSettings) {
     expect_error_text({"work_precision.models=[\"angels\"]"}, "\"angels\" is not");
     expect_error_text({"work_precision.methods=[\"magic\"]"}, "\"magic\" is not");
     expect_error_text({"work_precision.methods=[\"rattle\"]", "work_precision.models=[\"angles\"]"},
-                      "that it supports");
+                      "must each run P1 with one of the models; \"rattle\" does not");
     expect_error_text({"work_precision.methods=[\"rattle\", \"rk4\"]", "work_precision.models=[\"angles\"]"},
                       "must each run P1 with one of the models; \"rattle\" does not");
     expect_error_text({"work_precision.methods=[\"gauss4\"]", "work_precision.models=[\"angles\", \"mechanism\"]"},
