@@ -71,7 +71,7 @@ Json scale_json(const HeatMap& map, const Theme& theme) {
     Json colors = Json::array(), numbers = Json::array();
     for (int i = 0; i <= stops; ++i) colors.push_back(hexadecimal(scale.color(static_cast<double>(i) / stops)));
     scale.axis.to = 380;  // px on the page
-    for (const auto& tick : chart_ticks(scale.axis, {.size = 14, .across = false}, map.threshold))
+    for (const auto& tick : bar_ticks(scale.axis, {.size = 14, .across = false}, map.threshold))
         if (!tick.text.empty()) numbers.push_back({scale.axis.share(tick.value), tick.text});
     return {{"colors", colors}, {"numbers", numbers}, {"none", hexadecimal(none_color(map, theme))}};
 }

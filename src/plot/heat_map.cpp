@@ -26,18 +26,6 @@ struct Bar {
     float thickness = 0, text_left = 0, width = 0, none_top = 0;
 };
 
-/// The ticks of a colour bar. A threshold, where two colours meet, is always one.
-std::vector<Tick> bar_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> threshold) {
-    auto ticks = chart_ticks(axis, labels, threshold);
-    const double share = threshold ? axis.share(*threshold) : NAN;
-    if (!(share >= 0 && share <= 1)) return ticks;
-    std::erase_if(ticks, [&](const Tick& tick) {
-        return std::abs(axis.at(tick.value) - axis.at(*threshold)) < labels.size + labels.gap;
-    });
-    ticks.push_back(tick_at(*threshold));
-    return ticks;
-}
-
 Bar make_bar(const HeatMap& map, float height, const PlotStyle& style) {
     Bar bar{.scale = MapScale(map)};
     const float em = style.tick;
@@ -77,6 +65,17 @@ float below(const TextBlock& heading, float height, const PlotStyle& style) {
 }
 
 }  // namespace
+
+std::vector<Tick> bar_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> threshold) {
+    auto ticks = chart_ticks(axis, labels, threshold);
+    const double share = threshold ? axis.share(*threshold) : NAN;
+    if (!(share >= 0 && share <= 1)) return ticks;
+    std::erase_if(ticks, [&](const Tick& tick) {
+        return std::abs(axis.at(tick.value) - axis.at(*threshold)) < labels.size + labels.gap;
+    });
+    ticks.push_back(tick_at(*threshold));
+    return ticks;
+}
 
 Color none_color(const HeatMap& map, const Theme& theme) {
     return map.none_is_bad ? theme.bad : theme.none;

@@ -90,6 +90,8 @@ struct MapScale {
     std::optional<double> step = {};  // position on the axis where the first of two colours ends
     Color color(double share) const;
 };
+/// The ticks of a colour bar. A threshold, where two colours meet, is always one.
+std::vector<Tick> bar_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> threshold);
 /// The colour of cells without a value.
 Color none_color(const HeatMap& map, const Theme& theme);
 /// A picture of the map alone, one pixel per cell, the first row at the bottom.
