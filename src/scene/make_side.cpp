@@ -116,9 +116,7 @@ public:
         const auto [a, b] = ends(part);
         if (part.kind == PartKind::spring)
             return Spring<Quad>{a, b, part.stiffness_N_per_m, length(part, a, b), part.damping_N_s_per_m};
-        const auto* other = std::get_if<std::size_t>(&b);
-        if (!other) throw bad_input("an attraction needs two particles; use a \"droplet\" for a fixed body");
-        return Attraction<Quad>{a, *other, constant};
+        return Attraction<Quad>{a, std::get<std::size_t>(b), constant};
     }
 
 private:

@@ -338,8 +338,13 @@ void part_fields(KeyVisitor& visit, PartSpec& part) {
     if (is(anchor, slot_line, slot_circle))
         visit({.key = "particle", .help = "name of the particle", .needed_by = kind}, part.particle);
     if (is(rod, spring, attraction)) {
-        visit({.key = "from", .help = "name of a particle, or a fixed place [x, y]", .needed_by = kind}, part.from);
-        visit({.key = "to", .help = "the other end", .needed_by = kind}, part.to);
+        const bool is_fixable = part.kind != attraction;
+        visit({.key = "from",
+               .help = is_fixable ? "name of a particle, or a fixed place [x, y]" : "name of a particle",
+               .needed_by = kind},
+              part.from);
+        visit({.key = "to", .help = is_fixable ? "the other end" : "name of the other particle", .needed_by = kind},
+              part.to);
     }
     if (is(anchor, slot_line, slot_circle, droplet))
         visit({.key = "position_m",

@@ -15,6 +15,9 @@
 namespace doppel {
 namespace {
 
+/// The keys of a chain, which particles exclude.
+constexpr std::array<std::string_view, 5> chain_keys{"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"};
+
 /// Whether an accuracy replaces integrator, step size and tolerance. An accuracy from the command line replaces those
 /// of the preset, and vice versa. Both in the same place are an error.
 bool read_accuracy(TomlReader& table, SideSpec& side) {
@@ -92,6 +95,10 @@ bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const s
     if (const auto kind = value_named<PartKind>(name); kind != part.kind)
         part = {part.name, kind, part.particle, part.from, part.to, part.position_m};
     part_fields(entry, part);
+    if (part.kind == PartKind::attraction)
+        for (const auto& [key, end] : {std::pair("from", part.from), {"to", part.to}})
+            if (end && !std::holds_alternative<std::string>(*end))
+                entry.refuse(entry.error(key, "must name a particle; for a fixed body use a \"droplet\""));
     return true;
 }
 
@@ -122,7 +129,7 @@ void read_mechanism(TomlReader& table, SideSpec& side) {
     read_entries(table, "constraint", side.constraints, read_of(kinds.first(constraint_kinds)));
     read_entries(table, "force", side.forces, read_of(kinds.subspan(constraint_kinds)));
     if (side.particles.empty()) return;
-    for (const auto* key : {"links", "mass_kg", "length_m", "angle_deg", "omega_deg_per_s"})
+    for (const auto& key : chain_keys)
         if (table.has(key))
             table.refuse(
                 table
@@ -231,6 +238,18 @@ void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& ta
         throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
 }
 
+/// Refuses particles of one side that would replace the chain of [system] without a word.
+void check_chain_is_kept(TomlReader& side, TomlReader& system) {
+    if (!side.has("particle") || system.has("particle")) return;
+    for (const auto& key : chain_keys)
+        if (system.has(key))
+            return side.refuse(side.error("particle",
+                                          "describes another system than the chain of [system] {}; remove one of "
+                                          "them, or give that key in the other side",
+                                          key)
+                                   .with(std::string(key)));
+}
+
 }  // namespace
 
 std::vector<std::string_view> models_of(const MethodEntry& method) {
@@ -296,13 +315,15 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text) {
 }
 
 void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
-    for (auto* level : levels) {
-        auto system = document.table(*level, "system");
-        read_side(system, preset.a);
-    }
+    std::vector<TomlReader> systems;
+    for (auto* level : levels) read_side(systems.emplace_back(document.table(*level, "system")), preset.a);
     preset.b = preset.a;
     for (auto* level : levels) {
         auto a = document.table(*level, "a"), b = document.table(*level, "b");
+        for (auto& system : systems) {
+            check_chain_is_kept(a, system);
+            check_chain_is_kept(b, system);
+        }
         read_side(a, preset.a, is_film);
         read_side(b, preset.b, is_film);
         load_track(document, a, preset.a);

@@ -130,6 +130,12 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {"[system]\nlinks = 2\n[[system.particle]]\nname = \"a\"",
          "presets/x.toml:2:1: [system] links describes a chain, but [[system.particle]] describes another system; "
          "remove one of them"},
+        // a chain that particles would replace
+        {"[system]\nangle_deg = [30, 30]\n[[a.particle]]\nname = \"bob1\"",
+         "presets/x.toml:3:5: [a] particle describes another system than the chain of [system] angle_deg; remove one "
+         "of them, or give that key in the other side"},
+        {bead + "[[system.force]]\nkind = \"attraction\"\nfrom = \"bead\"\nto = [1, 0]",
+         R"(presets/x.toml:10:1: [[system.force]] 1 to must name a particle; for a fixed body use a "droplet")"},
         {"[system]\nintegrator = \"gauss4\"\n[[system.particle]]\nname = \"a\"",
          R"(presets/x.toml:2:1: [system] integrator "gauss4" supports angles, not a mechanism)"},
         {"[system]\nmodel = \"angles\"\n[[system.particle]]\nname = \"a\"",
