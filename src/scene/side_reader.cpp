@@ -184,6 +184,10 @@ void check_choices(TomlReader& table, const SideSpec& side) {
     if (side.model != ModelChoice::automatic && std::ranges::find(models, name_of(side.model)) == models.end())
         throw table.error(table.has("integrator") ? "integrator" : "model", "\"{}\" supports {}, not model = \"{}\"",
                           side.integrator, supported_models(method), name_of(side.model));
+    if (side.stabilise == Stabilise::baumgarte && method.name == "taylor")
+        throw table.error("stabilise",
+                          "\"baumgarte\" adds terms without a Taylor series; use \"projection\" or another "
+                          "integrator than \"taylor\"");
     if (side.stabilise != Stabilise::none && !method.angles)
         throw table.error("stabilise", "is not needed with \"{}\", which keeps the constraints itself",
                           side.integrator);

@@ -77,6 +77,9 @@ inline const std::vector<RefusedPreset> refused_system{
     RefusedPreset{
         "[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
         R"(presets/x.toml:2:1: [system] stabilise is not needed with "rattle6", which keeps the constraints itself)"},
+    RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nintegrator = \"taylor\"",
+                  "presets/x.toml:2:1: [system] stabilise \"baumgarte\" adds terms without a Taylor series; use "
+                  "\"projection\" or another integrator than \"taylor\""},
     RefusedPreset{"[system]\njoint_coulomb_N_m = [0, 0.1]\nmodel = \"constraints\"",
                   "presets/x.toml:3:1: [system] model \"constraints\" does not support this chain: links with mass, "
                   "friction or a drive need angles"},
