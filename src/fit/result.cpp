@@ -135,6 +135,16 @@ void put_on_one_clock(FitResult& result, std::optional<double> every_s, const st
     }
 }
 
+/// Throws if a file is given twice.
+void require_different(const std::vector<std::filesystem::path>& files) {
+    std::error_code ignored;  // missing files are refused when they are read
+    for (auto file = files.begin(); file != files.end(); ++file)
+        for (auto other = files.begin(); other != file; ++other)
+            if (std::filesystem::equivalent(*other, *file, ignored))
+                throw bad_input("{} and {} are the same file; samples counted twice would make the errors too small",
+                                other->string(), file->string());
+}
+
 constexpr Size page_size{1600, 1300};
 constexpr const auto& light = themes[1];
 
@@ -192,6 +202,7 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
                const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
     const auto name = fit_name(files, options);
     const double start = seconds_of(CLOCK_MONOTONIC);
+    require_different(files);
     auto track = read_tracks(files, stop);
     Transaction parts(options.out / name, name, "fit", {files, options.force});
     parts.require(name + ".fit.json");

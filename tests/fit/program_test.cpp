@@ -167,6 +167,12 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
         EXPECT_EQ(refused.code, 2);
         EXPECT_EQ(refused.err, words);
     }
+    fs::copy_file(lab[0], folder / "swing.csv");
+    const auto twice = fit(folder, {"swing.csv", lab[1], "./swing.csv"});
+    EXPECT_EQ(twice.code, 2);
+    EXPECT_EQ(twice.err,
+              "doppel: swing.csv and ./swing.csv are the same file; samples counted twice would make the "
+              "errors too small\n");
     for (const auto& [option, value] :
          {std::pair("--every", "1"), std::pair("--name", "../lab"), std::pair("--model", "rope")})
         EXPECT_EQ(fit(folder, lab, {option, value}).code, 2) << option;
