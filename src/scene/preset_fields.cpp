@@ -70,8 +70,7 @@ void time_fields(KeyVisitor& visit, VideoSpec& video) {
           video.speed);
     const Condition of_changes{video.speed.changes_over_time(),
                                "is for a speed that changes, such as speed = [[0, 1], [6.8, 0.25]]", false, "speed"};
-    constexpr std::string_view ease =
-        "time of motion before a change of speed, in which the speed changes by 3u² − 2u³";
+    constexpr std::string_view ease = "time of motion before a change of speed, in which 1/speed changes by 3u² − 2u³";
     visit({"speed_ease_s", ease, "s", from_to(0, 60, "at once"), "", of_changes}, video.speed_ease_s);
     visit({"hold_start_s", "hold time of the first frame", "s", seconds}, video.hold_start_s);
     visit({"hold_end_s", "hold time of the last frame", "s", seconds}, video.hold_end_s);
