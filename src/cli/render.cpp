@@ -47,6 +47,20 @@ void add_recording_option(CLI::App& command, std::string& file, const std::strin
     refuse_dash(add_value(command, "--recording", file, "FILE", help));
 }
 
+/// Notes that a run ends at a gap of its track, which goes on after it.
+void note_gap(const Scene& scene, ProgressReport& report) {
+    for (const char letter : scene.letters()) {
+        const auto& replay = scene.side(letter).replay;
+        if (!replay || replay->piece + 1 == replay->track->pieces.size()) continue;
+        if (scene.preset.duration_s != longest_duration(*replay, scene.preset.sample_hz)) continue;
+        const auto& next = replay->track->pieces[replay->piece + 1];
+        report.note(
+            fmt::format("side {0}: the run ends at a gap of the track, from {1} to {2} s; the rest: --set "
+                        "{0}.track.start_s={2}",
+                        letter, replay->samples().time_s.back(), next.time_s.front()));
+    }
+}
+
 /// Runs the scenes one after the other and reports progress.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
     run_options.replacing = {inputs_of(options.presets, scenes), options.force};
@@ -71,6 +85,7 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     const bool counts_frames = run_options.pictures && video.format != FilmFormat::html;
     work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed(),
                 [&](const Scene& scene, ProgressReport& report) {
+                    note_gap(scene, report);
                     report.done(run(scene, run_options, stop, std::ref(report)));
                 });
 }

@@ -64,6 +64,29 @@ TEST(Program, StartsBesideATrackAsGiven) {
     }
 }
 
+TEST(Program, NotesAGapOfTheTrackAtWhichARunEnds) {
+    const auto folder = fresh_folder();
+    std::string track = "time_s,theta1_rad,theta2_rad\n";
+    for (int k = 0; k <= 200; ++k)
+        if (const auto t = std::to_string(0.01 * k); k <= 100 || k >= 150) track += t + "," + t + ",-" + t + "\n";
+    write_bytes(folder / "track.csv", track);
+    std::vector<std::string> words{"simulate",   "butterfly", "--beside", "track.csv",
+                                   "--progress", "plain",     "--set",    "b.angle_deg=[0, 0]"};
+    const auto gap = doppel(folder, words);
+    EXPECT_EQ(gap.code, 0) << gap.err;
+    EXPECT_NE(gap.err.find("butterfly: side a: the run ends at a gap of the track, from 1 to 1.5 s; the rest: --set "
+                           "a.track.start_s=1.5\n"),
+              std::string::npos)
+        << gap.err;
+    for (const char* key : {"a.track.start_s=1.5", "scene.duration_s=0.5"}) {
+        auto more = words;
+        more.insert(more.end(), {"--set", key});
+        const auto none = doppel(folder, more);
+        EXPECT_EQ(none.code, 0) << none.err;
+        EXPECT_EQ(none.err.find("gap"), std::string::npos) << none.err;
+    }
+}
+
 TEST(Program, ListsShowsAndChecks) {
     const auto folder = fresh_folder();
     EXPECT_NE(doppel(folder, {"list"}).out.find("butterfly          Three thousandths of a degree\n"),
