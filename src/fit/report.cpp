@@ -156,7 +156,7 @@ std::string fitted_preset(const FitResult& result, const std::string& name) {
         "title = {}\n\n[scene]\nduration_s = 30\n\n[system]\n",
         on_one_line(std::filesystem::path(files[0]).filename().string()),
         files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1), candidate.name, candidate.left_out_rms,
-        name, p.rule, toml_text(name + ", as measured"));
+        name, p.rule, toml_text(name + ", as fitted"));
     const auto add = [&](const std::string& key, double first, double second) {
         text += fmt::format("{} = [{:.10g}, {:.10g}]\n", key, first, second);
     };

@@ -83,6 +83,7 @@ TEST(FitProgram, FitsARealPendulum) {
         EXPECT_NE(result.out.find("out/lab/lab" + std::string(ending)), std::string::npos) << result.out;
     const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
     const auto& model = json["model"];
+    EXPECT_NE(bytes_of(folder / "out/lab/lab.toml").find("\ntitle = \"lab, as fitted\"\n"), std::string::npos);
     EXPECT_EQ(model["name"], "rigid bodies, viscous, Coulomb, drag by relative velocity");
     EXPECT_LT(model["left_out_rms_rad"].get<double>(), 0.0007);  // measured 0.00046
     const auto ratio = [&](const char* key) { return model["ratios_to_B"][key]["value"].get<double>(); };
