@@ -79,7 +79,12 @@ Texts texts_of(const KeyPair& pair, bool of_b) {
     constexpr std::string_view of_particle = "particle ";  // its name says enough
     const auto place = known.place.substr(known.place.starts_with(of_particle) ? of_particle.size() : 0);
     const auto name = fmt::format("{}{}{}", place, place.empty() ? "" : " ", known.caption);
-    if (!self || !self->counts) return known.is_setting ? Texts{} : Texts{"no " + name};
+    if (!self || !self->counts) {
+        // a body without them is a point mass at the end
+        if (known.key == "center_m") return {name + " at the end"};
+        if (known.key == "inertia_kg_m2") return {"point mass"};
+        return known.is_setting ? Texts{} : Texts{"no " + name};
+    }
     const auto& numbers = self->numbers;
     const bool are_alike = other && other->numbers.size() == numbers.size();
     if (!known.symbol.empty()) return symbol_texts(*self, are_alike ? *other : *self);

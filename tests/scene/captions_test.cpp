@@ -126,6 +126,8 @@ TEST(Captions, NeverCallSidesTheSameThatDiffer) {
               "in double | in quad");
     EXPECT_EQ(headings("[system]\nlinks = 5\n[b]\njoint_viscous_N_m_s = [0, 0, 0, 0, 0.1]"),
               "no viscous friction | viscous friction of link 5 0.1 N m s");
+    EXPECT_EQ(headings("[system]\nlinks = 1\nrod_mass_kg = 0.3\n[b]\ncenter_m = 0.5\ninertia_kg_m2 = 0.02"),
+              "centre of mass at the end, point mass | centre of mass 0.5 m, inertia 0.02 kg m²");
     EXPECT_EQ(headings(""), "a | b, the same");
 }
 
