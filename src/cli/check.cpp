@@ -49,13 +49,17 @@ void print_side(char name, const Side& side) {
     print_line("         {}: {}", name_of(side.motion.model), side.why);
 }
 
+std::string_view unit_of_errors(const Side& side) {
+    return side.has_angles ? "rad" : "of its size";
+}
+
 /// The expected error of a side, and the predictability limit of its precision.
 void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) {
-    const auto unit = side.has_angles ? "rad" : "of its size";
+    const auto unit = unit_of_errors(side);
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto print_indented = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
-        print_indented(fmt::format("error below {} {} up to {} s; no setting is accurate much longer in {}",
+        print_indented(fmt::format("error below {} {} up to {} s; no setting keeps it much longer in {}",
                                    scientific(side.choice->accuracy), unit,
                                    with_digits(scene.time(side.choice->horizon), 3), precision));
     else if (side.choice)
@@ -112,7 +116,8 @@ std::vector<std::string> alternatives_of(const Scene& scene, char letter, const 
         } catch (const Error& error) {
             if (error.code() != ExitCode::bad_input) throw;
         }
-        all.push_back(fmt::format("{} the accuracy {}", title, words));
+        all.push_back(fmt::format("{} the accuracy, {} {}, {}", title, scientific(factor * choice.accuracy),
+                                  unit_of_errors(scene.side(letter)), words));
     }
     return all;
 }

@@ -113,7 +113,7 @@ TEST(Program, AnAccuracyIsChosenByExplainedAndRecorded) {
     for (const char* words :
          {"Taylor series, tolerance ", "smallest model; fastest method: taylor",
           "rad to the end; verified by Taylor series in quad", "regular: the Lyapunov exponent is not above 0",
-          "half the accuracy takes ", "ten times the accuracy takes 1."})
+          "half the accuracy, 2.0 × 10⁻⁶ rad, takes ", "ten times the accuracy, 1.0 × 10⁻⁷ rad, takes 1."})
         EXPECT_NE(check.out.find(words), std::string::npos) << words << "\n" << check.out;
 
     arguments.front() = "simulate";
