@@ -21,11 +21,15 @@ void add(SideRecord& record, const Observation& seen, std::optional<double> ener
     record.length_error = std::max(record.length_error, seen.length_error);
 }
 
-/// The keys on which the snapshots depend: all except those of the picture.
+/// The keys on which the snapshots depend: all except those of the picture and of the table.
 std::string key_of(const Scene& scene) {
     auto preset = scene.preset;
+    preset.title.clear();
+    preset.subtitle.reset();
+    preset.energy_columns = preset.member_columns = false;
+    for (auto* side : {&preset.a, &preset.b}) side->label = side->note = std::nullopt;
     const auto video = std::exchange(preset.video, {});
-    preset.video.layout = video.layout;
+    if (!scene.members.empty()) preset.video.layout = video.layout;
     preset.video.members = video.members;
     preset.video.fps = video.fps;
     preset.video.speed = video.speed;

@@ -173,7 +173,11 @@ TEST(Recordings, AreRefusedIfTheyDoNotFit) {
     const auto read = [&](const std::vector<std::string>& keys) {
         return thrown_by([&] { render(small_scene(keys), {.out = folder, .recording = file}); });
     };
-    EXPECT_EQ(read({"video.theme=light"}).first, ExitCode::done);  // only the pictures differ
+    // only the pictures differ, or the table
+    for (const char* key : {"video.theme=light", "video.layout=overlay", "scene.energy_columns=true", "title=\"Mine\"",
+                            "a.label=\"one\""})
+        EXPECT_EQ(read({key}).first, ExitCode::done) << key;
+    EXPECT_EQ(read({"video.layout=ensemble"}).first, ExitCode::bad_input);
     EXPECT_EQ(read({"system.gravity_m_per_s2=9"}).first, ExitCode::bad_input);
     fs::resize_file(file, fs::file_size(file) / 2);
     EXPECT_EQ(read({}), (Thrown{ExitCode::io_failed,
