@@ -31,6 +31,13 @@ void refuse_unknown_command(const CLI::App& app, const std::string& word) {
         did_you_mean("", word, {names.begin(), names.end()}, fmt::format("there are {}", fmt::join(names, ", "))));
 }
 
+/// Throws if the word in the place of the command is an unknown option.
+void refuse_unknown_option(const CLI::App& app, const std::string& word) {
+    const auto name = word.substr(0, word.find('='));
+    if (!app.get_option_no_throw(name))
+        throw bad_input("there is no option \"{}\" before a command; there are --help and --version", name);
+}
+
 /// An empty argument is usually an unset variable of a script; treating it as missing could apply the command to
 /// everything.
 void refuse_empty_arguments(const std::vector<std::string>& words) {
@@ -100,7 +107,8 @@ int run_program(int argc, char** argv) {
             write_out(completions(app, {words.begin() + 2, words.end()}));
             return 0;
         }
-        if (words.size() > 1 && !words[1].starts_with('-')) refuse_unknown_command(app, words[1]);
+        if (words.size() > 1)
+            (words[1].starts_with('-') ? refuse_unknown_option : refuse_unknown_command)(app, words[1]);
         try {
             app.parse(argc, argv);
         } catch (const CLI::ParseError& error) {

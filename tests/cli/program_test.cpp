@@ -138,6 +138,8 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
     write_bytes(folder / "bad.toml", "[scene]\nkind = \"grid\"\n[grid.x]\nstep = 0\n");
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
         {{}, "A subcommand is required"},
+        {{"--nonsense"}, "there is no option \"--nonsense\" before a command; there are --help and --version"},
+        {{"--force", "render", "butterfly"}, "there is no option \"--force\" before a command"},
         {{"rendr", "butterfly"}, "there is no command \"rendr\"; did you mean \"render\"?"},
         {{"render"}, "PRESET is required"},
         {{"render", "nonesuch"}, "there is no preset \"nonesuch\""},
