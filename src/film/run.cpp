@@ -96,7 +96,7 @@ Part part_between(const Scene& scene, const RunOptions& options) {
     const double from = options.from_s ? options.from_s->value() : 0;
     const double to = options.to_s ? options.to_s->value() : duration;
     for (const auto& [option, time] : {std::pair("--from", from), {"--to", to}})
-        if (time > duration) throw bad_input("{} {:.6g}: {} ends at {:.6g} s", option, time, name, duration);
+        if (time > duration) throw bad_input("{} {}: {} ends at {:.6g} s", option, time, name, duration);
     if (options.to_s && from >= to)
         throw bad_input("--from {} --to {}: the end, which is not included, must be after the start", from, to);
     const auto begin = moment_at(from * hz), end = options.to_s ? moment_at(to * hz) : Moment{scene.samples + 1};

@@ -32,7 +32,7 @@ std::string seconds_text(double seconds) {
 /// The sample or time between samples for a picture.
 Moment still_moment(const Scene& scene, const Rational& time) {
     const double end = scene.preset.duration_s.value();
-    if (time.value() > end) throw bad_input("--at {:.6g}: {} ends at {:.6g} s", time.value(), scene.preset.name, end);
+    if (time.value() > end) throw bad_input("--at {}: {} ends at {:.6g} s", time.value(), scene.preset.name, end);
     return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 

@@ -40,7 +40,9 @@ void check_tracks(const Scene& scene) {
         if (!side->replay) continue;
         const auto maximum = longest_duration(*side->replay, preset.sample_hz);
         const double seconds = maximum.value();  // as a decimal, if that is exact
-        const auto text = rational_from_decimal(seconds) == maximum ? fmt::format("{}", seconds) : toml_ratio(maximum);
+        const auto text = rational_from_decimal(seconds) == maximum
+                              ? fmt::format("{}", seconds)
+                              : fmt::format("{} ({:.4g} s)", toml_ratio(maximum), seconds);
         if (preset.duration_s.value() > seconds)
             throw bad_input(
                 "{}: [scene] duration_s must be at most {}, as long as the track of side {} lasts; it is {}",

@@ -18,6 +18,8 @@ TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
              {{"still", "calm"}, "--at is required"},
              {{"still", "calm", "--at", "soon"}, "--at must be seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
              {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
+             {{"still", "calm", "--at", "30.0000001"}, "--at 30.0000001: calm ends at 30 s"},
+             {{"render", "calm", "--to", "30.00000001"}, "--to 30.00000001: calm ends at 30 s"},
              {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""},
               "and --format of still, which draws PNG"},
              {{"render", "measured", "--to", "99"}, "--to 99: measured ends at 2.65 s"},

@@ -135,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusedText{"[a.track]\noffset_deg = [1, 0]",
                     "nowhere/x.toml:2:1: [a.track] offset_deg is of a measured motion; give the file of one"},
         RefusedText{track + "start_s = 1",
-                    "x: [scene] duration_s must be at most \"199/120\", as long as the track of "
+                    "x: [scene] duration_s must be at most \"199/120\" (1.658 s), as long as the track of "
                     "side a lasts; it is 2"},
         RefusedText{track + "[video]\npanels = [\"pendulums\", \"rod-force\"]",
                     "x: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and "
