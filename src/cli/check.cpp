@@ -1,5 +1,6 @@
 #include "base/machine.hpp"
 #include "base/text.hpp"
+#include "base/threads.hpp"
 #include "cli/options.hpp"
 #include "figure/computation.hpp"
 #include "film/estimate.hpp"
@@ -192,13 +193,20 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
         if (error.code() == ExitCode::interrupted) throw;
         check.why_not = error.what();
     }
-    constexpr double patience = 2;  // limit for runs that only give information, s
+    constexpr double patience = 2, longest = 6;  // s: runs that only give information; finding what they give
     for (const char letter : scene.letters()) {
         const auto& side = scene.side(letter);
         auto& [forecast, alternatives] = check.sides[letter];
         if (side.replay) continue;
-        if (!check.simulation.at_least && check.simulation.seconds < patience)
-            forecast = forecast_of(scene, side, stop);
+        if (!check.simulation.at_least && check.simulation.seconds < patience) {
+            const TimeLimit limit(longest, stop);
+            try {
+                forecast = forecast_of(scene, side, limit.reached());
+            } catch (const Error& error) {
+                throw_if_set(stop);
+                if (error.code() != ExitCode::interrupted) throw;  // otherwise unknown: it takes too long
+            }
+        }
         if (side.choice) alternatives = alternatives_of(scene, letter, stop);
     }
     return check;

@@ -303,7 +303,11 @@ bool page_computes(const Scene& scene) {
 }
 
 FilmPage::FilmPage(const Scene& scene, const MotionBounds& bounds, Transaction& parts)
-    : scene_(scene), bounds_(bounds), computes_(page_computes(scene)), parts_(parts) {}
+    : scene_(scene),
+      bounds_(bounds),
+      place_(parts.file(scene.preset.name + ".html")),
+      computes_(page_computes(scene)),
+      parts_(parts) {}
 
 void FilmPage::add(const Snapshot& snapshot) {
     if (snapshot.pair.share > 0) return;
@@ -345,9 +349,8 @@ void FilmPage::finish() {
     for (const auto& curve : curves_)
         for (const float number : curve) bits.push_back(std::bit_cast<std::uint32_t>(number));
     if (!bits.empty()) film["curves"] = packed(std::move(bits), curves_[0].size(), 1, sizeof(float));
-    const auto name = scene_.preset.name + ".html";
-    write_file(parts_.file(name), page_text(player(scene_, std::move(film))));
-    parts_.finished(name);
+    write_file(place_, page_text(player(scene_, std::move(film))));
+    parts_.finished(scene_.preset.name + ".html");
 }
 
 std::optional<HtmlPage> film_player(Scene scene) {

@@ -32,6 +32,7 @@ private:
 
     const Scene& scene_;
     const MotionBounds& bounds_;
+    const std::filesystem::path place_;
     const bool computes_;  // the script computes the motion
     Transaction& parts_;
     Snapshot first_;
