@@ -500,13 +500,15 @@ public:
         }
         const float row = 1.2f * px(style_.font.strip);
         float foot = area.bottom - 0.45f * px(style_.font.strip);
+        std::vector<MarkWords> words;
+        for (const auto& mark : marks) words.push_back(words_at(mark));
         const auto are_too_high = [&] {
             std::size_t rows = 0;
-            for (const auto& mark : marks) rows += words_at(mark).rows.size();
+            for (const auto& one : words) rows += one.rows.size();
             return static_cast<float>(rows) * row > foot - area.top + 0.25f * row;
         };
-        while (marks.size() > 1 && are_too_high()) marks.erase(marks.begin());  // limits come first
-        for (const auto& mark : marks) draw_text(mark, foot, list);             // above all lines
+        while (words.size() > 1 && are_too_high()) words.erase(words.begin());  // limits come first
+        for (const auto& one : words) draw_text(one, foot, list);               // above all lines
         if (now.size() != 1 || !now[0].value || !is_inside(*now[0].value) || !(style_.width.trace > 0)) return;
         const Point head{x, strip_.value.at(*now[0].value)};
         list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
@@ -570,10 +572,10 @@ private:
         return {x, gap, is_right, wrapped(mark.text, size, Weight::regular, width)};
     }
     /// At the foot of the line, where curves are high up, above the texts before.
-    void draw_text(const TimeMark& mark, float& foot, DisplayList& list) const {
+    void draw_text(const MarkWords& mark, float& foot, DisplayList& list) const {
         const auto& area = strip_.area;
+        const auto& [x, gap, is_right, rows] = mark;
         const float t = layout_.text, size = px(style_.font.strip);
-        const auto [x, gap, is_right, rows] = words_at(mark);
         for (auto words = rows.rbegin(); words != rows.rend(); ++words, foot -= 1.2f * size) {
             const float row = text_width(*words, size), first = area.left + 2 * t;
             const float from =
