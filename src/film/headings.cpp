@@ -53,7 +53,8 @@ HeadingSizes fitted(const std::vector<Heading>& headings, const Layout& layout, 
     const bool two = (one < minimum || one * px(font.note) < layout.min_text) &&
                      std::ranges::any_of(headings, [](const Heading& words) { return !words.said.note.empty(); });
     if (!two) return {one * px(font.heading), one * px(font.note), width};
-    return {heading * px(font.heading), note * px(font.note), width, true};
+    const float head = heading * px(font.heading);
+    return {head, std::min(note * px(font.note), head), width, true};
 }
 
 void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, const Area& panel) {
@@ -203,7 +204,10 @@ float place_header(Layout& layout, const Scene& scene) {
     if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
         below += (below.empty() ? "" : " · ") + speed;
     // long text is shrunk a little to fit beside the text at the right, then continues below
-    const float first = page.top + 36 * t;
+    // the clock is beside the title, in tall pictures beside the subtitle
+    const float clock_px = has_clock ? px(font.clock) : 0, below_px = std::max(px(font.subtitle), tall ? clock_px : 0);
+    const float title_px = std::max(px(font.title), tall ? 0 : clock_px);
+    const float first = page.top + std::max(36 * t, 0.857f * title_px);
     float base = first;
     const auto add = [&](const std::string& text, double size, Weight weight, Color color, float beside) {
         const float width = page.width() - (beside > 0 ? beside + gap : 0);
@@ -219,7 +223,8 @@ float place_header(Layout& layout, const Scene& scene) {
         }
     };
     const float clock = has_clock ? width_of(clock_text(scene, scene.time(scene.samples)), font.clock) : 0;
-    const float speed_width = width_of(speed, font.subtitle), line = (tall ? 52 : 36) * t;
+    const float speed_width = width_of(speed, font.subtitle);
+    const float line = std::max((tall ? 52 : 36) * t, 0.25f * title_px + 0.94f * below_px);
     add(title, font.title, Weight::bold, theme.text, !tall ? clock : changes ? speed_width : 0);
     const float second = base += line;
     add(below, font.subtitle, Weight::regular, theme.quiet_text, tall ? clock : speed_width);
@@ -232,7 +237,7 @@ float place_header(Layout& layout, const Scene& scene) {
             layout.words.push_back(words);
         layout.clock = label("", {page.right, tall ? second : first}, px(font.clock), theme.text, Align::right);
     }
-    return base + 18 * t;
+    return base + std::max(18 * t, 0.42f * below_px);
 }
 
 FittedText fitted_text(const Layout& layout, const std::string& text, float size, Weight weight, float width) {
@@ -251,7 +256,7 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
     if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split(room, needs);
     const float t = layout.text;
     const auto headings = headings_of(scene);
-    needs.heading = 46 * t;
+    needs.heading = std::max(46 * t, 12 * t + 0.99f * px(layout.style.font.heading));
     auto regions = split(room, needs);
     if (!scene.preset.video.members.releases.empty()) {
         const auto words = layout.words;
@@ -276,7 +281,7 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
     const auto width = [&] { return share * regions.panels[0].width() - 14 * t; };  // separate from the text beside it
     auto sizes = fitted(headings, layout, width());
     if (sizes.two_lines) {
-        needs.heading = 81 * t;
+        needs.heading = std::max(81 * t, 12 * t + 1.25f * sizes.note + sizes.heading);
         regions = split(room, needs);
         sizes = fitted(headings, layout, width());
     }

@@ -275,7 +275,9 @@ void precision_fields(KeyVisitor& visit, SideSpec& side) {
            "1/s",
            positive,
            "",
-           {.applies = side.stabilise == Stabilise::baumgarte}},
+           {side.stabilise == Stabilise::baumgarte,
+            fmt::format("is for stabilise = \"baumgarte\"; it is \"{}\"", name_of(side.stabilise)),
+            visit.from_command_line("stabilise"), "stabilise"}},
           side.stabilise_rate_per_s);
 }
 

@@ -89,18 +89,19 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
 
 /// The first number of the observation that is not finite, in words; nothing if all are.
 std::optional<std::string> not_finite(const Observation& seen, bool has_angles) {
+    const auto text = [](double value) { return std::isnan(value) ? "not a number" : fmt::to_string(value); };
     for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
         const auto& bob = seen.bobs[i];
         const auto name = [&](std::string_view symbol, double value) {
-            return fmt::format("{}{} is {}", symbol, i + 1, value);
+            return fmt::format("{}{} is {}", symbol, i + 1, text(value));
         };
         if (has_angles && !std::isfinite(bob.omega)) return name("the rate ω", bob.omega);
         if (has_angles && !std::isfinite(bob.theta)) return name("the angle θ", bob.theta);
         if (!std::isfinite(bob.x) || !std::isfinite(bob.y)) return name("the place of mass ", bob.x + bob.y);
         if (!std::isfinite(bob.vx) || !std::isfinite(bob.vy)) return name("the velocity of mass ", bob.vx + bob.vy);
     }
-    if (!std::isfinite(seen.energy)) return fmt::format("the energy is {}", seen.energy);
-    if (!std::isfinite(seen.length_error)) return fmt::format("the rod error is {}", seen.length_error);
+    if (!std::isfinite(seen.energy)) return "the energy is " + text(seen.energy);
+    if (!std::isfinite(seen.length_error)) return "the rod error is " + text(seen.length_error);
     return std::nullopt;
 }
 

@@ -65,7 +65,7 @@ TEST(Init, EachKeyCanBeUncommented) {
     // keys that require other values of other keys
     EXPECT_EQ(refused,
               (std::set<std::string>{"codec", "integrator", "members", "phase", "phase_link", "position_bits",
-                                     "speed_ease_s", "step_s", "tolerance", "track.offset_deg", "track.start_s"}));
+                                     "speed_ease_s", "stabilise_rate_per_s", "step_s", "tolerance", "track.offset_deg", "track.start_s"}));
 }
 
 TEST(Init, WritesAPresetOfEveryKindOfFigure) {

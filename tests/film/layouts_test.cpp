@@ -61,6 +61,17 @@ TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
             }
 }
 
+TEST(Layouts, LargeTextsDoNotOverlap) {
+    const FontSizes usual;
+    for (const auto* layout : {"side-by-side", "overlay", "portrait"})
+        for (const auto& [key, member, help] : font_size_names) {
+            const auto set = fmt::format("video.fonts_px.{}={}", key, 2.4 * usual.*member);
+            const auto scene = scene_of("butterfly", {fmt::format("video.layout=\"{}\"", layout), set,
+                                                      "title=\"Two pendulums\"", "subtitle=\"Short\""});
+            expect_apart(labels_of(scene, 60), scene.preset.video.size, fmt::format("{} {}", layout, set));
+        }
+}
+
 TEST(Layouts, PhaseHeadIsAtItsAngleAndRate) {
     const auto scene = scene_of("butterfly", {"video.layout=\"phase\"", "b.angle_deg=[-30, 300]",
                                               "system.omega_deg_per_s=[0, 120]", "video.trail_s=0.1"});

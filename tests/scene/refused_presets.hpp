@@ -77,6 +77,8 @@ inline const std::vector<RefusedPreset> refused_system{
     RefusedPreset{
         "[system]\nstabilise = \"projection\"\nintegrator = \"rattle6\"",
         R"(presets/x.toml:2:1: [system] stabilise is not needed with "rattle6", which keeps the constraints itself)"},
+    RefusedPreset{"[system]\nstabilise_rate_per_s = 20",
+                  "presets/x.toml:2:1: [system] stabilise_rate_per_s is for stabilise = \"baumgarte\"; it is \"none\""},
     RefusedPreset{"[system]\nstabilise = \"baumgarte\"\nintegrator = \"taylor\"",
                   "presets/x.toml:2:1: [system] stabilise \"baumgarte\" adds terms without a Taylor series; use "
                   "\"projection\" or another integrator than \"taylor\""},
