@@ -10,7 +10,6 @@
 #include <latch>
 #include <mutex>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace doppel {
@@ -29,14 +28,6 @@ std::vector<std::jthread> start_threads(std::size_t count, const Work& work) {
 
 /// The error for a thread that is needed and cannot be started; it names the limit that prevents it.
 Error no_thread();
-
-/// A thread that calls work(). Throws Error (exit 4) if the system allows no further thread.
-template <class Work>
-std::jthread start_thread(const Work& work) {
-    auto threads = start_threads(1, work);
-    if (threads.empty()) throw no_thread();
-    return std::move(threads.front());
-}
 
 /// Throws Error (exit 4) if this process may not start `count` further threads. Called before libraries that hang or
 /// abort when one of their threads cannot be started.

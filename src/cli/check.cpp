@@ -194,21 +194,22 @@ SceneCheck checked(const Scene& scene, const std::atomic<bool>& stop) {
         check.why_not = error.what();
     }
     constexpr double patience = 2, longest = 6;  // s: runs that only give information; finding what they give
-    for (const char letter : scene.letters()) {
-        const auto& side = scene.side(letter);
-        auto& [forecast, alternatives] = check.sides[letter];
-        if (side.replay) continue;
-        if (!check.simulation.at_least && check.simulation.seconds < patience) {
-            const TimeLimit limit(longest, stop);
-            try {
-                forecast = forecast_of(scene, side, limit.reached());
-            } catch (const Error& error) {
-                throw_if_set(stop);
-                if (error.code() != ExitCode::interrupted) throw;  // otherwise unknown: it takes too long
-            }
+    const auto letters = scene.letters();
+    for (const char letter : letters)
+        if (check.sides[letter]; scene.side(letter).choice)
+            check.sides[letter].alternatives = alternatives_of(scene, letter, stop);
+    if (check.simulation.at_least || check.simulation.seconds >= patience) return check;
+    const TimeLimit limit(longest, stop);
+    parallel_for(letters.size(), cores(), [&](std::size_t i) {
+        const auto& side = scene.side(letters[i]);
+        if (side.replay) return;
+        try {
+            check.sides.at(letters[i]).forecast = forecast_of(scene, side, limit.reached());
+        } catch (const Error& error) {
+            throw_if_set(stop);
+            if (error.code() != ExitCode::interrupted) throw;  // otherwise unknown: it takes too long
         }
-        if (side.choice) alternatives = alternatives_of(scene, letter, stop);
-    }
+    });
     return check;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "image/golden.hpp"
-#include "output/files.hpp"
 
 #include <filesystem>
 #include <string>

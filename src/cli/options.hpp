@@ -8,7 +8,6 @@
 
 #include <CLI/App.hpp>
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <optional>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "integrate/methods.hpp"
 #include "integrate/motion.hpp"
 #include "output/csv.hpp"
 #include "plot/plot.hpp"

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <optional>
 
 namespace doppel {
 namespace {

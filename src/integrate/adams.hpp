@@ -3,7 +3,6 @@
 #include "integrate/dormand_prince.hpp"
 
 #include <array>
-#include <utility>
 
 namespace doppel {
 

@@ -8,8 +8,6 @@
 #include "physics/rod_multipliers.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <type_traits>
 
 namespace doppel {

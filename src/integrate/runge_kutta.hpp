@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 #include <variant>
 

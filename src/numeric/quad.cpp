@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 namespace doppel {

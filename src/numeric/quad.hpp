@@ -8,8 +8,6 @@
 // Quad, IEEE binary128: 113 bits, about 34 digits. It is long double if that is binary128; otherwise the compiler's
 // software type, wrapped by Boost.
 #if defined(__aarch64__)
-#include <cmath>
-#include <cstdlib>
 namespace doppel {
 using Quad = long double;
 static_assert(__LDBL_MANT_DIG__ == 113);

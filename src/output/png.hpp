@@ -1,7 +1,6 @@
 #pragma once
 
 #include "image/picture.hpp"
-#include "output/files.hpp"
 #include "output/sink.hpp"
 
 #include <filesystem>

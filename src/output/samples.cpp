@@ -5,7 +5,6 @@ extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>

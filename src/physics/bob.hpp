@@ -3,7 +3,6 @@
 #include "numeric/portable_math.hpp"
 #include "physics/physical_pendulum.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include "physics/angle_chain.hpp"
 #include "physics/physical_chain.hpp"
 
-#include <concepts>
 #include <limits>
 #include <vector>
 

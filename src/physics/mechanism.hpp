@@ -5,7 +5,6 @@
 #include "physics/constraint_set.hpp"
 #include "physics/mechanism_assembly.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
-#include <utility>
 
 namespace doppel {
 namespace {

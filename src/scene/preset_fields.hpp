@@ -1,6 +1,5 @@
 #pragma once
 
-#include "integrate/methods.hpp"
 #include "scene/preset.hpp"
 
 #include <fmt/format.h>

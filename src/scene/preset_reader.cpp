@@ -1,4 +1,3 @@
-#include "base/text.hpp"
 #include "integrate/methods.hpp"
 #include "scene/numeric_key.hpp"
 #include "scene/resolved.hpp"

@@ -5,7 +5,6 @@
 #include "track/regression.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace doppel {
 namespace {

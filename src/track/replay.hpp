@@ -4,7 +4,6 @@
 #include "track/track.hpp"
 
 #include <memory>
-#include <vector>
 
 namespace doppel {
 

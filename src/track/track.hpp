@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

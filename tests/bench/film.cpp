@@ -12,7 +12,6 @@
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
-#include <memory>
 
 // The cost of a frame of butterfly at 1920×1080 by stage, and the whole program compared with the encoder alone.
 

@@ -5,7 +5,6 @@
 #include "output/fixtures.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace doppel::encoding_trial_test {
 

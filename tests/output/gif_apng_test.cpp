@@ -6,7 +6,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace doppel::gif_apng_test {

@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <fstream>
-#include <mutex>
 
 namespace doppel {
 namespace png_test {

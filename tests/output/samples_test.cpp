@@ -9,8 +9,6 @@ extern "C" {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <memory>
 #include <random>
 
 namespace doppel::samples_test {

@@ -1,11 +1,9 @@
 #include "image/picture.hpp"
 #include "render/pixels.hpp"
-#include "render/renderer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace doppel::matte_test {
 

@@ -1,5 +1,4 @@
 #include "render/pixels.hpp"
-#include "render/renderer.hpp"
 #include "render/stroke.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 // Links with mass, friction and drives, from a preset to a scene.
-#include "base/text.hpp"
 #include "scene/captions.hpp"
 #include "scene/refused_presets.hpp"
 #include "scene/resolved.hpp"

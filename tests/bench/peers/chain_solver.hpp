@@ -5,7 +5,6 @@
 #include "external_method.hpp"
 
 #include <algorithm>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
