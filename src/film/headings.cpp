@@ -177,7 +177,7 @@ std::string speed_text(const Scene& scene, double time) {
                                                                {"3/4", "¾"}, {"1/5", "⅕"}, {"1/6", "⅙"}, {"1/8", "⅛"}};
     if (const auto sign = signs.find(speed.text()); changes && sign != signs.end())
         return fmt::format("{} speed", sign->second);
-    return fmt::format("{} ×{:g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
+    return fmt::format("{} ×{:.3g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }
 
 Wording wording_of(const Scene& scene) {
@@ -244,7 +244,10 @@ FittedText fitted_text(const Layout& layout, const std::string& text, float size
     const auto& type = layout.style.type;
     const float minimum = std::min(size, std::max(0.75f * size, layout.min_text));
     FittedText fits{text, std::max(minimum, type.fitting_size(text, size, weight, width))};
-    for (auto end = text.size(); end > 0 && type.width(fits.text, fits.size, weight) > width;) {
+    const auto is_wide = [&] { return type.width(fits.text, fits.size, weight) > width; };
+    if (const auto equals = text.find(" = "); is_wide() && equals != std::string::npos && equals == text.rfind(" = "))
+        return fitted_text(layout, text.substr(equals + 3), size, weight, width);
+    for (auto end = text.size(); end > 0 && is_wide();) {
         end = text.find_last_of(' ', end - 1);
         if (end == std::string::npos) break;
         fits.text = text.substr(0, text.find_last_not_of(" ,", end) + 1) + " …";

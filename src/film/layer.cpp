@@ -492,12 +492,6 @@ public:
         const float x = strip_.time.at(state_.time());
         if (style_.width.mark > 0)
             list.push_back(vertical_line(x, area.top, area.bottom, px(style_.width.mark), theme_.cursor));
-        for (std::size_t k = 0; style_.width.trace > 0 && k < now.size(); ++k) {
-            auto curve = traces_[k];
-            if (state_.is_between()) extend(curve, now[k]);
-            for (const auto& trace : curve.pieces)
-                list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
-        }
         const float row = 1.2f * px(style_.font.strip);
         float foot = area.bottom - 0.45f * px(style_.font.strip);
         std::vector<MarkWords> words;
@@ -507,8 +501,16 @@ public:
             for (const auto& one : words) rows += one.rows.size();
             return static_cast<float>(rows) * row > foot - area.top + 0.25f * row;
         };
-        while (words.size() > 1 && are_too_high()) words.erase(words.begin());  // limits come first
-        for (const auto& one : words) draw_text(one, foot, list);               // above all lines
+        while (!words.empty() && are_too_high()) words.erase(words.begin());  // limits come first
+        DisplayList texts;
+        for (const auto& one : words) place_text(one, foot, list, texts);
+        for (std::size_t k = 0; style_.width.trace > 0 && k < now.size(); ++k) {
+            auto curve = traces_[k];
+            if (state_.is_between()) extend(curve, now[k]);
+            for (const auto& trace : curve.pieces)
+                list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
+        }
+        std::ranges::move(texts, std::back_inserter(list));
         if (now.size() != 1 || !now[0].value || !is_inside(*now[0].value) || !(style_.width.trace > 0)) return;
         const Point head{x, strip_.value.at(*now[0].value)};
         list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
@@ -571,8 +573,8 @@ private:
         const float width = std::clamp(is_right ? right : left, 5 * size, area.width());
         return {x, gap, is_right, wrapped(mark.text, size, Weight::regular, width)};
     }
-    /// At the foot of the line, where curves are high up, above the texts before.
-    void draw_text(const MarkWords& mark, float& foot, DisplayList& list) const {
+    /// At the foot of the line, above the texts before. Curves lie between the text and its background.
+    void place_text(const MarkWords& mark, float& foot, DisplayList& list, DisplayList& texts) const {
         const auto& area = strip_.area;
         const auto& [x, gap, is_right, rows] = mark;
         const float t = layout_.text, size = px(style_.font.strip);
@@ -584,7 +586,7 @@ private:
             if (!video_.transparent)
                 list.push_back(Box{from - 4 * t, foot - 0.9f * size, from + row + 4 * t, foot + 0.28f * size, 0,
                                    theme_.background.with_alpha(0.85f)});
-            list.push_back(label(*words, {from, foot}, size, theme_.text));
+            texts.push_back(label(*words, {from, foot}, size, theme_.text));
         }
     }
 

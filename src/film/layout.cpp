@@ -284,9 +284,9 @@ Layout make_tile(const Scene& scene, const MotionBounds& seen) {
 // in units of the picture's height: curves of a strip; circles of a pair for which strips still go below
 constexpr float min_curves = 0.2f, max_curves = 0.34f, min_circle = 0.45f;
 // in units of the area: all strips below panels; a column of strips
-constexpr float max_below = 0.62f, min_column = 0.285f;
+constexpr float max_below = 0.62f, min_column = 0.285f, min_two_columns = 0.45f;
 
-constexpr std::size_t max_in_row = 3;  // strips in a row below panels
+constexpr std::size_t max_in_row = 3, max_in_column = 5;  // strips in a row below panels; beside them
 
 /// Panels side by side, or one above the other, each below its heading.
 std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool stacked) {
@@ -344,11 +344,13 @@ Regions with_strips_below(const Area& room, const RegionNeeds& needs, std::size_
 
 /// A single panel is a square; strips get the rest.
 Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
-    const float square = room.height() - needs.heading, minimum = min_column * room.width();
+    const std::size_t columns = needs.strips > max_in_column ? 2 : 1;
+    const float square = room.height() - needs.heading;
+    const float minimum = (columns > 1 ? min_two_columns : min_column) * room.width();
     const float column = needs.panels == 1 ? std::max(room.width() - square - needs.gap, minimum) : minimum;
     const float part = std::round(room.right - column);
     return {panel_areas({room.left, room.top, part - needs.gap, room.bottom}, needs, false),
-            strip_cells({part, room.top, room.right, room.bottom}, needs, 1)};
+            strip_cells({part, room.top, room.right, room.bottom}, needs, columns)};
 }
 
 }  // namespace
@@ -458,7 +460,7 @@ Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind kin
     layout.unit = tall ? std::min(width / 1080, height / 1920) : std::min(width / 1920, height / 1080);
     // upright pictures are for telephones: larger text, and none where an app has its buttons
     layout.text = tall ? 1.6f * layout.unit : std::max(layout.unit, min_unit);
-    layout.min_text = tall ? 1080.0f / 390 * min_text * layout.unit : min_text;
+    layout.min_text = min_text * (tall ? std::max(1080.0f / 390 * layout.unit, 1.0f) : 1);
     layout.style = make_style(video, layout.unit, layout.text);
     const float u = layout.unit;
     const float top = is_portrait ? 0.06f * height : 28 * u, bottom = is_portrait ? 0.14f * height : 26 * u;

@@ -67,13 +67,18 @@ struct Piece {
     float room = 0;
 };
 
+/// With two digits always, so that its length changes little from frame to frame.
+std::string distance_text(double value) {
+    return value >= 0.1 && value < 9.95 ? fmt::format("{:#.2g}", value) : scientific(value);
+}
+
 std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& layout,
                              const std::vector<StripCurve>& curves, bool starts_equal) {
     const auto& theme = layout.style.theme;
     const auto width = [&](const char* text) { return layout.style.type.width(text, px(layout.style.font.strip)); };
     std::vector<Piece> pieces{{strip_title(kind, scene), theme.text}};
     if (kind == StripKind::distance)
-        pieces.push_back({scientific(*curves[0].value), curves[0].color, width("8.8 × 10⁻⁸⁸")});
+        pieces.push_back({distance_text(*curves[0].value), curves[0].color, width("8.8 × 10⁻⁸⁸")});
     else if (kind == StripKind::exponent && starts_equal)
         pieces.push_back({"none, d₀ = 0", theme.quiet_text});
     else if (kind == StripKind::exponent)
@@ -82,6 +87,12 @@ std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& l
     else if (kind == StripKind::energy &&
              std::ranges::none_of(curves, [](const auto& one) { return one.value.has_value(); }))
         pieces.push_back({"none: damping removes energy", theme.quiet_text});
+    const auto is_by_angles = [&](char letter) {
+        const auto& side = scene.side(letter);
+        return side.replay || side.motion.model == Model::angles;
+    };
+    if (kind == StripKind::rod_error && std::ranges::all_of(scene.letters(), is_by_angles))
+        pieces.push_back({"none: angles keep the lengths", theme.quiet_text});
     for (const auto& curve : curves)
         if (!curve.name.empty()) pieces.push_back({curve.name, curve.color, width(curve.name.c_str())});
     return pieces;

@@ -128,9 +128,9 @@ std::string horizon_sentence(const FitResult& result) {
     constexpr std::array<const char*, 3> names{"the model", "the start", "the parameters"};
     std::string because;
     for (std::size_t k = 0; k < names.size(); ++k)
-        if (h.left_by[k] > 0) because += fmt::format("{}{} {}", because.empty() ? "" : ", ", names[k], h.left_by[k]);
+        if (h.left_by[k] > 0) because += fmt::format("{}{} ({})", because.empty() ? "" : ", ", names[k], h.left_by[k]);
     return sentence +
-           fmt::format("; of {} predictions {} exceeded it, limited by: {}.", h.predictions.size(), left, because);
+           fmt::format("; {} of {} exceeded it, limited by {}.", left, h.predictions.size(), because);
 }
 
 std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter) {
@@ -241,7 +241,7 @@ void write_residuals(const FitResult& result, const std::filesystem::path& place
 namespace {
 
 constexpr double mrad = 1e3;
-constexpr std::array<const char*, 2> names{"θ1", "θ2"};  // of the links
+constexpr std::array<const char*, 2> names{"θ₁", "θ₂"};  // of the links
 
 /// The first shot: samples as points, the model as lines.
 Plot track_plot(const FitResult& result) {

@@ -203,7 +203,7 @@ std::string release_words(const Scene& scene, const SweptKeys& swept) {
         std::ranges::any_of(swept.keys, [](const std::string& path) { return path.ends_with(".angle_deg"); });
     if (!scene.preset.a.particles.empty() || angles.size() > max_listed || are_swept) return "";
     if (is_swept(swept, "links")) return "released from " + slashed(angles, "°", true);
-    if (swept.angles.empty() && angles == others) return slashed(angles, "°");
+    if (swept.angles.empty() && angles == others) return (angles.size() == 1 ? "released from " : "") + slashed(angles, "°");
     const auto value = [](const Quad& angle) {
         return angle == 0 ? std::string(" = 0") : fmt::format(" = {}°", text_of(angle));
     };
@@ -317,8 +317,8 @@ std::string physical_words(const PhysicalSpec& physical) {
         if (physical.has(property) && (words.empty() || words.back() != property.kind))
             words.emplace_back(property.kind);
     if (physical.pivot.amplitude_m != 0) words.emplace_back("a moving pivot");
-    if (!physical.torques.empty()) words.emplace_back("motors");
-    return joined(words);
+    if (const auto motors = physical.torques.size(); motors > 0) words.emplace_back(motors == 1 ? "a motor" : "motors");
+    return words.size() < 2 ? joined(words) : joined({words.begin(), words.end() - 1}) + " and " + words.back();
 }
 
 std::string slashed(const std::vector<Quad>& numbers, std::string_view unit, bool once) {

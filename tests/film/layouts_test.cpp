@@ -16,7 +16,8 @@ const std::uint8_t* pixel_at(const Picture& picture, Point at) {
 }
 
 TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
-    const std::vector<std::string> all{"\"distance\"", "\"exponent\"", "\"energy\"", "\"rod-error\"", "\"rod-force\""};
+    const std::vector<std::string> all{"\"distance\"", "\"exponent\"", "\"energy\"", "\"rod-error\"", "\"rod-force\"",
+                                       "\"angles\""};
     for (const auto* layout_name : {"side-by-side", "overlay", "phase", "portrait", "ensemble"})
         for (const auto* size : {"[1920, 1080]", "[480, 270]", "[1080, 1920]", "[3840, 2160]"})
             for (std::size_t strips = 0; strips <= all.size(); ++strips) {
@@ -87,7 +88,7 @@ TEST(Layouts, PhaseHeadIsAtItsAngleAndRate) {
 TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
     // almost without gravity, both links turn together: ω1 is almost constant, and θ1 passes 0 once a turn
     const std::vector<std::string> arguments{
-        "video.layout=\"phase\"",       "video.phase=\"section\"",           "video.phase_link=1",
+        "video.layout=\"phase\"",       "video.phase=\"section\"",           "video.phase_link=2",
         "system.gravity_m_per_s2=1e-9", "system.omega_deg_per_s=[360, 360]", "scene.duration_s=3",
         "system.integrator=\"taylor\""};
     const auto scene = scene_of("butterfly", arguments);
@@ -247,7 +248,7 @@ TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
         {"video.layout=\"ensemble\"", "video.members=17", "video.colors.rod=\"#123456\"", "video.widths_px.trail=5",
          "video.fonts_px.axis=30"},
         {"video.layout=\"ensemble\"", "video.members=[[90, 90], [90.001, 90], [90.003, 90.5]]"},
-        {"video.layout=\"phase\"", "video.phase=\"section\"", "video.phase_link=1", "video.glow_px=3"},
+        {"video.layout=\"phase\"", "video.phase=\"section\"", "video.phase_link=2", "video.glow_px=3"},
         {"video.layout=\"portrait\"", "video.poster_s=5", "video.contact_sheet=[2, 3]", "video.hold_end_s=\"1/3\""},
         {"video.format=\"webm\"", "video.codec=\"av1\"", "video.crf=60", "video.title_card_s=1"},
         {"video.format=\"png\"", "video.transparent=true", "video.panels=[\"rod-force\", \"exponent\", \"pendulums\"]",

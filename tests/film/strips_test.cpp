@@ -149,6 +149,45 @@ TEST(Strips, NoLineCrossesTheWordsOfMarks) {
     EXPECT_LT(cursor, words);
 }
 
+TEST(Strips, CurvesAreSeenBehindTheWordsOfMarks) {
+    const auto scene = scene_of("horizon", {"video.size=[390, 844]"});
+    const auto list = composed(scene, 20 * 120)->frame();
+    const auto curves = curves_in(make_layout(scene).strips[0].area, list);
+    ASSERT_EQ(curves.size(), 1u);
+    const auto background = std::ranges::find_if(list, [](const auto& item) {
+        const auto* box = std::get_if<Box>(&item);
+        return box && box->color == themes[0].background.with_alpha(0.85f);
+    });
+    const auto words = std::ranges::find_if(list, [](const auto& item) {
+        const auto* label = std::get_if<Label>(&item);
+        return label && label->text.find("predictability") != std::string::npos;
+    });
+    ASSERT_NE(words, list.end());
+    const auto curve = static_cast<std::ptrdiff_t>(curves[0].first);
+    EXPECT_LT(background - list.begin(), curve);
+    EXPECT_LT(curve, words - list.begin());
+}
+
+TEST(Strips, OfRodErrorsSayWhereThereAreNone) {
+    const auto has = [](const std::string& model) {
+        const auto scene = scene_of("butterfly", {"system.model=" + model, "video.panels=[\"pendulums\", \"rod-error\"]"});
+        return label_of(labels_of(scene, 60), "none: angles keep the lengths").has_value();
+    };
+    EXPECT_TRUE(has("angles"));
+    EXPECT_FALSE(has("constraints"));
+}
+
+TEST(Strips, DistancesHaveTwoDigits) {
+    const auto scene = scene_of("triple", {});
+    EXPECT_TRUE(label_of(labels_of(scene, 10 * 120), "6.0"));
+}
+
+TEST(Strips, NarrowHeadingsKeepTheNumber) {
+    const auto labels = labels_of(scene_of("fan", {"video.size=[320, 180]"}), 0);
+    EXPECT_TRUE(label_of(labels, "120°"));
+    EXPECT_TRUE(label_of(labels, "120.1°"));
+}
+
 TEST(Strips, ACurveBeginsWhereItEntersItsAxis) {
     // both start at the same place: the distance is 0, then far below the axis for 0.4 s
     const auto scene = scene_of("single-and-double");

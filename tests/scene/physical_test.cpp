@@ -61,7 +61,7 @@ TEST(Physical, CaptionsStateTheDifference) {
     const auto words = side_captions(scene);
     EXPECT_EQ(words[0].heading, "no viscous friction, pivot frequency 1 Hz");
     EXPECT_EQ(words[1].heading, "viscous friction 0.5 N m s, pivot frequency 3 Hz");
-    EXPECT_EQ(scene_caption(scene_of("driven")).substr(0, 36), "two pendulums with friction, motors ");
+    EXPECT_EQ(scene_caption(scene_of("driven")).substr(0, 40), "two pendulums with friction and a motor ");
 }
 
 TEST(Physical, TheEnergyStripShowsEnergyWhereItIsNotKept) {

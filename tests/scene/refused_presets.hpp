@@ -183,6 +183,8 @@ inline const std::vector<RefusedPreset> refused_video_keys{
         R"([video] layout must be "side-by-side", "overlay", "ensemble", "phase", "portrait" or "single"; it is "fan")"},
     RefusedPreset{"members = 5", R"([video] members is for the layout "ensemble"; it is "side-by-side")"},
     RefusedPreset{"members = 1\nlayout = \"ensemble\"", "[video] members must be from 2 to 1000; it is 1"},
+    RefusedPreset{"phase = \"section\"\nlayout = \"phase\"\nphase_link = 1",
+                  "[video] phase \"section\" is where link 1 passes 0 upwards, so it needs phase_link from 2 on"},
     RefusedPreset{"phase_link = 3\nlayout = \"phase\"",
                   "[video] phase_link must be from 1 to 2, as there are links; it is 3"},
     RefusedPreset{

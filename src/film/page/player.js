@@ -156,7 +156,7 @@ const along = (axis, v) => pixelAt(axis, clamp(axisShare(axis, v), 0, 1));
 const powerOfTen = e => ["1", "10"][e] ?? "10" + [...String(e)].map(c => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("");
 function scientific(v) {
   if (!(v > 0)) return "0";
-  if (v >= 0.1 && v < 1000) return String(shortened(v, 2));
+  if (v >= 0.1 && v < 1000) return v < 9.95 ? v.toPrecision(2) : String(shortened(v, 2));
   const [digits, e] = v.toExponential(1).split("e");
   return `${digits} × ${powerOfTen(Number(e))}`;
 }
@@ -194,18 +194,19 @@ function dashedLine({ area: [, top, , bottom], time }, at) {
   for (let y = top; y < bottom; y += 10 * picture.text)
     verticalLine(along(time, at), y, Math.min(y + 5 * picture.text, bottom), theme.quiet_text);
 }
-// The texts of marks at the feet of their lines, one above the other.
-function drawMarks({ area: [left, , right, bottom], time }, marks) {
+// The texts of marks at the feet of their lines, one above the other: draws what is behind them, returns what draws them.
+function placeMarks({ area: [left, , right, bottom], time }, marks) {
   const t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
-  const behind = film.transparent ? "#0000" : faded(theme.background, 0.85);
   text("", [0, 0], ...style);
-  marks.forEach(([at, words], i) => {
+  const places = marks.map(([at, words], i) => {
     const x = along(time, at), foot = bottom - (0.45 + 1.2 * i) * size, { width } = g.measureText(words);
     const isRight = right - x - 20 * t >= Math.min(width, x - left - 20 * t);
     const from = Math.max(Math.min(isRight ? x + 10 * t : x - 10 * t - width, right - width - 2 * t), left + 2 * t);
-    box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, behind);
-    text(words, [from, foot], ...style);
+    if (!film.transparent)
+      box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
+    return [from, foot];
   });
+  return () => marks.forEach(([, words], i) => text(words, places[i], ...style));
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
@@ -224,6 +225,7 @@ function drawStrip(strip) {
     dashedLine(strip, since);
   }
   verticalLine(x, area[1], area[3], theme.cursor);
+  const drawMarks = kind === kindOfPair ? placeMarks(strip, marks) : null;
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
     const [color, width] = pens[c], pieces = [];  // cut where the curve leaves its axis; the first begins in it
     const isInside = v => Math.abs(axisShare(axis, v) - 0.5) <= 0.500001;
@@ -239,7 +241,7 @@ function drawStrip(strip) {
     stroke(color, width, () => pieces.forEach(polyline));
     if (curves.length === 1 && wasInside && !isStill) drawHead(before, color);
   }
-  if (kind === kindOfPair) drawMarks(strip, marks);
+  drawMarks?.();
 }
 
 // Rates over angles: paths, or the points at which θ1 passes a whole number of turns upwards.
