@@ -129,8 +129,7 @@ std::string horizon_sentence(const FitResult& result) {
     std::string because;
     for (std::size_t k = 0; k < names.size(); ++k)
         if (h.left_by[k] > 0) because += fmt::format("{}{} ({})", because.empty() ? "" : ", ", names[k], h.left_by[k]);
-    return sentence +
-           fmt::format("; {} of {} exceeded it, limited by {}.", left, h.predictions.size(), because);
+    return sentence + fmt::format("; {} of {} exceeded it, limited by {}.", left, h.predictions.size(), because);
 }
 
 std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter) {

@@ -203,7 +203,8 @@ std::string release_words(const Scene& scene, const SweptKeys& swept) {
         std::ranges::any_of(swept.keys, [](const std::string& path) { return path.ends_with(".angle_deg"); });
     if (!scene.preset.a.particles.empty() || angles.size() > max_listed || are_swept) return "";
     if (is_swept(swept, "links")) return "released from " + slashed(angles, "°", true);
-    if (swept.angles.empty() && angles == others) return (angles.size() == 1 ? "released from " : "") + slashed(angles, "°");
+    if (swept.angles.empty() && angles == others)
+        return (angles.size() == 1 ? "released from " : "") + slashed(angles, "°");
     const auto value = [](const Quad& angle) {
         return angle == 0 ? std::string(" = 0") : fmt::format(" = {}°", text_of(angle));
     };

@@ -71,7 +71,8 @@ void check_layout(const Preset& preset, const TomlReader& video) {
         const long links = static_cast<long>(std::min(preset.a.links(), preset.b.links()));
         const bool is_section = preset.video.phase == PhaseKind::section;
         if (is_section && (links < 2 || preset.video.phase_link == 1))
-            throw video.error("phase", "\"section\" is where link 1 passes 0 upwards, so it needs phase_link from 2 on");
+            throw video.error("phase",
+                              "\"section\" is where link 1 passes 0 upwards, so it needs phase_link from 2 on");
         if (preset.video.phase_link > links)
             throw video.error("phase_link", "must be from 1 to {}, as there are links; it is {}", links,
                               preset.video.phase_link);

@@ -16,8 +16,8 @@ const std::uint8_t* pixel_at(const Picture& picture, Point at) {
 }
 
 TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
-    const std::vector<std::string> all{"\"distance\"", "\"exponent\"", "\"energy\"", "\"rod-error\"", "\"rod-force\"",
-                                       "\"angles\""};
+    const std::vector<std::string> all{"\"distance\"",  "\"exponent\"",  "\"energy\"",
+                                       "\"rod-error\"", "\"rod-force\"", "\"angles\""};
     for (const auto* layout_name : {"side-by-side", "overlay", "phase", "portrait", "ensemble"})
         for (const auto* size : {"[1920, 1080]", "[480, 270]", "[1080, 1920]", "[3840, 2160]"})
             for (std::size_t strips = 0; strips <= all.size(); ++strips) {

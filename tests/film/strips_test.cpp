@@ -170,7 +170,8 @@ TEST(Strips, CurvesAreSeenBehindTheWordsOfMarks) {
 
 TEST(Strips, OfRodErrorsSayWhereThereAreNone) {
     const auto has = [](const std::string& model) {
-        const auto scene = scene_of("butterfly", {"system.model=" + model, "video.panels=[\"pendulums\", \"rod-error\"]"});
+        const auto scene =
+            scene_of("butterfly", {"system.model=" + model, "video.panels=[\"pendulums\", \"rod-error\"]"});
         return label_of(labels_of(scene, 60), "none: angles keep the lengths").has_value();
     };
     EXPECT_TRUE(has("angles"));
