@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -173,10 +171,6 @@ std::string speed_text(const Scene& scene, double time) {
     const bool changes = scene.preset.video.speed.changes_over_time();
     const auto speed = changes ? speed_at(scene.preset.video, time) : scene.preset.video.speed.constant;
     if (speed == Rational{1, 1}) return "real time";
-    static const std::map<std::string, std::string_view> signs{{"1/2", "½"}, {"1/3", "⅓"}, {"2/3", "⅔"}, {"1/4", "¼"},
-                                                               {"3/4", "¾"}, {"1/5", "⅕"}, {"1/6", "⅙"}, {"1/8", "⅛"}};
-    if (const auto sign = signs.find(speed.text()); changes && sign != signs.end())
-        return fmt::format("{} speed", sign->second);
     return fmt::format("{} ×{:.3g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }
 

@@ -151,7 +151,7 @@ Wording wording_of(const Scene& scene);
 
 /// The time on the clock, with enough decimals to distinguish frames.
 std::string clock_text(const Scene& scene, double time);
-/// The text for the speed: "slow motion ×0.25"; if it changes, "¼ speed".
+/// The text for the speed: "real time", "slow motion ×0.25".
 std::string speed_text(const Scene& scene, double time);
 
 /// Adds title, subtitle and speed, and places the clock. Returns where they end, px from the top.
