@@ -96,12 +96,12 @@ TEST(Init, EachKeyOfAFigureCanBeUncommented) {
     // keys that require other values of other keys, and keys that the figure sets itself
     std::map<std::string_view, std::set<std::string>> beside{
         {"grid",
-         {"threshold", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right", "step_s",
-          "tolerance", "transient_periods", "mark_step_s", "x.labels", "x.tolerance_from", "x.tolerance_to",
-          "x.tolerance_points"}},
+         {"threshold", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right",
+          "stabilise_rate_per_s", "step_s", "tolerance", "transient_periods", "mark_step_s", "x.labels",
+          "x.tolerance_from", "x.tolerance_to", "x.tolerance_points"}},
         {"series",
          {"integrator", "step_s", "tolerance", "check_tolerance", "duration_s", "film_column", "samples",
-          "points_per_decade", "evaluations_per_s", "methods", "projected"}},
+          "points_per_decade", "evaluations_per_s", "methods", "projected", "stabilise_rate_per_s"}},
         {"section", {"angle_deg", "omega_deg_per_s"}},
         {"work-precision", {"duration_s"}}};
     for (const auto& kind : figure_kinds()) {

@@ -467,14 +467,16 @@ TEST(Grid, DrawsTheConvergedCurveOverKaos) {
 }
 
 TEST(Grid, NamesDriveAndDamping) {
-    EXPECT_EQ(figure_of("bifurcation").subtitle,
-              "one link in angles, viscous friction 0.45887 N m s, torque \"motor\" frequency 0.5 Hz, 10°; "
-              "Dormand–Prince 8(5,3), tolerance 10⁻¹⁰");
+    EXPECT_EQ(
+        figure_of("bifurcation").subtitle,
+        "one link in angles, viscous friction 0.45887 N m s, torque \"motor\" frequency 0.5 Hz, released from 10°; "
+        "Dormand–Prince 8(5,3), tolerance 10⁻¹⁰");
     const std::string swept = "grid.x.key=\"system.torque.motor.frequency_hz\"";
-    EXPECT_TRUE(figure_of("bifurcation", {swept}).subtitle.find("torque \"motor\" amplitude 4.3247 N m, 10°") !=
-                std::string::npos);
+    EXPECT_TRUE(
+        figure_of("bifurcation", {swept}).subtitle.find("torque \"motor\" amplitude 4.3247 N m, released from 10°") !=
+        std::string::npos);
     EXPECT_EQ(figure_of("kapitza-map").subtitle,
-              "one link in angles, pivot direction 90°, 177°; Dormand–Prince 8(5,3), tolerance 10⁻⁶");
+              "one link in angles, pivot direction 90°, released from 177°; Dormand–Prince 8(5,3), tolerance 10⁻⁶");
 }
 
 TEST(Grid, TwoToneMapsNameBothBranches) {
