@@ -1,5 +1,6 @@
 #include "cli/terminal.hpp"
 
+#include "base/machine.hpp"
 #include "base/text.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,8 @@ namespace {
 
 // signal handlers can only use globals; these are local to this file
 std::atomic<bool> stop_requested = false, termination_requested = false;
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<double> requested_s = 0;  // when, by CLOCK_MONOTONIC
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
 
 /// Writes to standard output without buffering; returns errno, or 0.
 int write_error(std::string_view text) {
@@ -83,10 +85,17 @@ void stream_file(const std::filesystem::path& path) {
 const std::atomic<bool>& watch_interrupts() {
     struct sigaction action {};
     action.sa_handler = [](int signal) {
-        termination_requested = signal == SIGTERM;
-        stop_requested = true;
+        const double now = seconds_of(CLOCK_MONOTONIC);
+        if (!stop_requested) {
+            requested_s = now;
+            termination_requested = signal == SIGTERM;
+            stop_requested = true;
+        } else if (now - requested_s > 1) {
+            std::signal(signal, SIG_DFL);
+            std::raise(signal);  // ends the process when this handler returns
+        }
     };
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+    action.sa_flags = SA_RESTART;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     // the terminal was closed; nohup's setting is respected

@@ -16,8 +16,8 @@
 
 namespace doppel {
 
-/// Becomes true when the user or the system asks the program to end (SIGINT, SIGTERM, SIGHUP). A second signal ends it
-/// at once.
+/// Becomes true when the user or the system asks the program to end (SIGINT, SIGTERM, SIGHUP). A signal within a
+/// second is the same request (timeout sends two); a later one ends it at once.
 const std::atomic<bool>& watch_interrupts();
 
 /// Whether it was SIGTERM: exit 143 instead of 130.

@@ -4,9 +4,11 @@
 #include "output/png.hpp"
 
 #include <nlohmann/json.hpp>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <map>
 #include <sstream>
@@ -131,12 +133,32 @@ TEST(FailedRuns, StopsSoonAndCleanly) {
         const auto folder = fresh_folder();
         const auto child = start_endless(folder, format);
         const auto requested = std::chrono::steady_clock::now();
-        kill(child, signal);
+        for (int times = 0; times < 2; ++times) kill(child, signal);  // as timeout does
         EXPECT_EQ(wait_for(child), signal == SIGTERM ? 143 : 130);
         EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(2));  // measured 0.1 s
         EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
         EXPECT_EQ(listing(folder / "out"), Names{});
     }
+}
+
+TEST(FailedRuns, ASecondCtrlCEndsAProgramThatHangs) {
+    const auto folder = fresh_folder();
+    std::array<int, 2> ends{};
+    ASSERT_EQ(pipe(ends.data()), 0);
+    fcntl(ends[1], F_SETPIPE_SZ, 4096);  // less than a picture
+    const auto child = start(folder, film("y4m", with(endless, {"-o", "-"})), [&] {
+        setenv("TMPDIR", ".", 1);
+        dup2(ends[1], STDOUT_FILENO);
+    });
+    int held = 0;
+    EXPECT_TRUE(wait_until([&] { return ioctl(ends[0], FIONREAD, &held) == 0 && held > 1000; })) << held;
+    for (const auto pause : {0, 1200}) {
+        EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0);
+        std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+        kill(child, SIGINT);
+    }
+    EXPECT_EQ(wait_for(child), -SIGINT);
+    for (const int end : ends) close(end);
 }
 
 TEST(FailedRuns, ContinuesIfNobodyReadsItsProgress) {
