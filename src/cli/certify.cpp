@@ -82,11 +82,11 @@ void certify_all(const CertifyOptions& options) {
     if (!(options.radius >= 1e-12 && options.radius <= 1e3))
         throw bad_input("--radius must be from 1e-12 to 1000 rad; it is {:g}", options.radius);
     const auto scenes = read_scenes(options);
+    const Destination to(options, scenes.size(), ".csv");
     if (options.list_outputs) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, certified_files(scene.preset.name));
         return;
     }
-    const Destination to(options.out, scenes.size(), ".csv");
     work_on_all(scenes, options.progress, "samples", to.streamed(),
                 [&](const Scene& scene, ProgressReport& report) { certify(scene, options, to.folder(), report); });
 }

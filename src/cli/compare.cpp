@@ -258,7 +258,8 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
         throw bad_input("--at and --frames are for films; {} is a figure", text.name);
     ProgressReport progress(progress_style("auto"), text.name, is_chart ? "trials" : "frames");
     const Report report = std::ref(progress);
-    const RunOptions run_options{.out = folder, .gl = value_named<Gl>(options.gl)};
+    const Replacing replacing{.is_temporary = true};
+    const RunOptions run_options{.out = folder, .gl = value_named<Gl>(options.gl), .replacing = replacing};
     std::vector<ComparedPicture> pairs;
     if (is_chart) {
         const auto figure = read_figure(text, overrides, task.stop);
@@ -267,7 +268,7 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
         const auto tell = [&](std::size_t, const FigureProgress& now) {
             report({std::lround(now.done), std::lround(now.total)});
         };
-        run_figures({figure}, {.out = folder}, task.stop, {.progress = tell});
+        run_figures({figure}, {.out = folder, .replacing = replacing}, task.stop, {.progress = tell});
         pairs.front().actual = folder / figure.name / file;
     } else {
         auto scene = make_scene(read_preset(text, overrides), task.stop);

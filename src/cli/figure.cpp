@@ -57,7 +57,7 @@ std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
 
 void make_figures(const FigureCommandOptions& options) {
     std::vector<FigurePreset> figures;
-    Replacing replacing{.force = options.force};
+    Replacing replacing{.force = options.force, .is_temporary = options.out == "-"};
     for (const auto& preset : chosen_presets(options)) {
         figures.push_back(read_figure(preset, overrides(options), watch_interrupts()));
         replacing.inputs.emplace_back(preset.path);
@@ -76,11 +76,11 @@ void make_figures(const FigureCommandOptions& options) {
                       .merge = options.merge,
                       .tiles = options.tiles,
                       .replacing = std::move(replacing)};
+    const Destination to(options, figures.size(), fmt::format(".{}", name_of(figures.front().chart.format)));
     if (options.list_outputs) {
         for (const auto& figure : figures) list_outputs(options, figure.name, figure_files(figure, run));
         return;
     }
-    const Destination to(options.out, figures.size(), fmt::format(".{}", name_of(figures.front().chart.format)));
     run.out = to.folder();
     // the computation of one figure may overlap with the drawing of another
     std::mutex mutex;

@@ -27,8 +27,6 @@ void fit(const FitCommandOptions& options) {
     ignore_sigpipe();
     const std::vector<std::filesystem::path> files(options.tracks.begin(), options.tracks.end());
     const auto name = fit_name(files, fit_options);
-    if (options.out == "-")
-        throw bad_input("-o -: a fit is several files, preset, residuals, page and numbers; give a folder");
     if (options.list_outputs)
         return list_outputs(options, name,
                             {name + ".toml", name + ".residuals.csv", name + ".png", name + ".fit.json"});
@@ -71,6 +69,7 @@ void add_fit(CLI::App& app) {
         ->check(CLI::Range(1e-9, 1e9))
         ->capture_default_str();
     add_out_options(command, *options);
+    refuse_dash(command.get_option("--out"))->description("Folder for the results, DIR/NAME/");
     add_value(command, "-j,--jobs", options->fit.jobs, "N", "Threads; default: one a core; same numbers for any N")
         ->check(CLI::Range(1, 1024));
     command.callback([options] { fit(*options); });

@@ -47,9 +47,11 @@ void add_out_options(CLI::App& command, OutOptions& options) {
     command.add_flag("--force", options.force, "Replace files that were changed, or that another kind of run wrote");
 }
 
-Destination::Destination(const std::string& out, std::size_t runs, const std::string& ending) : folder_(out) {
-    if (out != "-") return;
+Destination::Destination(const OutOptions& options, std::size_t runs, const std::string& ending)
+    : folder_(options.out) {
+    if (options.out != "-") return;
     if (runs != 1) throw bad_input("-o -: standard output takes one file; give one preset, not {}", runs);
+    if (options.list_outputs) return;
     if (ending != ".csv" && isatty(STDOUT_FILENO))
         throw bad_input("-o -: standard output is a terminal, which cannot show {}; redirect it: -o - > FILE{}",
                         ending.substr(1), ending);

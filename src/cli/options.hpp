@@ -93,8 +93,8 @@ std::vector<Override> overrides_of(const PresetOptions& options, const std::vect
 class Destination {
 public:
     /// `ending` = extension of that file, ".csv". Throws Error: exit 2 for several runs, or if a picture would go to a
-    /// terminal; exit 4.
-    Destination(const std::string& out, std::size_t runs, const std::string& ending);
+    /// terminal; exit 4. With --list-outputs there is no folder.
+    Destination(const OutOptions& options, std::size_t runs, const std::string& ending);
 
     const std::filesystem::path& folder() const { return folder_; }
     /// As for ProgressReport.

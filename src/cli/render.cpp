@@ -63,7 +63,7 @@ void note_gap(const Scene& scene, ProgressReport& report) {
 
 /// Runs the scenes one after the other and reports progress.
 void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options, RunOptions run_options) {
-    run_options.replacing = {inputs_of(options.presets, scenes), options.force};
+    run_options.replacing = {inputs_of(options.presets, scenes), options.force, options.out == "-"};
     const auto& stop = watch_interrupts();
     for (const auto& scene : scenes) check_run(scene, run_options);
     if (scenes.size() > 1 && !options.recording.empty())
@@ -72,13 +72,13 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     const bool is_sequence = run_options.pictures && video.format == FilmFormat::png;
     if (options.out == "-" && is_sequence)
         throw bad_input("-o -: a PNG sequence is many files; give --format apng, or use still for one picture");
+    const Destination to(options, scenes.size(),
+                         run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
     if (options.list_outputs) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, run_files(scene, run_options));
         if (!run_options.pictures && !options.recording.empty()) print_line("{}", options.recording);
         return;
     }
-    const Destination to(options.out, scenes.size(),
-                         run_options.pictures ? fmt::format(".{}", name_of(video.format)) : ".csv");
     run_options.out = to.folder();
     run_options.to_stream =
         options.out == "-" && run_options.pictures && !run_options.merge && video.format_row().is_streamed();
@@ -211,6 +211,7 @@ void add_render(CLI::App& app) {
         "  doppel render fan --size 3840x2160 --shard 3/8        # on one of eight machines; then --merge\n"
         "  doppel render calm --format webm -o - | mpv -");
     add_run_options(command, *options, "Threads that compress PNGs; default: one a core; same bytes for any N");
+    command.get_option("--out")->description("Results: DIR/NAME/; -: standard output; mp4, webm, y4m, rgb while drawn");
     add_value(command, "--frames", options->frames, "A:B",
               "Only the frames A to B-1 of the motion, with the pixels of the whole film");
     add_value(command, "--from", options->from, "SECONDS", "Start time, s");
@@ -267,14 +268,14 @@ void add_still(CLI::App& app) {
         more.push_back({"video.format", "\"png\"", "--format of still, which draws PNG"});
         const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
+        const Destination to(*options, scenes.size(), "." + options->format);
         for (const auto& scene : scenes)
             if (const auto name = still_name(scene, at, format); options->list_outputs)
                 list_outputs(*options, scene.preset.name, {name});
         if (options->list_outputs) return;
-        const Destination to(options->out, scenes.size(), "." + options->format);
         const RunOptions run{.out = to.folder(),
                              .gl = value_named<Gl>(options->gl),
-                             .replacing = {inputs_of(options->presets, scenes), options->force}};
+                             .replacing = {inputs_of(options->presets, scenes), options->force, options->out == "-"}};
         const auto& stop = watch_interrupts();
         work_on_all(scenes, options->progress, "samples", to.streamed(), [&](const Scene& scene, auto& report) {
             report.done(draw_still(scene, at, format, run, stop, std::ref(report)));

@@ -115,8 +115,7 @@ std::vector<std::string> write_picture(const FigurePreset& figure, const KnownTr
     } else {
         const auto drawn = compose_figure(figure, trials);
         const double width_pt = layout_of(figure.chart).width_pt;
-        const auto metadata =
-            metadata_of(figure.title, figure.name, fmt::format("how it was made is in {}.json", figure.name));
+        const auto metadata = metadata_of(figure.title, figure.name, files.made_words(figure.name));
         if (format == PictureFormat::png)
             write_png(place, picture_of(drawn, stop), {.metadata = metadata, .dpi = 72 * drawn.size.width / width_pt},
                       stop);
@@ -204,7 +203,8 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
             !others.empty() && type_of(folder / resume_name(header)) == fs::file_type::not_found)
             report.note(k, fmt::format("ignoring {}{}, of another preset or version", others.front().string(),
                                        others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
-        computations.push_back(std::make_unique<Computation>(figure, header, folder, report, k));
+        const auto kept = files[k]->is_temporary() ? std::nullopt : std::optional(folder);
+        computations.push_back(std::make_unique<Computation>(figure, header, kept, report, k));
         auto& of_its_sort = figure.experiment->measures_time() ? timed_groups : groups;
         for (std::size_t group = 0; group < computations[k]->groups(); ++group) of_its_sort.emplace_back(k, group);
     }

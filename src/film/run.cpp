@@ -63,14 +63,15 @@ std::string failed_name(const std::string& name, const std::string& ending) {
     return name + ".failed" + ending;
 }
 
-/// Keeps the samples before the failure in files of their own, with a manifest. Throws an error with their path and the
-/// step size that would have worked.
+/// Keeps the samples before the failure in files of their own, with a manifest, unless the folder is temporary. Throws
+/// an error with their path and the step size that would have worked.
 [[noreturn]] void keep_failed(const Scene& scene, const RunFailure& failure, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
     const auto advice = sufficient_step(scene, failure, stop);
     throw_if_set(stop);
     record.failure = fmt::format("{}; {}", failure.what(), advice);
+    if (parts.is_temporary()) throw method_failed("{}", record.failure);
     record.last_sample = failure.sample - 1;
     add_warnings(scene, record, stop);
     const auto csv = failed_name(name, ".csv");

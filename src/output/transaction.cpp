@@ -244,7 +244,7 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
         return last();
     } catch (const std::exception& error) {
         const auto* ours = dynamic_cast<const Error*>(&error);
-        if (ours && ours->code() == ExitCode::interrupted) throw;
+        if (is_temporary() || (ours && ours->code() == ExitCode::interrupted)) throw;
         std::string kept;
         for (const Part& part : parts_)
             if (part.finished)
@@ -253,6 +253,11 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
         keeps_hidden_ = keeps_hidden_ || !kept.empty();
         throw Error(ours ? ours->code() : ExitCode::io_failed, error.what() + kept);
     }
+}
+
+std::string Transaction::made_words(const std::string& name) const {
+    return is_temporary() ? "written as a stream, without a manifest"
+                          : fmt::format("how it was made is in {}.json", name);
 }
 
 void Transaction::keep_only(const std::string& name, const std::string& new_name) {

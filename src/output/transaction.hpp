@@ -10,10 +10,12 @@
 
 namespace doppel {
 
-/// What a run may replace, besides unchanged files that Doppel made for the same kind of run.
+/// What a run may replace, besides unchanged files that Doppel made for the same kind of run; and whether what it
+/// writes stays.
 struct Replacing {
     std::vector<std::filesystem::path> inputs = {};  // files that the run reads: never replaced
-    bool force = false;  // also replace Doppel's files that were changed since, or belong to another kind of run
+    bool force = false;         // also replace Doppel's files that were changed since, or belong to another kind of run
+    bool is_temporary = false;  // the folder is removed after the run: nothing in it is kept or named
 };
 
 /// The files of one run in one folder, which appear complete and together, or not at all. They are written to a hidden
@@ -64,6 +66,9 @@ public:
     std::vector<std::filesystem::path> publish();
 
     const std::filesystem::path& folder() const { return folder_; }
+    bool is_temporary() const { return replacing_.is_temporary; }
+    /// How the files of the run `name` were made, for their metadata.
+    std::string made_words(const std::string& name) const;
 
 private:
     struct Part {

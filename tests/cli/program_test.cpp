@@ -190,7 +190,8 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"figure", "flip-map", "--tiles", "-o", "-"}, "standard output takes one picture, and no tiles"},
         {{"figure", "flip-map", "--merge", "-o", "-"}, "no merge of parts in a folder"},
         {{"figure", "flip-map", "--shard", "1/2", "-o", "-"}, "no part for a merge"},
-        {{"fit", "swing.csv", "-o", "-"}, "a fit is several files"},
+        {{"fit", "swing.csv", "-o", "-"}, "--out: cannot be standard output here; give a name"},
+        {{"simulate", "calm", "-o", "a", "--out", "b"}, "--out is given 2 times: a, b; give it once; see"},
     };
     for (const auto& [arguments, words] : cases) {
         const auto result = doppel(folder, arguments);
