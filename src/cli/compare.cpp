@@ -337,10 +337,12 @@ bool compare(const CompareOptions& options) {
     } else if (are_folders) {
         comparison.pictures = pairs_of(options.expected, options.actual, false);
     } else {
-        comparison.pictures = {{.name = fs::path(options.actual).filename(),
-                                .expected = options.expected,
-                                .actual = options.actual,
-                                .goldens = {options.expected}}};
+        const fs::path expected = options.expected, actual = options.actual, name = expected.filename();
+        auto& pair = comparison.pictures.emplace_back(
+            ComparedPicture{.name = actual.filename(), .expected = expected, .actual = actual, .goldens = {expected}});
+        const auto goldens = goldens_in(expected.parent_path(), {name})[name];
+        for (const auto& variant : goldens)
+            if (variant.filename() != name && !fs::equivalent(variant, actual)) pair.goldens.push_back(variant);
     }
     const auto first_fault = compare_all(comparison, task, are_folders);
     if (junit) write_junit(junit->place(), comparison);
@@ -369,9 +371,9 @@ void add_compare(CLI::App& app, int& exit_code) {
     auto& command = *app.add_subcommand("compare", "Compares PNGs, or draws and compares them, with the golden policy");
     command.footer(
         "Exit code 0: the same within the golden policy (a few pixels may differ a little, as between\n"
-        "drivers); 1: they differ, and a picture of the difference was written to DIR/compare/, with\n"
-        "--render to DIR/NAME/compare/ beside the drawn picture. A picture NAME.png may have variants,\n"
-        "NAME.VARIANT.png: it passes if it matches one of them.\n"
+        "drivers); 1: they differ, and a picture of the difference (but of two sizes) was written to\n"
+        "DIR/compare/, with --render to DIR/NAME/compare/ beside the drawn picture. A picture NAME.png\n"
+        "may have variants, NAME.VARIANT.png: it passes if it matches one of them.\n"
         "Examples:\n"
         "  doppel compare golden out/calm/frames\n"
         "  doppel compare --render calm golden/calm --frames 0:3 --update    makes the goldens\n"

@@ -35,6 +35,10 @@ TEST(Compare, PassesDiffersAndShowsTheDifference) {
     EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames/000000.png", "two/calm/frames/000000.png"}).code, 0);
     EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames", "two/calm/frames/000000.png"}).code, 2);
 
+    fs::copy(folder / "two/calm/frames/000001.png", folder / "one/calm/frames/000001.egl.png");
+    for (const char* actual : {"two/calm/frames/000001.png", "one/calm/frames/000001.egl.png"})  // one is a variant
+        EXPECT_EQ(doppel(folder, {"compare", "one/calm/frames/000001.png", actual}).code, actual[0] == 't' ? 0 : 1);
+
     std::ofstream(folder / "broken.png") << "no picture";
     EXPECT_EQ(doppel(folder, {"compare", "broken.png", "two/calm/frames/000000.png"}).code, 4);
 }
