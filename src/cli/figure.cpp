@@ -31,11 +31,9 @@ std::vector<Override> overrides(const FigureCommandOptions& options) {
 /// Tiles have one pixel a cell: throws Error (exit 2) where the command line gives a picture its format or size.
 void refuse_picture_keys(const std::vector<Override>& given) {
     constexpr std::array<std::string_view, 3> of_page{"chart.theme", "chart.title", "chart.captions"};
-    for (const auto& [key, value, origin] : given) {
-        const bool is_png = key == "chart.format" && value.find("png") != std::string::npos;
-        if (key.starts_with("chart.") && !is_png && std::ranges::count(of_page, key) == 0)
+    for (const auto& [key, value, origin] : given)
+        if (key.starts_with("chart.") && std::ranges::count(of_page, key) == 0)
             throw bad_input("{}: is for a picture; --tiles writes PNGs of one pixel a cell", origin);
-    }
 }
 
 /// "all" means every built-in figure.

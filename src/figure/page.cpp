@@ -139,8 +139,6 @@ void require_map(const FigurePreset& figure) {
     const auto map = figure.experiment->map();
     if (!map || map->panels > 1)
         throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
-    if (figure.chart.format == PictureFormat::html)
-        throw bad_input("{0}: --tiles writes {0}.html itself; the format must be png, pdf or svg", figure.name);
 }
 
 Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,

@@ -183,7 +183,8 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         // only one file can go to standard output
         {{"simulate", "calm", "triple", "-o", "-"}, "standard output takes one file; give one preset, not 2"},
         {{"render", "calm", "--format", "png", "-o", "-"}, "a PNG sequence is many files; give --format apng"},
-        {{"figure", "flip-map", "--tiles", "--format", "html"}, "the format must be png, pdf or svg"},
+        {{"figure", "flip-map", "--tiles", "--format", "html"}, "--format html: is for a picture; --tiles writes PNGs"},
+        {{"figure", "flip-map", "--tiles", "--format", "png"}, "--format png: is for a picture; --tiles writes PNGs"},
         {{"figure", "flip-map", "--tiles", "--format", "pdf"}, "--format pdf: is for a picture; --tiles writes PNGs"},
         {{"figure", "flip-map", "--tiles", "--size", "800x450", "--list-outputs"}, "--size 800x450: is for a picture"},
         {{"figure", "flip-map", "--tiles", "--set", "chart.width_cm=8"}, "--set chart.width_cm: is for a picture"},

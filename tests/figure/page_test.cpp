@@ -148,7 +148,6 @@ TEST(FigurePage, IsOneFileBesideTableAndManifest) {
     EXPECT_TRUE(std::filesystem::exists(out / "x/x.csv"));
     EXPECT_TRUE(std::filesystem::exists(out / "x/x.json"));
     EXPECT_FALSE(std::filesystem::exists(out / "x/x.png"));
-    expect_error(ExitCode::bad_input, {"--tiles writes x.html itself"}, [&] { require_map(figure); });
     figure = figure_from(map_text, {"chart.format=\"html\"", "grid.x.points=2000", "grid.y.points=600"});
     expect_error(ExitCode::bad_input, {"at most 1 000 000 cells; this one has 1 200 000"},
                  [&] { run_figure(figure, {.out = out}); });
