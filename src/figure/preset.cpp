@@ -147,6 +147,8 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, K
     figure.kind = read_kind(scene);
     if (errors && errors->concern("scene"))
         errors->throw_if_any();  // without the kind it is unknown which tables are allowed
+    if (figure.kind == pair_kind && scene.from_command_line("kind"))
+        throw scene.error("kind", "must be that of a figure; it is \"{}\"", pair_kind);
     if (figure.kind == pair_kind)
         throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
     auto chart = document.table(top, "chart");

@@ -114,6 +114,11 @@ FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples) 
     return frames;
 }
 
+void refuse_rate(const VideoSpec& spec, const TomlReader& video, const std::string& words) {
+    if (spec.fps) throw video.error("fps", "{}", words);
+    throw video.error("speed", "times sample_hz, the frames a second without fps, {}; set fps", words);
+}
+
 void check_frames(Preset& preset, const TomlReader& video) {
     auto& spec = preset.video;
     if (spec.speed.changes_over_time()) check_changes(preset, video);
@@ -127,8 +132,9 @@ void check_frames(Preset& preset, const TomlReader& video) {
     constexpr double max_fps = 1000;
     constexpr long max_digits = 1'000'000;
     if (!fps || fps->value() > max_fps || fps->numerator > max_digits || fps->denominator > max_digits)
-        throw video.error("fps", "must be at most {} and a fraction of whole numbers up to {}; it is {}", max_fps,
-                          max_digits, fps ? fps->text() : "beyond them");
+        refuse_rate(spec, video,
+                    fmt::format("must be at most {} and a fraction of whole numbers up to {}; it is {}", max_fps,
+                                max_digits, fps ? fps->text() : "beyond them"));
     const double end = preset.duration_s.value(), samples = end * preset.sample_hz.value();
     const double seconds = spec.speed.changes_over_time() ? film_time(spec, end) : end / spec.speed.constant.value();
     const double frames = seconds * fps->value(), max_frames = std::max(1e7, samples);

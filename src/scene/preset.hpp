@@ -530,5 +530,7 @@ void check_clock(const Preset& preset, const TomlReader& scene);
 /// Checks the number of frames. Rounded rates become exact ones: 23.976 becomes 24000/1001. A GIF, and a film whose
 /// speed changes, get a rate if none is given.
 void check_frames(Preset& preset, const TomlReader& video);
+/// Throws the error that the frame rate must be as `words` say: of fps, or else of speed.
+[[noreturn]] void refuse_rate(const VideoSpec& spec, const TomlReader& video, const std::string& words);
 
 }  // namespace doppel

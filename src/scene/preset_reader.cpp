@@ -236,6 +236,8 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     auto scene = document.table(top, "scene");
     const auto kind = read_kind(scene);
     if (errors.concern("scene")) errors.throw_if_any();  // without the kind it is unknown which tables are allowed
+    if (kind != pair_kind && scene.from_command_line("kind"))
+        throw scene.error("kind", "must be \"{}\" for a film; it is \"{}\"", pair_kind, kind);
     if (kind != pair_kind)
         throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
     film_fields(scene, preset);
@@ -250,7 +252,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     check_clock(preset, scene);
     check_frames(preset, video);
     const auto rate = preset.video.fps ? preset.video.fps : product(preset.sample_hz, preset.video.speed.constant);
-    check_format(video, rate_error(preset.video.options(*rate)));
+    if (const auto error = rate_error(preset.video.options(*rate))) refuse_rate(preset.video, video, error->words);
     check_single(preset, top, video);
     check_view(preset, video, scene);
     check_layout(preset, video);

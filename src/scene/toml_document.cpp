@@ -178,6 +178,8 @@ toml::table& table_of(toml::table& root, const Override& change, std::string& ke
         }
         if (!table->contains(head))
             table->insert(head, toml::parse("", change.origin));  // parsed, so that it has its origin
+        if (table->get(head)->is_array_of_tables())
+            throw bad_input("{}: needs the name of an entry of [[{}]]: {}.NAME.{}", change.origin, way, way, key);
         table = table->get_as<toml::table>(head);
         if (!table) throw bad_input("{}: \"{}\" is not a table", change.origin, head);
     }

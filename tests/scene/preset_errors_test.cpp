@@ -54,6 +54,13 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
     EXPECT_EQ(error({"video.foo.bar=3"}).rfind(R"(--set video.foo.bar: [video] has no "foo"; )", 0), 0u);
     EXPECT_EQ(error({"system.links=3", "system={}"}),
               "--set system: would remove --set system.links, which was given before; give the table first");
+    EXPECT_EQ(error({"scene.kind=grid"}), R"(--set scene.kind: [scene] kind must be "pair" for a film; it is "grid")");
+    EXPECT_EQ(error({"video.speed=1000"}),
+              "--set video.speed: [video] speed times sample_hz, the frames a second without fps, must be at most 1000 "
+              "and a fraction of whole numbers up to 1000000; it is 120000; set fps");
+    EXPECT_EQ(error_of([] { scene_of("driven", {"system.torque.amplitude_N_m=2"}); }).second,
+              "--set system.torque.amplitude_N_m: needs the name of an entry of [[system.torque]]: "
+              "system.torque.NAME.amplitude_N_m");
     EXPECT_EQ(error({"title.x=1"}), R"(--set title.x: "title" is not a table)");
     EXPECT_NE(error({"video.theme=2dark"}).find("a string needs quotes: 'video.theme=\"2dark\"'"), std::string::npos);
     EXPECT_EQ(error({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");

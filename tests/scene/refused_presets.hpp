@@ -135,10 +135,10 @@ inline const std::vector<RefusedPreset> refused_rates{
     RefusedPreset{
         "[scene]\nkind = \"trio\"",
         R"(presets/x.toml:2:1: [scene] kind must be "pair", "grid", "series", "section" or "work-precision"; it is "trio"; did you mean "grid"?)"},
-    RefusedPreset{
-        "[video]\nspeed = 30",
-        "presets/x.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "
-        "3600"}};
+    RefusedPreset{"[video]\nspeed = 30",
+                  "presets/x.toml:2:1: [video] speed times sample_hz, the frames a second without fps, must be at most "
+                  "1000 and a "
+                  "fraction of whole numbers up to 1000000; it is 3600; set fps"}};
 
 inline const std::vector<RefusedPreset> refused_video{
     RefusedPreset{"[video]\nsize = [641, 360]",

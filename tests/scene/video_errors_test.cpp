@@ -114,8 +114,8 @@ TEST(VideoErrors, FractionsWhoseProductsWouldLeave64BitsAreRefused) {
         "--set video.speed: [video] speed and fps must have simpler ratios to scene.sample_hz; it is 999961/999959");
     EXPECT_EQ(
         message({"video.speed=1e-9"}),
-        "presets/butterfly.toml: [video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is "
-        "3/25000000");
+        "--set video.speed: [video] speed times sample_hz, the frames a second without fps, must be at most 1000 and a "
+        "fraction of whole numbers up to 1000000; it is 3/25000000; set fps");
     EXPECT_EQ(message({"video.fps=1000", "video.speed=\"1/1000\""}),
               "--set video.speed: [video] speed makes a film of 3e+07 frames; at most 10000000 are possible");
     EXPECT_EQ(message({"video.poster_s=30.5"}),
