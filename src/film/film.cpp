@@ -60,7 +60,8 @@ FrameRange drawn_frames(const Scene& scene, const RunOptions& options, long firs
 }
 
 double card_opacity(long k, long count, double fps, bool fades_in) {
-    const double fade = std::max(1.0, std::min(0.5 * fps, static_cast<double>(count) / 2));  // frames
+    const auto frames = static_cast<double>(count);
+    const double fade = std::min(std::max(1.0, std::min(0.5 * fps, frames / 2)), frames - 1);  // one frame is whole
     const double left = static_cast<double>(fades_in ? k + 1 : count - k);
     const double share = std::clamp(left / (fade + 1), 0.0, 1.0);
     return share * share * (3 - 2 * share);

@@ -120,7 +120,7 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
                          const std::atomic<bool>& stop) {
     const auto [across, down] = *scene.preset.video.contact_sheet;
     std::vector<Moment> moments;  // frames evenly spaced over the film, with both ends
-    const long count = long{across} * down, high = last - 1;
+    const long count = std::min(long{across} * down, last - first), high = last - 1;  // no frame twice
     for (long k = 0; k < count; ++k)
         moments.push_back(scene.frames.at(count == 1 ? high
                                                      : first + std::lround(static_cast<double>((high - first) * k) /
@@ -133,8 +133,8 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
     recording.play([&](const Snapshot& snapshot) {
         throw_if_set(stop);
         composer.add(snapshot);
-        if (const auto times = std::ranges::count(moments, snapshot.pair.moment()); times > 0)
-            pictures.insert(pictures.end(), static_cast<std::size_t>(times), tiles.draw(composer.frame(), stop));
+        if (std::ranges::find(moments, snapshot.pair.moment()) != moments.end())
+            pictures.push_back(tiles.draw(composer.frame(), stop));
     });
     const auto below = contact_sheet(pictures, across, 8, composer.page_color());
     const float unit = static_cast<float>(below.size.width) / 1920;
