@@ -51,7 +51,7 @@ public:
         term(0).rate = y.tail(links_);
         term(1).y = -term(0).rate;
         for (int k = 0; k < order_; ++k) next(k);
-        amount_ = largest(0) + std::sqrt(largest(1));
+        amount_ = static_cast<double>(largest(0)) + std::sqrt(static_cast<double>(largest(1)));
     }
 
     void move(const Scalar& h, State& change) override {
@@ -71,7 +71,12 @@ public:
         }
     }
 
-    double size(int k) const override { return amount_ == 0 ? 0 : largest(k) / amount_; }
+    double size(int k) const override { return amount_ == 0 ? 0 : static_cast<double>(largest(k)) / amount_; }
+    double log2_tolerance_ratio(double tolerance, int k) const override {
+        const double ratio = Series<Scalar>::log2_tolerance_ratio(tolerance, k);
+        if (std::is_same_v<Scalar, double> || !std::isnan(ratio)) return ratio;
+        return Series<Scalar>::log2_tolerance_ratio(tolerance, amount_, largest(k));
+    }
 
     double rate(int k, Eigen::Index link) const override { return static_cast<double>(term(k).rate[link]); }
 
@@ -153,10 +158,10 @@ private:
         store(-across, term(k).across);
     }
 
-    double largest(int k) const {
-        double maximum = 0;
-        for (Eigen::Index i = 0; i < links_; ++i)
-            maximum = greater(maximum, std::abs(static_cast<double>(term(k).rate[i])));
+    Scalar largest(int k) const {
+        using std::abs;
+        Scalar maximum(0);
+        for (Eigen::Index i = 0; i < links_; ++i) maximum = greater(maximum, Scalar(abs(term(k).rate[i])));
         return maximum;
     }
 

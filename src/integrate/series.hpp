@@ -43,6 +43,18 @@ public:
     virtual double first_event(double h) const { return h; }
     /// Coefficient k of the rate of coordinate i, in double.
     virtual double rate(int k, Eigen::Index i) const = 0;
+
+protected:
+    /// log2(tolerance · scale / largest), also if `largest` exceeds double: in quad, coefficients like 10^(14 k) are
+    /// usual soon after rest with quadratic drag, or with a very light mass.
+    static double log2_tolerance_ratio(double tolerance, double scale, Scalar largest) {
+        if (!(largest - largest == Scalar(0))) return std::numeric_limits<double>::quiet_NaN();  // infinite, or NaN
+        if (scale == 0) return std::numeric_limits<double>::infinity();
+        constexpr int shift = 512;
+        int shifts = 0;
+        for (; largest > Scalar(0x1p512); ++shifts) largest *= Scalar(0x1p-512);
+        return rough_log2(tolerance) - (rough_log2(static_cast<double>(largest) / scale) + shift * shifts);
+    }
 };
 
 /// The series of a model up to an order. All memory is allocated here, or at the first expansion. The series of rigid

@@ -63,16 +63,10 @@ public:
     double longest_step() const override { return scale_.longest; }
     double rate(int k, Eigen::Index i) const override { return static_cast<double>(series(scale_.rates + i)[k]); }
 
-    /// For quads also if the size exceeds double: soon after rest, quadratic drag has coefficients like 10^(14 k).
     double log2_tolerance_ratio(double tolerance, int k) const override {
-        if constexpr (std::is_same_v<Scalar, double>) return Series<Scalar>::log2_tolerance_ratio(tolerance, k);
-        Scalar maximum = largest_of(k);
-        if (!(maximum - maximum == Scalar(0))) return std::numeric_limits<double>::quiet_NaN();  // infinite, or NaN
-        if (amount_ == 0) return std::numeric_limits<double>::infinity();
-        constexpr int shift = 512;
-        int shifts = 0;
-        for (; maximum > Scalar(0x1p512); ++shifts) maximum *= Scalar(0x1p-512);
-        return rough_log2(tolerance) - (rough_log2(static_cast<double>(maximum) / amount_) + shift * shifts);
+        using Base = Series<Scalar>;
+        if constexpr (std::is_same_v<Scalar, double>) return Base::log2_tolerance_ratio(tolerance, k);
+        return Base::log2_tolerance_ratio(tolerance, amount_, largest_of(k));
     }
 
     /// Just after the first change of a comparison, s; at most `h`.

@@ -189,6 +189,24 @@ TEST(Taylor, KeepsTheDigitsOfALightMass) {
     }
 }
 
+// In the limit of a weightless upper mass, the lower one falls freely, and bounces elastically where the rods are in line.
+TEST(Taylor, FollowsAFallingMassThroughABounceInQuad) {
+    constexpr double g = 9.8, x = 0.3, y = -0.4;  // m: the place of the lower mass
+    const double reach = std::hypot(x, y), bend = std::acos(reach / 2), middle = std::atan2(x, -y);
+    const double fallen = std::sqrt((std::sqrt(4 - x * x) + y) * 2 / g), left = 1 - fallen;  // s
+    const double down = y - g * fallen * fallen / 2, into = -g * fallen * down / 4;          // velocity · place / 4
+    for (const double mass : {1e-9, 1e-14}) {
+        auto spec = stepping(Model::angles, "taylor",
+                             Pendulum<double>{{mass, 1}, {1, 1}, {middle + bend, middle - bend}, {0, 0}, g}, 1);
+        spec.sample_interval = {1, 1};
+        spec.tolerance = parse_quad("1e-24");
+        spec.precision = Precision::in_quad;
+        const auto end = Course(spec).advance(1).bobs[1];
+        EXPECT_NEAR(end.x, x - 2 * into * x * left, 1e2 * std::sqrt(mass)) << mass;
+        EXPECT_NEAR(end.y, down + (-g * fallen - 2 * into * down) * left - g * left * left / 2, 1e2 * std::sqrt(mass));
+    }
+}
+
 using OnMechanism = Mechanism<Quad>;
 
 template <class S>
