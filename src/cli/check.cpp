@@ -44,7 +44,8 @@ std::string counted(double number) {
 void print_side(char name, const Side& side) {
     if (side.replay) return print_line("  {}      {}", name, side.why);
     const auto steps = side.method.adaptive ? std::string("its own steps")
-                                            : fmt::format("{} steps a sample", grouped(side.motion.steps_per_sample));
+                                            : fmt::format("{} step{} a sample", grouped(side.motion.steps_per_sample),
+                                                          side.motion.steps_per_sample == 1 ? "" : "s");
     print_line("  {}      {}, {}, {}, {}", name, name_of(side.motion.model), side.method.title, step_control_text(side),
                steps);
     print_line("         {}: {}", name_of(side.motion.model), side.why);
@@ -60,17 +61,22 @@ void print_forecast(const Scene& scene, const Side& side, const Forecast& seen) 
     const auto precision = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto print_indented = [](const std::string& words) { print_line("         {}", words); };
     if (side.choice && side.choice->horizon < scene.samples)
-        print_indented(fmt::format("error below {} {} up to {} s; no setting keeps it much longer in {}",
-                                   scientific(side.choice->accuracy), unit,
-                                   with_digits(scene.time(side.choice->horizon), 3), precision));
+        print_indented(fmt::format("error below {} {} up to {} s; {}", scientific(side.choice->accuracy), unit,
+                                   with_digits(scene.time(side.choice->horizon), 3),
+                                   side.choice->reference->failure.empty()
+                                       ? fmt::format("no setting keeps it much longer in {}", precision)
+                                       : "not known beyond"));
     else if (side.choice)
         print_indented(fmt::format("error at most {} {} to the end; verified by {}",
                                    scientific(side.choice->estimated_error), unit,
                                    side.choice->reference->description()));
-    else if (seen.error_s < scene.time(scene.samples))
+    else if (seen.is_off())
         print_indented(error_words(side, seen.error_s));
     else
-        print_indented(fmt::format("error about {} {} at the end", scientific(seen.error), unit));
+        print_indented(fmt::format("error at most about {} {} up to {}", scientific(seen.error), unit,
+                                   seen.error_s < scene.time(scene.samples)
+                                       ? with_digits(seen.error_s, 3) + " s; not known beyond"
+                                       : "the end"));
     if (seen.exponent) {
         const auto& [value, uncertainty, is_settled] = *seen.exponent;
         const double tenfold = std::log(10) / value;
@@ -247,9 +253,9 @@ void print(const SceneCheck& check) {
     if (check.render) print_needs(*check.render);
 }
 
-Json forecast_json(const Scene& scene, const Side& side, const Forecast& seen) {
+Json forecast_json(const Side& side, const Forecast& seen) {
     Json json{{"error", seen.error}, {"unit", side.has_angles ? "rad" : "its size"}, {"at_s", seen.error_s}};
-    json["off_from_s"] = seen.error_s < scene.time(scene.samples) ? Json(seen.error_s) : Json(nullptr);
+    json["off_from_s"] = seen.is_off() ? Json(seen.error_s) : Json(nullptr);
     if (const auto& exponent = seen.exponent) {
         json["motion"] = seen.kind == Forecast::Kind::regular   ? "regular"
                          : seen.kind == Forecast::Kind::chaotic ? "chaotic"
@@ -271,9 +277,8 @@ Json side_json(const SceneCheck& check, char letter, Json& warnings) {
     json["precision"] = side.motion.precision == Precision::in_quad ? "quad" : "double";
     const auto& [forecast, alternatives] = check.sides.at(letter);
     const auto warn = [&](const std::string& words) { warnings.push_back(fmt::format("side {}: {}", letter, words)); };
-    json["forecast"] = forecast ? forecast_json(scene, side, *forecast) : Json(nullptr);
-    if (forecast && !side.choice && forecast->error_s < scene.time(scene.samples))
-        warn(error_words(side, forecast->error_s));
+    json["forecast"] = forecast ? forecast_json(side, *forecast) : Json(nullptr);
+    if (forecast && !side.choice && forecast->is_off()) warn(error_words(side, forecast->error_s));
     if (forecast && forecast->exponent && forecast->kind == Forecast::Kind::chaotic && !forecast->exponent->is_settled)
         warn(unsettled_words);
     if (side.choice) json["other_accuracies"] = alternatives;

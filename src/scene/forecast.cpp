@@ -76,6 +76,10 @@ std::optional<Forecast::Limit> limit_of(const Ends& ends, const Scene& scene, co
 
 }  // namespace
 
+bool Forecast::is_off() const {
+    return error > diverged_error;
+}
+
 Forecast forecast_of(const Scene& scene, const Side& side, const std::atomic<bool>& stop) {
     const auto known = side.choice ? side.choice->reference : nullptr;
     const auto& reference =

@@ -20,11 +20,13 @@ struct Forecast {
 
     enum class Kind { regular, chaotic, unstable };  // unstable: released at an unstable equilibrium; not chaotic
 
-    double error;                           // at `error_s`
-    double error_s;                         // the end, or the time at which the error reaches half a radian
+    double error;                           // the largest up to `error_s`
+    double error_s;                         // the end; or where the error exceeds half a radian, or is not known beyond
     std::optional<Exponent> exponent = {};  // for chains that are not too long
     Kind kind = Kind::regular;              // if there is an exponent
     std::optional<Limit> limit = {};        // may be after the end
+
+    bool is_off() const;  // the error exceeds half a radian at `error_s`
 };
 
 /// From a run compared with the reference (analysis/reference_trajectory.hpp), and from runs by Taylor series at the

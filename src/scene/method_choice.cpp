@@ -190,22 +190,31 @@ const ErrorHistory& MethodChooser::tried(SideRequirement& side, const StepLevels
     return side.tried.emplace(setting, error_history(motion, *side.reference, max_error, stop)).first->second;
 }
 
-Error MethodChooser::out_of_reach(double accuracy, const ErrorHistory& history, long horizon,
-                                  const SideRequirement& side) const {
+Error MethodChooser::out_of_reach(double accuracy, long horizon, SideRequirement& side,
+                                  const std::vector<StepLevels>& methods, const std::atomic<bool>& stop) const {
+    const auto& reference = *side.reference;
     const auto seconds = [&](long sample) { return static_cast<double>(sample) / preset_.sample_hz.value(); };
-    if (!history.failure.empty())
-        return method_failed("the motion fails within {} s: {}",
-                             two_digits(seconds(static_cast<long>(history.error.size()))), history.failure);
-    const auto within = [&](long sample) { return history.at(static_cast<std::size_t>(sample)) / accuracy_margin; };
+    const auto known = static_cast<long>(reference.seen.size());
+    if (!reference.failure.empty() && known <= side.swing_samples)
+        return method_failed(
+            "no accuracy can be verified, because the reference fails within {} s: {}; give integrator and tolerance",
+            two_digits(seconds(known)), reference.failure);
+    const auto within = [&](long sample) {  // the least error of all methods
+        double error = std::numeric_limits<double>::infinity();
+        for (const auto& method : methods)
+            error = std::min(error, tried(side, method, method.finest, stop).at(static_cast<std::size_t>(sample)));
+        return error / accuracy_margin;
+    };
     const double for_swing = within(side.swing_samples), to_end = within(samples_);
     const auto up = [](double value) {
         const double digit = std::pow(10, std::floor(std::log10(value)));
         return fmt::format("{:.0e}", std::ceil(value / digit) * digit);
     };
     const bool quad = in_quad(side.spec);
-    return bad_input("accuracy = {:.3g} rad is beyond {} here: it would be kept for {} s; possible: {} for {} s{}{}",
-                     accuracy, quad ? "quad" : "double", two_digits(std::max(0.0, seconds(horizon))),
-                     std::isfinite(for_swing) ? up(for_swing) : "none", two_digits(seconds(side.swing_samples)),
+    return bad_input("accuracy = {:.3g} {} is beyond {} here: it would be kept for {} s; possible: {} for {} s{}{}",
+                     accuracy, reference.in_angles ? "rad" : "of its size", quad ? "quad" : "double",
+                     two_digits(std::max(0.0, seconds(horizon))), std::isfinite(for_swing) ? up(for_swing) : "none",
+                     two_digits(seconds(side.swing_samples)),
                      to_end < max_error ? fmt::format(" and {} to the end", up(to_end)) : "",
                      quad ? "" : "; precision = \"quad\" allows more");
 }
@@ -242,8 +251,7 @@ std::array<std::optional<Side>, 2> MethodChooser::choose(double factor, const st
                 const long furthest = horizon(sides[i], best, best.finest);
                 if (furthest < sides[i].swing_samples)
                     for_side(preset_, sides[i].names[0], [&] {
-                        throw out_of_reach(factor * sides[i].accuracy, tried(sides[i], best, best.finest, stop),
-                                           furthest, sides[i]);
+                        throw out_of_reach(factor * sides[i].accuracy, furthest, sides[i], methods, stop);
                     });
                 if (furthest < samples_)
                     goals[i] =

@@ -68,7 +68,8 @@ private:
     const ErrorHistory& tried(SideRequirement& side, const StepLevels& method, int level,
                               const std::atomic<bool>& stop) const;
     double work(SideRequirement& side, const StepLevels& method, int level, const std::atomic<bool>& stop) const;
-    Error out_of_reach(double accuracy, const ErrorHistory& history, long horizon, const SideRequirement& side) const;
+    Error out_of_reach(double accuracy, long horizon, SideRequirement& side, const std::vector<StepLevels>& methods,
+                       const std::atomic<bool>& stop) const;
 
     Preset preset_;
     long samples_;

@@ -325,7 +325,24 @@ TEST(Choice, NamesAPossibleAccuracy) {
     EXPECT_EQ(error_of(gentle + to_end.substr(start, end - start)), "") << to_end;
     // a spring whose ends meet has no direction: the method fails, whatever the accuracy
     EXPECT_NE(error_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
-                  .find("fails within 0.0083 s: taylor:"),
+                  .find("the reference fails within 0.0083 s: taylor:"),
+              std::string::npos);
+    // so does the reference where the series of a light mass exceeds double
+    const std::string bounce = "[scene]\nduration_s = 2\n[system]\naccuracy = 1e-2\nangle_deg = [100, -60]\nmass_kg = ";
+    EXPECT_EQ(error_of(bounce + "[1e-9, 1]"), "");
+    EXPECT_NE(error_of(bounce + "[1e-10, 1]").find("no accuracy can be verified, because the reference fails"),
+              std::string::npos);
+    // the least error of all methods is possible, whatever is asked
+    const auto possible = [&](const char* asked) {
+        const auto words = error_of(bounce + "[1e-5, 1]\nmodel = \"mechanism\"", {parse_set(asked)});
+        return words.substr(std::min(words.find("possible: "), words.size()));
+    };
+    EXPECT_EQ(possible("system.accuracy=1e-11"), possible("system.accuracy=1e-13"));
+    EXPECT_EQ(possible("system.accuracy=1e-11").find("possible: 5e-11 for 2 s"), 0u);
+    const std::string particle = "[[system.particle]]\nname = \"p\"\nmass_kg = 1\nposition_m = [1, 0]\n";
+    EXPECT_NE(error_of("[system]\naccuracy = 1e-17\n" + particle +
+                       "[[system.constraint]]\nkind = \"rod\"\nfrom = \"p\"\nto = [0, 0]")
+                  .find("accuracy = 1e-17 of its size is beyond double"),
               std::string::npos);
     EXPECT_EQ(error_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
 }
