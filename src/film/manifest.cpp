@@ -33,8 +33,8 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     const auto of_energy = [&](double worst) { return side.has_energy_error ? Json(worst) : Json(nullptr); };
     json["worst_energy_error"] = of_energy(record.energy_error);
     json["worst_energy_change_J"] = of_energy(record.energy_change);
-    json["energy_range_J"] = scene.energy_range();
-    json["worst_energy_error_of_range"] = of_energy(record.energy_change / scene.energy_range());
+    json["energy_range_J"] = side.energy_unit;
+    json["worst_energy_error_of_range"] = of_energy(record.energy_change / side.energy_unit);
     json["worst_length_error_m"] = record.length_error;
     return json;
 }
@@ -81,7 +81,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
     constexpr double maximum = 0.01, min_patience_s = 1, max_patience_s = 2;
     for (const char name : scene.letters()) {
         const auto& side = scene.side(name);
-        const double error = (name == 'a' ? record.motion.a : record.motion.b).energy_change / scene.energy_range();
+        const double error = (name == 'a' ? record.motion.a : record.motion.b).energy_change / side.energy_unit;
         if (side.has_energy_error && error > maximum)
             record.warnings.push_back(fmt::format(
                 "the energy of side {} changed by {:.2g} % of its range: {}, {} is too coarse for {:g} s; use accuracy "

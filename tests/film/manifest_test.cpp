@@ -14,6 +14,10 @@ TEST(Manifest, SaysTheEnergyErrorInJoulesAndOfThePotentialRange) {
     EXPECT_GT(of_range, 1e-6);
     EXPECT_LT(of_range, 0.05);  // measured 0.002
     EXPECT_GT(side["worst_energy_error"].get<double>(), 100 * of_range);
+    // each side by its own range
+    const auto uneven = manifest_of(scene_of("butterfly", {"scene.duration_s=1", "a.mass_kg=[3, 3]"}));
+    EXPECT_NEAR(uneven["a"]["energy_range_J"].get<double>(), 3 * range, 0.03 * range);
+    EXPECT_EQ(uneven["b"]["energy_range_J"], side["energy_range_J"]);
 }
 
 // Runge–Kutta 4 loses energy at steps of 1/10 s; faster swings lose more.
