@@ -84,17 +84,22 @@ std::string residual_sentence(const FitResult& result) {
     const double rms = result.chosen().fit.rms;
     if (u.is_white)
         return fmt::format(
-            "Residuals look like noise of {:.2g} rad: neighbours are not correlated ({:.2f} and {:.2f}).", rms,
-            u.neighbour[0], u.neighbour[1]);
+            "Residuals look like noise of {:.2g} rad: neighbours are not correlated beyond chance ({:.2f} and "
+            "{:.2f}).",
+            rms, u.neighbour[0], u.neighbour[1]);
     const double noise = std::max(result.track.noise[0], result.track.noise[1]);
     std::string why = "the measurement noise may be like this";
     if (rms > 2 * noise)
         why = fmt::format("from sample to sample the angles scatter by only {:.1g} rad, so the error is the model's",
                           noise);
+    const auto how = std::ranges::max(u.neighbour) > 1 / std::numbers::e
+                         ? fmt::format("keep their sign for about {:.2g} s", std::ranges::max(u.memory_s))
+                         : fmt::format("are correlated within ten samples (neighbours by {:.2f} and {:.2f})",
+                                       u.neighbour[0], u.neighbour[1]);
     return fmt::format(
-        "Residuals of {:.2g} rad are not noise: they keep their sign for about {:.2g} s; {}. Standard errors include "
-        "this ({:.2g} times those of white noise).",
-        rms, std::max(u.memory_s[0], u.memory_s[1]), why, u.inflation);
+        "Residuals of {:.2g} rad are not white noise: they {}; {}. Standard errors include this ({:.2g} times those of "
+        "white noise).",
+        rms, how, why, u.inflation);
 }
 
 std::string horizon_sentence(const FitResult& result) {

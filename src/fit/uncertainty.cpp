@@ -30,14 +30,20 @@ std::vector<double> correlations_of(const Fit& fit, std::size_t link, std::size_
 /// Tests whether successive residuals are correlated, and for how long.
 void test_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     constexpr std::size_t lags = 10, furthest = 400;
-    constexpr double limit = 29.6;  // χ² with ten degrees of freedom at 99.9 %
+    constexpr double limit = 29.6, limit_of_one = 3.29;  // 99.9 %: χ² with ten degrees of freedom; σ
+    // fitting p numbers to n residuals of white noise gives near ones a correlation of about −p / (n − p)
+    const auto n = static_cast<double>(fit.residual_count());
+    const auto p = static_cast<double>(fit.model.fitted.count() + 4 * fit.shots.size());
     double intervals = 0;
     for (const auto& piece : job.track.pieces) intervals += static_cast<double>(piece.size() - 1);
     for (std::size_t link = 0; link < 2; ++link) {
         const auto sums = correlations_of(fit, link, furthest, job.stop);
+        const auto significance = [&](std::size_t shift) {
+            return (sums[shift] / sums[0] + p / (n - p)) * std::sqrt(n / 2);
+        };
         double portmanteau = 0;
-        for (std::size_t shift = 1; shift <= lags; ++shift) portmanteau += std::pow(sums[shift] / sums[0], 2);
-        result.is_white &= portmanteau * static_cast<double>(fit.residual_count()) / 2 < limit;
+        for (std::size_t shift = 1; shift <= lags; ++shift) portmanteau += std::pow(significance(shift), 2);
+        result.is_white &= portmanteau < limit && std::abs(significance(1)) < limit_of_one;
         result.neighbour[link] = sums[1] / sums[0];
         std::size_t shift = 1;
         while (shift < furthest && sums[shift] > sums[0] / std::numbers::e) ++shift;

@@ -123,6 +123,13 @@ TEST(FitHierarchy, ChoosesTheModelThatMadeTheTrack) {
     auto result = answered(simulated(rigid, Drag::own, {.noise = 1e-3}));
     EXPECT_EQ(result.chosen().name, "rigid bodies, viscous friction");
     EXPECT_TRUE(result.uncertainty.is_white);
+    auto other = result;  // the words follow the numbers
+    other.uncertainty.is_white = false, other.uncertainty.neighbour = {-0.2, 0.1};
+    EXPECT_NE(residual_sentence(other).find("correlated within ten samples (neighbours by -0.20 and 0.10)"),
+              std::string::npos);
+    other.uncertainty.neighbour = {0.9, 0.1}, other.uncertainty.memory_s = {0.12, 0.01};
+    EXPECT_NE(residual_sentence(other).find("not white noise: they keep their sign for about 0.12 s;"),
+              std::string::npos);
     EXPECT_NEAR(result.chosen().left_out_rms, 1e-3, 5e-5);  // measured 1.02e-3
 
     result = answered(simulated(ratios_of(point_masses(1.3, 1, 0.2, 0.25)), Drag::own, {.noise = 1e-3}));
