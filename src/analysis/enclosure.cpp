@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace doppel {
 namespace {
@@ -87,6 +90,20 @@ struct Zonotope {
         for (int i = 0; i < 4; ++i) all[i].radius = box[i];
         return all;
     }
+    /// Replaces the smaller half of the edges by a box around them.
+    void reduce() {
+        if (!edges.allFinite()) return;
+        const Eigen::RowVectorXd size = edges.cwiseAbs().colwise().sum();
+        std::vector<Eigen::Index> larger(static_cast<std::size_t>(size.size()));
+        std::iota(larger.begin(), larger.end(), 0);
+        std::ranges::stable_sort(larger, std::greater(), [&](Eigen::Index i) { return size[i]; });
+        const std::vector smaller(larger.begin() + size.size() / 2, larger.end());
+        larger.resize(larger.size() - smaller.size());
+        const Box box = Zonotope{center, edges(Eigen::all, smaller)}.hull();
+        Eigen::Matrix<double, 4, Eigen::Dynamic> fewer(4, size.size() / 2 + 4);
+        fewer << edges(Eigen::all, larger), Eigen::Matrix4d(box.matrix().asDiagonal());
+        edges.swap(fewer);
+    }
 };
 
 /// Steps from sample to sample. The step's length is counted in equal parts of the interval of samples.
@@ -120,6 +137,7 @@ public:
                 all.push_back(sample.state());
             }
             set_ = image(length_);
+            if (set_.edges.cols() > spec_.most_edges) set_.reduce();
             done_ += length_;
         }
         return all;

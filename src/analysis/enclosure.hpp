@@ -33,6 +33,7 @@ struct EnclosureSpec {
     double largest_radius = 0.5;  // of angles, rad, and rates, rad/s: it ends beyond
     double tolerance = 0.25;      // last terms of a series, in units of rounding
     EnclosureCount counted = {};
+    long most_edges = 20'000;  // four more a step; then the smaller half becomes a box
 };
 
 /// θ1, θ2 (rad), ω1, ω2 (rad/s)
@@ -49,7 +50,8 @@ using Watch = std::function<void(long samples)>;
 ///     φ(c + e) ∈ p(1) + r + J e
 /// with the Taylor polynomial p(τ) of the motion from c, τ = t/h, its remainder r, and a Jacobian J of the flow over the
 /// hull of the set (Lohner's mean-value form). With the centre M of J, g_j becomes M g_j; four more edges, a box, contain
-/// r, the roundings and (J − M) e. Boxes are never turned into others, so that the set grows as the tangents do.
+/// r, the roundings and (J − M) e. Boxes are not turned into others, so that the set grows as the tangents do; only of
+/// more than `most_edges` edges, a box around the smaller half replaces it.
 /// Source  Lohner 1987; Nedialkov, Jackson & Corliss 1999, Appl. Math. Comput. 105:21; for zonotopes Kühn 1998,
 ///         Computing 61:47.
 template <class Scalar>

@@ -257,6 +257,14 @@ TEST(Enclosure, TheWidthGrowsLikeTheTangents) {
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(sets.back()[i].radius / sum[i], 1, 1e-3);
 }
 
+TEST(Enclosure, FewEdgesContainTheMotionToo) {
+    EnclosureSpec spec;
+    spec.most_edges = 60;
+    const auto few = enclosed<double>(right_angles, 1200, 0, spec);
+    EXPECT_TRUE(all_inside(few, reference(right_angles, 1200)));
+    EXPECT_LT(radius_at_end(few), 20 * radius_at_end(enclosed<double>(right_angles, 1200)));  // measured 8.7 times
+}
+
 TEST(Enclosure, EndsWhereTheProofEnds) {
     EnclosureSpec spec;
     spec.largest_radius = 1e-8;
