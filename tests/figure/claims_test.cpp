@@ -159,8 +159,9 @@ Found course_over_time() {
     for (std::size_t n = 2001; n < d.size(); ++n) sum += std::log(d[n] / d[0]);
     const double from_2001 = sum / static_cast<double>(d.size() - 2001);
     return {holds_if(std::abs(from_2001 - 11.5) < 0.6),
-            fmt::format("{:.3f} at sample 501, and {:.1f} on average from sample 2001 on", std::log(d[501] / d[0]),
-                        from_2001)};
+            fmt::format("{:.3f} at sample 501 (λ₅₀₀ of its list, which counts from 0 and begins with sample 1), and "
+                        "{:.1f} on average from sample 2001 on",
+                        std::log(d[501] / d[0]), from_2001)};
 }
 
 Found course_over_angle() {
