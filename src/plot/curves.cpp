@@ -177,7 +177,8 @@ void draw_curve(const Curve& curve, const DrawnCurve& drawn, const Panel& panel)
     const float width = thin ? style.thin : style.curve;
     const float casing = std::max(1.6f * style.unit, 1.0f);
     if (over_map) draw_line(drawn.lines, width + 2 * casing, false, edge, panel);
-    draw_line(drawn.lines, width, curve.dashed, color, panel);
+    const bool repeats_color = curve.hue >= static_cast<int>(theme.palette.size());
+    draw_line(drawn.lines, width, curve.dashed || repeats_color, color, panel);
 
     float radius = curve.quiet ? 0.75f * style.marker : style.marker;
     if (curve.mark == Mark::line) radius = 0.8f * width;

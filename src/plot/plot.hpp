@@ -34,7 +34,7 @@ struct Curve {
     std::vector<double> x, y;
     std::vector<double> uncertainty;  // of y, drawn as a band; empty: none
     Mark mark = Mark::line;
-    int hue = 0;                               // index in the theme's palette; related curves share one
+    int hue = 0;                               // index in the theme's palette; beyond its end, colours repeat, dashed
     bool right = false;                        // belongs to the second y axis
     bool dashed = false, quiet = false;        // quiet: grey and thin, for comparison
     Background background = Background::none;  // a background curve has no label, and labels may cover it

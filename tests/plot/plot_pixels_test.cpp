@@ -173,4 +173,14 @@ TEST(Plot, ABandIsTintedBetweenItsEdges) {
     expect_color(drawn, size.width - 6, at(0.46f), light.background, 2);  // clipped at the panel
 }
 
+TEST(Plot, ColorsRepeatDashed) {
+    std::vector<Curve> curves;
+    for (int hue = 0; hue < 10; ++hue) curves.push_back({.x = {0, 10}, .y = {0.1 * hue, 0.1 * hue}, .hue = hue});
+    std::vector<float> dashes;
+    for (const auto& item : composed(with_curves(curves), {800, 450}, themes[1]))
+        if (const auto* line = std::get_if<Polylines>(&item)) dashes.push_back(line->dash);
+    ASSERT_EQ(dashes.size(), curves.size());
+    for (std::size_t i = 0; i < dashes.size(); ++i) EXPECT_EQ(dashes[i] > 0, i >= 8) << i;
+}
+
 }  // namespace doppel::plot_pixels_test
