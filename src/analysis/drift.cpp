@@ -132,13 +132,18 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
         return slope(x.subspan(first), std::span(log_errors).subspan(first));
     };
     Growth growth;
-    if (times.size() > 1) growth.exponent = fitted(log_times, decades * std::log(10));
+    double last = 0;  // exponent of the last decade
+    if (times.size() > 1)
+        growth.exponent = fitted(log_times, decades * std::log(10)), last = fitted(log_times, std::log(10));
     const double p = growth.exponent;
     using Kind = Growth::Kind;
     // thresholds half-way between the powers 0, ½, 1 and 2; no error at all also counts as bounded, and so does one that
     // has reached its maximum: it grows no more in the last decade
-    const bool still_grows = p >= least && fitted(log_times, std::log(10)) >= least;
-    growth.kind = !still_grows ? Kind::bounded : p >= 1.5 ? Kind::steeper : p >= 0.75 ? Kind::linear : Kind::root;
+    growth.kind = !(last >= least)                        ? Kind::bounded
+                  : p < least || std::abs(last - p) > 0.5 ? Kind::unsteady
+                  : p >= 1.5                              ? Kind::steeper
+                  : p >= 0.75                             ? Kind::linear
+                                                          : Kind::root;
     if (!(failed_at_s > 0)) return growth;
     return {Kind::failed, p, std::log(2) / fitted(times, doublings * std::log(2))};
 }

@@ -30,7 +30,7 @@ DriftRun drift(MotionSpec motion, double evaluations_per_s, std::span<const doub
 
 /// The growth law of an error in time.
 struct Growth {
-    enum class Kind { bounded, root, linear, steeper, failed };
+    enum class Kind { bounded, root, linear, steeper, unsteady, failed };  // unsteady: by no power of t
     Kind kind = Kind::bounded;
     double exponent = 0;      // power of t, fitted to the last two decades; 0 without data
     double doubling_s = NAN;  // just before a failure; NaN without a failure, or if it comes at once

@@ -16,8 +16,11 @@ struct GrowthStyle {
     std::string_view words, law;
     int hue;
 };
-constexpr std::array styles{GrowthStyle{"stays bounded", "", 1}, GrowthStyle{"grows like √t", " ∝ √t", 2},
-                            GrowthStyle{"grows linearly", " ∝ t", 0}, GrowthStyle{"grows like t²", " ∝ t²", 3},
+constexpr std::array styles{GrowthStyle{"stays bounded", "", 1},
+                            GrowthStyle{"grows like √t", " ∝ √t", 2},
+                            GrowthStyle{"grows linearly", " ∝ t", 0},
+                            GrowthStyle{"grows like t²", " ∝ t²", 3},
+                            GrowthStyle{"grows", "", 4},
                             GrowthStyle{"fails", "", 6}};
 
 const GrowthStyle& style_of(const Growth& growth) {
@@ -176,6 +179,8 @@ private:
     /// The final energy errors, and how to read the curves.
     std::string caption(std::span<const TrialNumbers> numbers) const override {
         std::vector<std::string> bounded;
+        constexpr double long_s = 10000;  // what is bounded for so long is called bounded
+        const auto until = times_s_.back() < long_s ? fmt::format(" for {:g} s", times_s_.back()) : "";
         bool breaks = false, grow = false;
         for (std::size_t run = 0; run < runs_.size(); ++run) {
             const auto found = growth(numbers, run, false);
@@ -185,9 +190,9 @@ private:
             if (runs_[run].shows_energy && found.kind == Growth::Kind::bounded) bounded.push_back(runs_[run].label);
         }
         return fmt::format("{}{}{}.",
-                           bounded.empty()
-                               ? "No method keeps the error of the energy bounded"
-                               : fmt::format("The error of the energy stays bounded with {}", fmt::join(bounded, ", ")),
+                           bounded.empty() ? "No method keeps the error of the energy bounded"
+                                           : fmt::format("The error of the energy stays bounded{} with {}", until,
+                                                         fmt::join(bounded, ", ")),
                            grow ? "; ∝ tells how the others grow" : "",
                            breaks ? fmt::format("{} a dot marks a failed run", grow ? "," : ";") : "");
     }

@@ -21,6 +21,10 @@ TEST(Growth, IsClassifiedByItsExponent) {
         EXPECT_TRUE(std::isnan(growth.doubling_s));
     }
     EXPECT_EQ(growth_of(times, std::vector(times.size(), 0.0), std::nan("")).kind, Kind::bounded);
+    // growth that begins in the last decade follows no law
+    auto late = errors;
+    for (std::size_t i = 0; i < late.size(); ++i) late[i] = std::fmax(late[i], errors[34]);
+    EXPECT_EQ(growth_of(times, late, std::nan("")).kind, Kind::unsteady);
     // the maximum to date rises while the motion first visits the places with the largest errors, and is flat from then on
     for (auto& error : errors) error = std::fmin(error, errors[25]);
     EXPECT_GT(growth_of(times, errors, std::nan("")).exponent, 0.25);

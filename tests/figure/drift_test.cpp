@@ -116,8 +116,9 @@ TEST(Drift, SummarisesTheResultInOneLine) {
     };
     EXPECT_EQ(
         caption("[\"euler\", \"rk4\", \"rattle6\"]"),
-        "The error of the energy stays bounded with rattle6; ∝ tells how the others grow, a dot marks a failed run.");
-    EXPECT_EQ(caption("[\"gauss4\"]"), "The error of the energy stays bounded with gauss4.");
+        "The error of the energy stays bounded for 100 s with rattle6; ∝ tells how the others grow, a dot marks a "
+        "failed run.");
+    EXPECT_EQ(caption("[\"gauss4\"]"), "The error of the energy stays bounded for 100 s with gauss4.");
     EXPECT_EQ(caption("[\"rk4\"]"), "No method keeps the error of the energy bounded; ∝ tells how the others grow.");
 }
 
