@@ -46,7 +46,9 @@ void chart_fields(KeyVisitor& visit, ChartSpec& chart) {
     };
     visit({"format", "format of the picture: pixels, text and lines for a paper, or a page that tells the numbers"},
           chart.format);
-    visit(size_field, chart.size);
+    auto size = size_field;
+    size.only = {!on_paper || !chart.height_cm, "is for a size in pixels; width_cm and height_cm set it", true};
+    visit(size, chart.size);
     visit(theme_field, chart.theme);
     const Condition of_pixels{!on_paper, "is for a size in pixels; with width_cm, dpi sets it"};
     const auto sizes_cm = from_to(2, 200);
@@ -111,9 +113,9 @@ Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& th
 }
 
 void read_chart(TomlReader& table, ChartSpec& chart) {
-    // the meaning of other keys depends on this one
-    table({.key = "width_cm"}, chart.width_cm.emplace(0));
-    if (!table.has("width_cm")) chart.width_cm.reset();
+    // the meaning of other keys depends on these
+    if (table.has("width_cm")) chart.width_cm = 0;
+    if (table.has("height_cm")) chart.height_cm = 0;
     chart_fields(table, chart);
     table.finish();
     table.check_together([&] { check_chart(table, chart); });
@@ -190,7 +192,16 @@ FigurePreset read_figure(const PresetText& source, const std::vector<Override>& 
     const auto document = parse_document(source, overrides);
     KeyErrors errors(overrides);
     read_once(source, document, &errors, stop);
-    return read_once(source, document, nullptr, stop);
+    auto figure = read_once(source, document, nullptr, stop);
+    const auto is_set = [&](std::string_view key) { return std::ranges::count(overrides, key, &Override::key) > 0; };
+    // the preset's texts are about its own quantity and axis
+    if (is_set("grid.quantity") || is_set("grid.x") || is_set("grid.x.key")) {
+        if (!is_set("title")) figure.title = figure.name;
+        if (!is_set("subtitle")) figure.subtitle = figure.experiment->subtitle();
+        if (!is_set("captions")) figure.captions.clear();
+        if (!is_set("erratum")) figure.erratum.clear();
+    }
+    return figure;
 }
 
 }  // namespace doppel

@@ -23,7 +23,9 @@ std::string file_of(const FigurePreset& figure, const std::string& ending) {
 }
 
 TEST(Chart, APdfHasTheRequestedWidth) {
-    const auto pdf = file_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6", "chart.height_cm=6"}), ".pdf");
+    const auto pdf = file_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.format=\"pdf\"",
+                                                      "chart.width_cm=8.6", "chart.height_cm=6"}),
+                             ".pdf");
     EXPECT_TRUE(pdf.starts_with("%PDF-"));
     const auto layout = layout_of(small_sweep({"chart.format=\"pdf\"", "chart.width_cm=8.6"}).chart);
     EXPECT_NEAR(layout.width_pt, 8.6 / 2.54 * 72, 1e-9);
@@ -91,6 +93,11 @@ TEST(Chart, AnotherQuantityFromTheCommandLineDropsTheKeysOfTheFiles) {
     expect_error(ExitCode::bad_input, {"--set grid.exponent_duration_s", "is only for exponent"}, [&] {
         read_figure(preset, {parse_set("grid.quantity=flip_time"), parse_set("grid.exponent_duration_s=3")});
     });
+    const auto flips = figure_of("fig2-right", {"grid.quantity=flip_time"});
+    EXPECT_EQ(flips.title, "fig2-right");
+    EXPECT_EQ(flips.erratum, "");
+    EXPECT_EQ(figure_of("fig2-right", {"grid.x.key=theta2_deg", "title=Mine"}).title, "Mine");
+    EXPECT_NE(figure_of("fig2-right", {"grid.x.step=9"}).erratum, "");
 }
 
 TEST(Chart, KeysOfPaperNeedItsWidth) {
@@ -99,12 +106,15 @@ TEST(Chart, KeysOfPaperNeedItsWidth) {
     expect_error(ExitCode::bad_input, {"with width_cm, dpi sets it"}, [] {
         small_sweep({"chart.width_cm=8.6", "chart.scale=2"});
     });
+    expect_error(ExitCode::bad_input, {"chart.size", "width_cm and height_cm set it"}, [] {
+        small_sweep({"chart.width_cm=8.6", "chart.height_cm=6"});
+    });
     expect_error(ExitCode::bad_input, {"is too large for a chart of 3 cm width; at most 7 pt is possible; it is 40"},
                  [] {
                      small_sweep({"chart.width_cm=3", "chart.font_pt=40"});
                  });
     expect_error(ExitCode::bad_input, {"a chart of 5×2.82 cm; at most 7.9 pt is possible; it is 8"}, [] {
-        small_sweep({"chart.width_cm=5", "chart.height_cm=2.82"});
+        figure_of("fig2-right", {"chart.width_cm=5", "chart.height_cm=2.82"});
     });
     // without a height of its own, it is higher where its texts need it
     const auto narrow = small_sweep({"chart.width_cm=5"});
@@ -120,8 +130,9 @@ TEST(Chart, KeysOfPaperNeedItsWidth) {
 }
 
 TEST(Chart, ResolvedReadsBackToTheSame) {
-    const auto figure = small_sweep({"chart.width_cm=8.6", "chart.height_cm=5", "chart.font_pt=7", "chart.dpi=200",
-                                     "chart.title=false", "chart.captions=[\"One\"]", "chart.format=\"svg\""});
+    const auto figure =
+        figure_of("fig2-right", {"chart.width_cm=8.6", "chart.height_cm=5", "chart.font_pt=7", "chart.dpi=200",
+                                 "chart.title=false", "chart.captions=[\"One\"]", "chart.format=\"svg\""});
     const PresetText source{"fig2-right", "again.toml", figure.resolved(), "again.toml"};
     EXPECT_EQ(read_figure(source).resolved(), figure.resolved());
 }
