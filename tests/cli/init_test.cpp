@@ -102,7 +102,6 @@ TEST(Init, EachKeyOfAFigureCanBeUncommented) {
         {"series",
          {"integrator", "step_s", "tolerance", "check_tolerance", "duration_s", "film_column", "samples",
           "points_per_decade", "evaluations_per_s", "methods", "projected", "stabilise_rate_per_s"}},
-        {"section", {"angle_deg", "omega_deg_per_s"}},
         {"work-precision", {"duration_s"}}};
     for (const auto& kind : figure_kinds()) {
         const std::string name(kind.name);

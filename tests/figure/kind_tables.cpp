@@ -57,6 +57,9 @@ std::vector<FieldTable> tables_of(std::string_view kind) {
         auto& chain = all.emplace_back("[system]");
         chain_fields(chain, preset.a);
         gravity_field(chain, preset.a);
+        std::erase_if(chain.fields, [](const auto& field) {  // a section's orbits start at all states of an energy
+            return field.key == "angle_deg" || field.key == "omega_deg_per_s";
+        });
     }
     chart_fields(all.emplace_back("[chart]"), none.chart);
     for (auto& table : own_tables(kind))

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <utility>
 
 namespace doppel::test {
 namespace {
@@ -19,17 +18,11 @@ constexpr std::array<std::string_view, 9> used_keys{"title",     "duration_s",  
                                                     "links",     "mass_kg",         "length_m",
                                                     "angle_deg", "omega_deg_per_s", "gravity_m_per_s2"};
 
-/// Keys of [system] that such figures set themselves.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 2> unused_keys{
-    {{"section", "angle_deg"}, {"section", "omega_deg_per_s"}}};
-
-bool is_used(const FieldTable& table, std::string_view key, std::string_view kind) {
+bool is_used(const FieldTable& table, std::string_view key) {
     if (table.is_entry()) return key == "scene" || key == "column";
     if (key == "difference") return true;
     if (table.key() == "system" && key == "accuracy") return true;
-    return (table.key() == "scene" || table.key() == "system") &&
-           std::ranges::find(used_keys, key) != used_keys.end() &&
-           std::ranges::find(unused_keys, std::pair(kind, key)) == unused_keys.end();
+    return (table.key() == "scene" || table.key() == "system") && std::ranges::find(used_keys, key) != used_keys.end();
 }
 
 std::string starting_value(const ListedField& field) {
@@ -50,12 +43,11 @@ std::string key_lines(const ListedField& field, const std::string& prefix, bool 
                        starting_value(field));
 }
 
-std::string table_lines(const FieldTable& table, std::string_view kind, const std::string& prefix = "") {
+std::string table_lines(const FieldTable& table, const std::string& prefix = "") {
     std::string text;
     for (const auto& field : table.fields)
-        if (field.key != kind_field.key)
-            text += key_lines(field, prefix, prefix.empty() && is_used(table, field.key, kind));
-    for (const auto& inner : table.tables) text += table_lines(inner, kind, fmt::format("{}{}.", prefix, inner.key()));
+        if (field.key != kind_field.key) text += key_lines(field, prefix, prefix.empty() && is_used(table, field.key));
+    for (const auto& inner : table.tables) text += table_lines(inner, fmt::format("{}{}.", prefix, inner.key()));
     return text;
 }
 
@@ -77,7 +69,7 @@ std::string side_lines(std::string_view side, std::string_view kind) {
     FieldTable texts("[a]");
     SideSpec none;
     side_text_fields(texts, none);
-    return text + table_lines(texts, kind);
+    return text + table_lines(texts);
 }
 
 /// Adds a line for each key: the kind of preset, "table.key", the help, and values to propose.
@@ -116,7 +108,7 @@ std::string starting_preset(std::string_view kind) {
             text += fmt::format("\n[{0}{1}{2}]{3}\n", is_entry ? "[" : "", key, is_entry ? "]" : "",
                                 key == "system" && has_sides ? "  # both sides" : "");
             if (key == "scene" && kind != pair_kind) text += fmt::format("kind = {}\n", toml_text(std::string(kind)));
-            text += table_lines(table, kind);
+            text += table_lines(table);
             if (key == "system" && kind == pair_kind)
                 text += "# particles, constraints and forces: see docs/presets.md, and \"doppel show springs\"\n";
             if (key == "curve")
