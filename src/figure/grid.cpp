@@ -10,6 +10,13 @@
 #include <utility>
 
 namespace doppel {
+namespace {
+
+bool is_half_turns(const Quad& angle_deg) {
+    return angle_deg == round(angle_deg / 180) * 180;
+}
+
+}  // namespace
 
 void Grid::fields(KeyVisitor& visit) {
     visit({"quantity", quantity_help}, quantity_);
@@ -62,6 +69,13 @@ Grid::Grid(FigureReader& reader) : Grid() {
     for (std::size_t p = 0; p < panel_.count; ++p)
         for (std::size_t c = 0; c < color_.count; ++c) add_group(reader, table, p, c);
     for (const auto& measurement : measurements()) cell_numbers_ += measurement.numbers();
+    bool is_any_drawn = is_map();
+    if (!is_map()) for_each_cell([&](const Cell& cell) { is_any_drawn = is_any_drawn || !leaves_out(cell); });
+    if (!is_any_drawn)
+        throw table.error(
+            "quantity",
+            "\"{}\" needs motion, but all pairs rest in equilibrium; release them at other angles, or with rates",
+            name_of(quantity_));
     if (range_ && words().logarithmic && !(range_->low > 0))
         throw table.error("range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]", name_of(quantity_),
                           range_->low, range_->high);
@@ -96,7 +110,8 @@ void Grid::check(const TomlReader& table) const {
         x_.require(table, "difference", Quad(end + difference_));
     const auto& a = pair_.a;
     const bool is_shaken = x_.key == "system.pivot.frequency_hz" && y_.key == "system.pivot.amplitude_m" &&
-                           a.particles.empty() && a.links() == 1 && a.physical.pivot.direction_deg == 90;
+                           a.particles.empty() && !a.is_mechanism() && a.links() == 1 && a.physical.torques.empty() &&
+                           physical_of(a).friction.is_none() && is_half_turns(a.physical.pivot.direction_deg - 90);
     const bool is_of_rest = is_of_releases() && is_zero(a.omega_deg_per_s);
     const bool is_of_steps = is_map() && quantity_ == Quantity::stability && x_.is_setting();
     struct Fault {
@@ -120,8 +135,8 @@ void Grid::check(const TomlReader& table) const {
              {overlay_ == Overlay::energy_bound && !is_of_rest, "overlay",
               "\"energy-bound\" is for two ideal links released at rest, theta2_deg over theta1_deg"},
              {(overlay_ == Overlay::kapitza || overlay_ == Overlay::mathieu) && !is_shaken, "overlay",
-              "is for one link whose pivot moves up and down, over system.pivot.frequency_hz and "
-              "system.pivot.amplitude_m"},
+              "is for one link without friction and torque whose pivot moves up and down, over "
+              "system.pivot.frequency_hz and system.pivot.amplitude_m"},
              {overlay_ == Overlay::linear_limit && !is_of_steps, "overlay",
               "\"linear-limit\" is for a map of stability over the setting"},
          })
@@ -303,13 +318,14 @@ void Grid::write_rows(std::span<const TrialNumbers> numbers, Csv& table) const {
 }
 
 std::optional<std::string> Grid::nothing_to_draw(std::span<const TrialNumbers> numbers) const {
-    bool is_any = false, is_any_above_0 = false;
+    bool is_any = false, is_any_above_0 = false, is_any_at_right = false;
     for_each_cell([&](const Cell& cell) {
-        const double number = value_at(numbers, cell);
+        const double number = leaves_out(cell) ? NAN : value_at(numbers, cell);
         is_any |= std::isfinite(number);
         is_any_above_0 |= std::isfinite(number) && number > 0;
+        is_any_at_right |= right_ && std::isfinite(at(numbers, cell)[measurements().front().numbers()]);
     });
-    if (right_ || (words().logarithmic ? is_any_above_0 : is_any)) return std::nullopt;
+    if (is_any_at_right || (words().logarithmic ? is_any_above_0 : is_any)) return std::nullopt;
     if (quantity_ == Quantity::stroboscopic) return "the run failed at every value";
     const auto pairs = fmt::format("{}{}{}", groups_.size() > 1 ? fmt::format("{} × ", groups_.size()) : "", x_.count,
                                    is_map() ? fmt::format(" × {}", y_.count) : "");
@@ -341,7 +357,7 @@ Json Grid::findings(std::span<const TrialNumbers> numbers) const {
         const auto of_cell = at(numbers, cell);
         const double value = value_at(numbers, cell);
         if (std::isfinite(value)) minimum = std::fmin(minimum, value), maximum = std::fmax(maximum, value);
-        missing += is_missing(cell, value);
+        missing += is_missing(cell, quantity_, value);
         ++cells;
         if (exponent) regular += is_regular({of_cell[*exponent], of_cell[*exponent + 1]});
         if (!is_bounded) return;
@@ -426,21 +442,19 @@ std::size_t Grid::lines_computed(const Group& group) const {
     return is_mirrored_ ? (y_.count + 1) / 2 : y_.count;
 }
 
-bool Grid::is_at_rest(const Cell& cell) const {
+bool Grid::leaves_out(const Cell& cell) const {
+    if (is_map() || !is_of_distance(quantity_)) return false;
     const auto pair = pair_at(cell);
-    static constexpr int half_turn = 180;
     const auto rests = [](const SideSpec& side) {
         return side.particles.empty() && !side.is_mechanism() && side.physical.is_none() &&
-               is_zero(side.omega_deg_per_s) && std::ranges::all_of(side.angle_deg, [](const Quad& angle) {
-                   return angle == round(angle / half_turn) * half_turn;
-               });
+               is_zero(side.omega_deg_per_s) && std::ranges::all_of(side.angle_deg, is_half_turns);
     };
     return rests(pair.a) && rests(pair.b);
 }
 
 /// An identical pair has no ratio to its initial distance; in a curve, that is not counted as missing.
-bool Grid::is_missing(const Cell& cell, double number) const {
-    if (std::isfinite(number) || is_map() || quantity_ != Quantity::divergence) return !std::isfinite(number);
+bool Grid::is_missing(const Cell& cell, Quantity quantity, double number) const {
+    if (std::isfinite(number) || is_map() || quantity != Quantity::divergence) return !std::isfinite(number);
     const auto pair = pair_at(cell);
     return !have_same_release(pair.a, pair.b);
 }

@@ -89,9 +89,9 @@ private:
             for (std::size_t row = 0; row < y_.count; ++row)
                 for (std::size_t column = 0; column < groups_[group].x.count; ++column) visit(Cell{group, row, column});
     }
-    bool is_missing(const Cell& cell, double number) const;
-    /// Whether both pendulums rest in an equilibrium: their distance stays the initial one.
-    bool is_at_rest(const Cell& cell) const;
+    bool is_missing(const Cell& cell, Quantity quantity, double number) const;
+    /// Whether a curve of distances has no point: both pendulums rest in equilibrium, and the distance is constant.
+    bool leaves_out(const Cell& cell) const;
     /// "rk4, θ₂ = 30°"; empty if there is only one group.
     std::string joined_words(std::size_t group, const char* between) const;
     double slope(std::span<const TrialNumbers> numbers, std::size_t group) const;

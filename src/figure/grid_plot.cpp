@@ -61,7 +61,8 @@ Curve energy_bound(const Pendulum<double>& p) {
 /// pendulum, and ν = 2π f:
 ///     Kapitza    a² ν² = 2 g l ,    for a much less than l
 ///     Mathieu    −4 g / (l ν²) = a₀(q) and b₁(q) ,   q = 2 a / l ,
-/// from the power series of the characteristic values, accurate to 1e-3 for q ≤ 1.2.
+/// from the power series of the characteristic values. The error of a₀ is 1e-3 at q = 1 and 5e-3 at q = 1.2; that of b₁
+/// is below 1e-3.
 /// `energy_bound`: where a double pendulum released at rest has just enough energy for a flip: θ2 over θ1, degrees,
 /// with
 ///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
@@ -116,8 +117,9 @@ std::string exponent_words(Curve& exponents, const std::vector<double>& unsettle
     words += ". The band is the 68 % interval of the exponent";
     if (changing > 0)
         words += fmt::format(
-            "; it is too narrow for {}, where parts of the run differ by more than chance (transients, sticky orbits)",
-            changing);
+            "; it is too narrow for {} of the {} releases, where parts of the run differ by more than chance "
+            "(transients, sticky orbits)",
+            changing, count);
     return fmt::format("{}.{}", words, equilibria);
 }
 
@@ -149,6 +151,9 @@ void Grid::draw(std::span<const TrialNumbers> numbers, Figure& figure) const {
 
 /// The curves of one panel and colour: of the quantity, and of that on the right axis.
 void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group, Plot& plot, Figure& figure) const {
+    const auto say_once = [&](const std::string& sentence) {
+        if (std::ranges::count(figure.captions, sentence) == 0) figure.captions.push_back(sentence);
+    };
     std::size_t column = words().drawn;
     for (const auto& measurement : groups_[group].measurements) {
         const auto& of = measurement.words();
@@ -174,9 +179,11 @@ void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group,
                 figure.captions.push_back((said.empty() ? "" : said + ": ") +
                                           exponent_words(drawn, unsettled, rates, x_.angle ? "°" : ""));
             }
-            if (const auto dashed = "Dashed: " + (of.curves.empty() ? of.short_label : of.curves[i]) + ".";
-                drawn.dashed && std::ranges::count(figure.captions, dashed) == 0)
-                figure.captions.push_back(dashed);
+            if (drawn.dashed) say_once("Dashed: " + (of.curves.empty() ? of.short_label : of.curves[i]) + ".");
+            for (std::size_t x = 0; x < groups_[group].x.count; ++x)
+                if (const Cell cell{group, 0, x};
+                    is_missing(cell, measurement.quantity(), at(numbers, cell)[column + i]))
+                    say_once(fmt::format("Not drawn: {}.", of.none));
             plot.curves.push_back(std::move(drawn));
         }
         column += measurement.numbers();
@@ -192,7 +199,7 @@ Curve Grid::curve(std::span<const TrialNumbers> numbers, std::size_t group, std:
     for (std::size_t i = 0; i < x.count; ++i) {
         const auto all = at(numbers, {group, 0, i});
         const auto value = words().drawn > 0 ? all[0] : static_cast<double>(x.value(i));
-        if (is_one) add_point(made, value, is_of_distance(quantity_) && is_at_rest({group, 0, i}) ? NAN : all[column]);
+        if (is_one) add_point(made, value, leaves_out({group, 0, i}) ? NAN : all[column]);
         for (std::size_t n = in_row - 1; !is_one && n < all.size(); n += in_row) add_point(made, value, all[n]);
     }
     return made;
@@ -200,11 +207,13 @@ Curve Grid::curve(std::span<const TrialNumbers> numbers, std::size_t group, std:
 
 /// States where a curve has no point because both pendulums rest.
 std::string Grid::rest_words() const {
-    if (is_map() || right_ || words().drawn > 0 || !is_of_distance(quantity_)) return "";
+    if (right_ || words().drawn > 0) return "";
     std::vector<std::string> places;
     for (std::size_t i = 0; i < groups_[0].x.count; ++i)
-        if (is_at_rest({0, 0, i})) places.push_back(groups_[0].x.words(i));
+        if (leaves_out({0, 0, i})) places.push_back(groups_[0].x.words(i));
     if (places.empty()) return "";
+    if (const auto count = places.size(); count > 2)
+        places = {fmt::format("{} values from {} to {}", count, places.front(), places.back())};
     return fmt::format("Not drawn: {}, where both pendulums rest in equilibrium.", fmt::join(places, " and "));
 }
 
@@ -235,8 +244,7 @@ void Grid::finish_convergence(std::span<const TrialNumbers> numbers, Figure& fig
     for (auto& plot : figure.panels) {
         plot.x = {.label = "step, s (the mean step of adaptive methods)", .logarithmic = true};
         if (mark_step_)
-            plot.rules.push_back(
-                {Rule::Orientation::vertical, mark_step_->value(), fmt::format("{} s", mark_step_->text())});
+            plot.rules.push_back({Rule::Orientation::vertical, mark_step_->value(), step_text(*mark_step_)});
     }
 }
 

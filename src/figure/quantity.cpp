@@ -23,7 +23,7 @@ QuantityWords words_of(Quantity quantity, const std::string& seconds, const Stro
         {.label = "largest Lyapunov exponent, 1/s",
          .columns = {"exponent_per_s", "exponent_uncertainty_per_s"},
          .none = "",
-         .method = "tangent equations by Dormand–Prince 8",
+         .method = "tangent equations by Dormand–Prince 8(5,3)",
          .short_label = "Lyapunov exponent",
          .last_column = "exponent_unsettled"},
         {.label = "time to the first flip, s",

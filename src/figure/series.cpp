@@ -83,7 +83,8 @@ public:
         bool differ = false;
         const auto& first = curves_.front().pair;
         SweptKeys swept;
-        for (auto& curve : curves_) {
+        for (std::size_t i = 0; i < curves_.size(); ++i) {
+            auto& curve = curves_[i];
             for (const auto& keys : {differing_keys(first.a, curve.pair.a), differing_keys(first.b, curve.pair.b)})
                 for (const auto& key : keys) swept.keys.push_back(fmt::format(".{}", key.any().key));
             curve.pair.energy_columns = true;
@@ -95,8 +96,9 @@ public:
             known.insert(known.end(), certified_columns.begin(), certified_columns.end());
             if (is_certified(*curve.film_column)) check_provable(scene);
             if (std::ranges::count(known, *curve.film_column) == 0)
-                throw table.error("film_column", "must be one of {}; it is \"{}\"", fmt::join(known, ", "),
-                                  *curve.film_column);
+                throw(!entries.empty() && entries[i].has("film_column") ? entries[i] : table)
+                    .error("film_column", "must be one of {}; it is \"{}\"", fmt::join(known, ", "),
+                           *curve.film_column);
             const bool is_ratio = curve.film_column == "log_ratio",
                        is_of_both = is_ratio || curve.film_column == "distance";
             differ |= !is_of_both || !are_one(scene);
@@ -245,7 +247,7 @@ public:
         axes_.x = {.label = "time, s", .logarithmic = true};
         axes_.y = {.label = "running estimates of the exponents, 1/s"};
         axes_.rules.push_back({Rule::Orientation::horizontal, 0, ""});
-        subtitle_ = motion_words(release_) + "; tangent equations in canonical variables, dop853";
+        subtitle_ = motion_words(release_) + "; tangent equations in canonical variables by Dormand–Prince 8(5,3)";
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {

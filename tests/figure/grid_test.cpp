@@ -131,7 +131,7 @@ TEST(Grid, NamesTheMethodInItsSubtitle) {
     };
     EXPECT_EQ(subtitle("divergence"), "two links in angles, θ₂ = 0, pair 0.001° apart; Runge–Kutta 4, 1/240 s");
     EXPECT_EQ(subtitle("energy_error"), "two links in angles, θ₂ = 0; Runge–Kutta 4, 1/240 s");
-    EXPECT_EQ(subtitle("exponent"), "two links in angles, θ₂ = 0; tangent equations by Dormand–Prince 8");
+    EXPECT_EQ(subtitle("exponent"), "two links in angles, θ₂ = 0; tangent equations by Dormand–Prince 8(5,3)");
     EXPECT_EQ(subtitle("flip_time"), "two links in angles, θ₂ = 0; Taylor series, tolerance 1.0 × 10⁻⁸");
     // the subtitle omits the number that varies
     EXPECT_EQ(subtitle("energy_error",
@@ -452,6 +452,19 @@ TEST(Grid, LeavesEquilibriaOutOfTheCurveNotOutOfTheTable) {
     EXPECT_EQ(table.rows.size(), 3u);
     // two pendulums with different angles do not rest
     EXPECT_TRUE(page_of(figure_of("fig2-right", {"grid.x.step=90", "scene.duration_s=1"})).captions.empty());
+    EXPECT_EQ(page_of(figure_of("fig3-left", {"grid.x.step=90", "grid.x.to=540", "scene.duration_s=1"})).captions.at(0),
+              "Not drawn: 4 values from θ₁ = 0° to θ₁ = 540°, where both pendulums rest in equilibrium.");
+}
+
+TEST(Grid, SaysWhyACurveLacksPoints) {
+    const std::vector<std::string> flips{"grid.quantity=flip_time", "grid.x.step=60", "scene.duration_s=3",
+                                         "grid.color={key=\"theta2_deg\",values=[0,170]}"};
+    EXPECT_EQ(page_of(figure_of("fig2-right", flips)).captions,
+              std::vector<std::string>{"Not drawn: no flip within 3 s."});
+    const auto none = figure_of(
+        "fig2-right", {"grid.quantity=flip_time", "grid.right=parting_time", "grid.x.to=2", "scene.duration_s=3"});
+    EXPECT_EQ(none.experiment->nothing_to_draw(computed(none)),
+              "none of the 3 pairs has a flip_time: no flip within 3 s");
 }
 
 TEST(Grid, DrawsTheConvergedCurveOverKaos) {
@@ -480,8 +493,8 @@ TEST(Grid, NamesDriveAndDamping) {
 }
 
 TEST(Grid, TwoToneMapsNameBothBranches) {
-    const auto page = page_of(figure_of(
-        "kapitza-map", {"grid.x.points=4", "grid.y.points=3", "scene.duration_s=1", "system.integrator=\"rk4\""}));
+    const auto page = page_of(figure_of("kapitza-map", {"grid.x.points=4", "grid.y.points=3", "scene.duration_s=1",
+                                                        "system.integrator=rk4", "system.pivot.direction_deg=270"}));
     const auto& plot = page.panels.at(0);
     EXPECT_EQ(plot.map->threshold, 90);
     ASSERT_EQ(plot.curves.size(), 2u);

@@ -196,14 +196,14 @@ TEST(Subtitle, IsOfTheSystem) {
         "above hanging at rest");
     EXPECT_EQ(subtitle("lyapunov-spectrum", {"system.links=3", "system.angle_deg=[10, 20, 30.5]"}),
               "a triple pendulum released at rest from 10°/20°/30.5°, links of 1 m and 1 kg, g = 9.8 m/s²; tangent "
-              "equations in canonical variables, dop853");
+              "equations in canonical variables by Dormand–Prince 8(5,3)");
     EXPECT_EQ(
         subtitle("drift",
                  {"system.angle_deg=[40, 5]", "system.omega_deg_per_s=[0, -90]", "series.evaluations_per_s=250"}),
         "a double pendulum released from 40°/5° at 0/-90 °/s, links of 1 m and 1 kg, g = 9.8 m/s²; every method at "
         "some 250 evaluations a second of motion");
     EXPECT_EQ(subtitle("links", {"system.angle_deg=[120]", "system.mass_kg=[2]", "grid.exponent_duration_s=30"}),
-              "chains in angles, released from 120°; tangent equations by Dormand–Prince 8");
+              "chains in angles, released from 120°; tangent equations by Dormand–Prince 8(5,3)");
 }
 
 TEST(Subtitle, OfASeriesIsOfWhatItsPairsShare) {
@@ -290,6 +290,8 @@ film_column = "b_kinetic_J"
             << column;
     test::expect_error(ExitCode::bad_input, {"film_column", "must be one of a_theta1_rad", "\"a_theta3_rad\""},
                        [&] { figure_from(text, {"series.film_column=\"a_theta3_rad\""}); });
+    test::expect_error(ExitCode::bad_input, {":19:1: [[curve]] 4 film_column must be one of a_theta1_rad", "\"speed\""},
+                       [&] { figure_from(text + "[[curve]]\ncolumn = \"d\"\n" + "film_column = \"speed\"\n"); });
 }
 
 TEST(Curves, CheckToleranceShowsUntilWhenTheyAgree) {

@@ -120,6 +120,12 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{"section", "[system]\nprecision = \"quad\"", ":4:1: [system] has no \"precision\"", {}},
     RefusedFigure{
         "grid", "[grid]\noverlay = \"energy-bound\"", ":4:1: [grid] overlay", {"two ideal links released at rest"}},
+    RefusedFigure{"grid",
+                  "[system]\nlinks = 1\nangle_deg = 170\njoint_viscous_N_m_s = 2\n[grid]\nquantity = \"deviation\"\n"
+                  "overlay = \"mathieu\"\n[grid.x]\nkey = \"system.pivot.frequency_hz\"\nfrom = 1\npoints = 2\n"
+                  "[grid.y]\nkey = \"system.pivot.amplitude_m\"\nfrom = 0\nto = 1\npoints = 2",
+                  ":9:1: [grid] overlay",
+                  {"one link without friction and torque"}},
     RefusedFigure{"grid", "[grid.x]\npoints = 1", ":4:1: [grid.x] points", {"from 2 to 1048576; it is 1"}},
     RefusedFigure{"grid", "[grid]\nflip_tolerance = 1e-9", ":4:1: [grid] flip_tolerance", {"is only for flip_time"}},
     RefusedFigure{"grid", "[grid.x]\nkey = \"system.mass_kg[3]\"", ":4:1: [grid.x] key", {"whose last element is [1]"}},
@@ -194,6 +200,16 @@ inline const std::vector<RefusedFigure> refused_figures_others{
                   "[grid]\nquantity = \"convergence\"\n[grid.x]\nkey = \"setting\"\nfrom = 0.01\nto = 0.1\npoints = 2",
                   ":4:1: [grid] quantity",
                   {"let [b] differ from [a]"}},
+    RefusedFigure{"grid",
+                  "[system]\nangle_deg = [0, 180]\n[b]\nangle_deg = [0, 0]\n[grid.x]\nkey = \"system.length_m\"\n"
+                  "from = 1\nto = 2\npoints = 2",
+                  ": [grid] quantity",
+                  {"\"divergence\" needs motion", "all pairs rest in equilibrium"}},
+    RefusedFigure{"grid",
+                  "[system]\nangle_deg = [0, 0]\n[b]\ngravity_m_per_s2 = 9\n[grid]\nquantity = \"convergence\"\n"
+                  "[grid.x]\nkey = \"setting\"\nfrom = 0.01\nto = 0.1\npoints = 2",
+                  ":8:1: [grid] quantity",
+                  {"\"convergence\" needs motion"}},
     RefusedFigure{"grid", "[grid]\nquantity = \"convergence\"", ":4:1: [grid] quantity", {"key = \"setting\""}},
     RefusedFigure{
         "grid", "[grid.x]\nkey = \"setting\"\nfrom = 1", ": [grid.x] points", {"must be the number of settings"}},

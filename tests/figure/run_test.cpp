@@ -177,12 +177,8 @@ TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {
                       over_masses = "[grid.y]\nkey = \"system.mass_kg\"\nfrom = 1\nto = 2\npoints = 3\n";
     const std::vector<std::pair<FigurePreset, std::string>> all{
         {at_rest("series", "[series]\nlogarithmic = true\n"), "nothing is greater than 0"},
-        {at_rest("grid",
-                 "[grid]\nquantity = \"convergence\"\n[grid.x]\nkey = \"setting\"\nfrom = 0.01\nto = 0.1\n"
-                 "points = 2\n"),
-         "none of the 2 pairs has a convergence above 0"},
-        {at_rest("grid", "[grid]\nquantity = \"distance_at_end\"\n" + over_lengths),
-         "none of the 3 pairs has a distance_at_end above 0"},
+        {at_rest("grid", "[grid]\nquantity = \"distance_at_end\"\n" + over_lengths + over_masses),
+         "none of the 3 × 3 pairs has a distance_at_end above 0"},
         {at_rest("grid", "[grid]\nquantity = \"energy_error\"\n" + over_lengths),
          "none of the 3 pairs has an energy_error above 0"},
         {at_rest("grid", "[grid]\nquantity = \"energy_error\"\n" + over_lengths + over_masses),
