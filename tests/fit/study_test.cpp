@@ -141,7 +141,7 @@ TEST(FitCoverage, NineteenOfTwentyIntervalsContainTheTruth) {
     truth[offset_1] = 0.002, truth[offset_2] = -0.001;
     auto shares = coverage_of(std::getenv("DOPPEL_LONG_FIT") ? 1000 : 200, truth, model_of(false, 1), 1e-3);
     EXPECT_NEAR(shares[""], 0.95, 0.02);  // measured 0.945
-    EXPECT_GT(shares["white"], 0.99);     // 197 of 200 without the correlation that fitting adds
+    EXPECT_GT(shares["white"], 0.99);     // 197 of 200 if what fitting adds counts
     shares.erase("white");
     for (const auto& [key, share] : shares) EXPECT_NEAR(share, 0.945, 0.045) << key;  // measured 0.92 to 0.96
 }
