@@ -371,9 +371,9 @@ void add_compare(CLI::App& app, int& exit_code) {
     auto& command = *app.add_subcommand("compare", "Compares PNGs, or draws and compares them, with the golden policy");
     command.footer(
         "Exit code 0: the same within the golden policy (a few pixels may differ a little, as between\n"
-        "drivers); 1: they differ, and a picture of the difference (but of two sizes) was written to\n"
-        "DIR/compare/, with --render to DIR/NAME/compare/ beside the drawn picture. A picture NAME.png\n"
-        "may have variants, NAME.VARIANT.png: it passes if it matches one of them.\n"
+        "drivers); 1: they differ. If their sizes agree, a picture of the difference is in DIR/compare/,\n"
+        "with --render in DIR/NAME/compare/ beside the drawn picture. A picture NAME.png may have variants,\n"
+        "NAME.VARIANT.png: it passes if it matches one of them.\n"
         "Examples:\n"
         "  doppel compare golden out/calm/frames\n"
         "  doppel compare --render calm golden/calm --frames 0:3 --update    makes the goldens\n"
