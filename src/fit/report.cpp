@@ -90,8 +90,8 @@ std::string residual_sentence(const FitResult& result) {
     const double noise = std::max(result.track.noise[0], result.track.noise[1]);
     std::string why = "the measurement noise may be like this";
     if (rms > 2 * noise)
-        why = fmt::format("from sample to sample the angles scatter by only {:.1g} rad, so the error is the model's",
-                          noise);
+        why = fmt::format("from sample to sample the angles scatter by only {:.1g} mrad, so the error is the model's",
+                          1e3 * noise);
     const auto how = std::ranges::max(u.neighbour) > 1 / std::numbers::e
                          ? fmt::format("keep their sign for about {:.2g} s", std::ranges::max(u.memory_s))
                          : fmt::format("are correlated within ten samples (neighbours by {:.2f} and {:.2f})",
@@ -141,8 +141,9 @@ std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::
     const auto& words = parameter_words[parameter];
     const double error = uncertainty.standard_error(parameter);
     const int decimals = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
-    return fmt::format("{} = {:.{}f} ± {:.{}f}{}", words.symbol, fit.parameters[parameter], decimals, error, decimals,
-                       words.unit);
+    const double value = fit.parameters[parameter];
+    return fmt::format("{} = {}{:.{}f} ± {:.{}f}{}", words.symbol, value < 0 ? "−" : "", std::abs(value), decimals,
+                       error, decimals, words.unit);
 }
 
 std::string fitted_preset(const FitResult& result, const std::string& name) {
