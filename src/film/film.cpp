@@ -15,8 +15,8 @@ namespace doppel {
 
 namespace {
 
-Metadata film_metadata(const Preset& preset, const Transaction& parts) {
-    return metadata_of(preset.title, preset.name, parts.made_words(preset.name));
+Metadata film_metadata(const Preset& preset) {
+    return metadata_of(preset.title, preset.name, manifest_words(preset.name));
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ void Film::begin_pictures() {
     folder_ = parts_.directory(film_name_);
     const auto place_of = [this](long k) { return folder_ / fmt::format("{:06}.png", drawn_.at(k)); };
     sink_ = make_png_sink(place_of, png_threads(options_.jobs, video.size),
-                          {.with_alpha = video.transparent, .metadata = film_metadata(scene_.preset, parts_)}, stop_);
+                          {.with_alpha = video.transparent, .metadata = film_metadata(scene_.preset)}, stop_);
 }
 
 void Film::begin_video() {
@@ -125,7 +125,7 @@ void Film::begin_video() {
         video.first_frame = drawn_.first;
     }
     video.is_stream = options_.to_stream;
-    video.metadata = film_metadata(scene_.preset, parts_);
+    video.metadata = film_metadata(scene_.preset);
     if (options_.is_partial()) video.frames = 0;
     sink_ = make_video_sink(video.is_stream ? "-" : parts_.file(film_name_), video, stop_);
     record_.libav = libav_description();
@@ -206,8 +206,8 @@ void Film::pack_pictures() {
 void Film::write(const std::string& ending, const Picture& picture) const {
     const auto& preset = scene_.preset;
     const auto name = preset.name + ending;
-    write_png(parts_.file(name), picture,
-              {.with_alpha = preset.video.transparent, .metadata = film_metadata(preset, parts_)}, stop_);
+    write_png(parts_.file(name), picture, {.with_alpha = preset.video.transparent, .metadata = film_metadata(preset)},
+              stop_);
     parts_.finished(name);
 }
 

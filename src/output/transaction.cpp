@@ -255,11 +255,6 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
     }
 }
 
-std::string Transaction::made_words(const std::string& name) const {
-    return is_temporary() ? "written as a stream, without a manifest"
-                          : fmt::format("how it was made is in {}.json", name);
-}
-
 void Transaction::keep_only(const std::string& name, const std::string& new_name) {
     require(new_name);
     for (const Part& part : parts_)

@@ -67,8 +67,6 @@ public:
 
     const std::filesystem::path& folder() const { return folder_; }
     bool is_temporary() const { return replacing_.is_temporary; }
-    /// How the files of the run `name` were made, for their metadata.
-    std::string made_words(const std::string& name) const;
 
 private:
     struct Part {

@@ -197,6 +197,10 @@ Metadata metadata_of(const std::string& title, const std::string& name, const st
         {"title", title}, {"comment", fmt::format("{}, preset {}; {}", program, name, record)}, {"encoder", program}};
 }
 
+std::string manifest_words(const std::string& name) {
+    return fmt::format("how it was made is in {}.json, unless it was made by -o -", name);
+}
+
 void write_manifest(Transaction& parts, const std::string& name, Json manifest) {
     const auto place = parts.file(name);
     auto& files = manifest["files"] = Json::object();
