@@ -1,5 +1,7 @@
 #include "scene/preset_fields.hpp"
 
+#include "integrate/methods.hpp"
+
 namespace doppel {
 namespace {
 

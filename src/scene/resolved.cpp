@@ -1,6 +1,7 @@
 #include "scene/resolved.hpp"
 
 #include "base/embedded.hpp"
+#include "integrate/methods.hpp"
 #include "output/files.hpp"
 #include "output/written.hpp"
 #include "scene/preset_fields.hpp"
