@@ -239,8 +239,9 @@ FittedText fitted_text(const Layout& layout, const std::string& text, float size
     const float minimum = std::min(size, std::max(0.75f * size, layout.min_text));
     FittedText fits{text, std::max(minimum, type.fitting_size(text, size, weight, width))};
     const auto is_wide = [&] { return type.width(fits.text, fits.size, weight) > width; };
-    if (const auto equals = text.find(" = "); is_wide() && equals != std::string::npos && equals == text.rfind(" = "))
-        return fitted_text(layout, text.substr(equals + 3), size, weight, width);
+    const auto equals = text.find(" = ");
+    if (is_wide() && equals < text.size() && equals == text.find(' ') && equals == text.rfind(" = "))
+        return fitted_text(layout, text.substr(equals + 3), size, weight, width);  // the number of a single symbol
     for (auto end = text.size(); end > 0 && is_wide();) {
         end = text.find_last_of(' ', end - 1);
         if (end == std::string::npos) break;

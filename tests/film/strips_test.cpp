@@ -187,6 +187,9 @@ TEST(Strips, NarrowHeadingsKeepTheNumber) {
     const auto labels = labels_of(scene_of("fan", {"video.size=[320, 180]"}), 0);
     EXPECT_TRUE(label_of(labels, "120°"));
     EXPECT_TRUE(label_of(labels, "120.1°"));
+    const auto noted =
+        labels_of(scene_of("kapitza", {"video.size=[320, 180]", "a.note=\"a b = the end of a long note\""}), 0);
+    EXPECT_TRUE(label_of(noted, "a b"));
 }
 
 TEST(Strips, ACurveBeginsWhereItEntersItsAxis) {
