@@ -247,7 +247,7 @@ public:
         axes_.x = {.label = "time, s", .logarithmic = true};
         axes_.y = {.label = "running estimates of the exponents, 1/s"};
         axes_.rules.push_back({Rule::Orientation::horizontal, 0, ""});
-        subtitle_ = motion_words(release_) + "; tangent equations in canonical variables by Dormand–Prince 8(5,3)";
+        subtitle_ = motion_words(release_) + "; tangent equations by Dormand–Prince 8(5,3)";
     }
 
     Json findings(std::span<const TrialNumbers> numbers) const override {

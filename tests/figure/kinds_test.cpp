@@ -196,7 +196,7 @@ TEST(Subtitle, IsOfTheSystem) {
         "above hanging at rest");
     EXPECT_EQ(subtitle("lyapunov-spectrum", {"system.links=3", "system.angle_deg=[10, 20, 30.5]"}),
               "a triple pendulum released at rest from 10°/20°/30.5°, links of 1 m and 1 kg, g = 9.8 m/s²; tangent "
-              "equations in canonical variables by Dormand–Prince 8(5,3)");
+              "equations by Dormand–Prince 8(5,3)");
     EXPECT_EQ(
         subtitle("drift",
                  {"system.angle_deg=[40, 5]", "system.omega_deg_per_s=[0, -90]", "series.evaluations_per_s=250"}),
