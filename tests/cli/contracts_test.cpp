@@ -129,7 +129,7 @@ TEST(Contracts, CheckTellsAClusterWhatARunTakes) {
     EXPECT_EQ(small["shard_cpu_s"], small["cpu_s"]);
 
     // one shard for each 5 s at most, of half an hour at most
-    const Words hours{"calm", "--set", "video.size=[320, 180]", "--set", "scene.duration_s=72000"};
+    const Words hours{"butterfly", "--set", "video.size=[320, 180]", "--set", "scene.duration_s=72000"};
     const auto large = check(hours);
     const auto shards = large["shards"].get<long>();
     EXPECT_TRUE(shards > 1 && shards <= 14401) << shards;
@@ -139,7 +139,7 @@ TEST(Contracts, CheckTellsAClusterWhatARunTakes) {
     const auto words = doppel(folder, with({"check"}, with(hours, {"--set", "system.step_s=1/300000"}))).out;
     for (const char* said : {" of CPU time, ", ": --array=1-", "; each simulates the motion again, "})
         EXPECT_NE(words.find(said), std::string::npos) << words;
-    const auto whole = check({"calm", "--set", "video.size=[160, 90]", "--set", "scene.duration_s=72000", "--set",
+    const auto whole = check({"butterfly", "--set", "video.size=[160, 90]", "--set", "scene.duration_s=72000", "--set",
                               "video.format=gif", "--set", "video.fps=30"});
     EXPECT_EQ(whole["shards"], 1);
     EXPECT_TRUE(whole["array"].is_null());

@@ -65,14 +65,13 @@ SidePair mass_pair(int theta1_deg, int theta2_deg, double ratio) {
     return twins;
 }
 
-/// The same as a general mechanism, with or without the study's droplet.
-SideSpec with_droplet(SideSpec spec, bool droplet) {
+/// The same beside the study's droplet.
+SideSpec with_droplet(SideSpec spec) {
     spec.model = ModelChoice::mechanism;
-    if (droplet)
-        spec.forces.push_back({.kind = PartKind::droplet,
-                               .position_m = QuadPair{1609, 0},
-                               .mass_kg = parse_quad("0.000034"),
-                               .constant_m3_per_kg_s2 = parse_quad("6.674e-11")});
+    spec.forces.push_back({.kind = PartKind::droplet,
+                           .position_m = QuadPair{1609, 0},
+                           .mass_kg = parse_quad("0.000034"),
+                           .constant_m3_per_kg_s2 = parse_quad("6.674e-11")});
     return spec;
 }
 
@@ -148,7 +147,7 @@ Found positive_means_chaos() {
     const auto regular = exponent(20), chaotic = exponent(120);
     return {
         holds_if(!(average[1] > 0 && is_regular(regular))),
-        fmt::format("the mean of ln(d/d₀) is {:.2f} at 0° and {:.2f} at 20°, where the exponent is {:.3f} ± "
+        fmt::format("the average of ln(d/d₀) is {:.2f} at 0° and {:.2f} at 20°, where the exponent is {:.3f} ± "
                     "{:.3f} 1/s, none; at 120° it is {:.2f} ± {:.2f} 1/s",
                     average[0], average[1], regular.value, regular.uncertainty, chaotic.value, chaotic.uncertainty)};
 }
@@ -238,7 +237,7 @@ Found energy_gain() {
 /// Greatest distance with and without the droplet within 75 s, and the time when it first exceeds 1, s; 0 = never.
 std::pair<double, double> parted_by_droplet(int angle_deg) {
     const auto start = exactly(side({angle_deg, angle_deg}));
-    const auto d = distances(with_droplet(start, true), with_droplet(start, false), 9000);
+    const auto d = distances(with_droplet(start), start, 9000);
     const auto seen = std::find_if(d.begin(), d.end(), [](double x) { return x > 1; });
     return {largest(d), seen == d.end() ? 0 : static_cast<double>(seen - d.begin()) / 120};
 }
