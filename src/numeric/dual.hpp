@@ -1,6 +1,5 @@
 #pragma once
 
-#include "numeric/portable_math.hpp"
 #include "numeric/sin_cos.hpp"
 
 #include <Eigen/Core>
@@ -61,7 +60,6 @@ struct Dual {
     friend Dual operator-(const Dual& a) { return {Scalar(-a.value), -a.tangent}; }
 
     friend bool operator==(const Dual& a, const Dual& b) { return a.value == b.value; }
-    friend bool operator!=(const Dual& a, const Dual& b) { return a.value != b.value; }
     friend bool operator<(const Dual& a, const Dual& b) { return a.value < b.value; }
     friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
     friend bool operator>(const Dual& a, const Dual& b) { return a.value > b.value; }
@@ -72,10 +70,6 @@ struct Dual {
     friend Dual sin(const Dual& a) { return SinCos<Dual>(a).sin; }
     friend Dual cos(const Dual& a) { return SinCos<Dual>(a).cos; }
     friend Dual abs(const Dual& a) { return a.value < Scalar(0) ? -a : a; }
-    friend Dual atan2(const Dual& y, const Dual& x) {
-        const Scalar square = x.value * x.value + y.value * y.value;
-        return {portable_atan2(y.value, x.value), (x.value * y.tangent - y.value * x.tangent) / square};
-    }
 
     /// at 0, where the slope is infinite, a constant remains a constant
     friend Dual sqrt(const Dual& a) {
@@ -106,13 +100,8 @@ struct std::numeric_limits<doppel::Dual<Scalar, N>> : std::numeric_limits<Scalar
 template <class Scalar, int N>
 struct Eigen::NumTraits<doppel::Dual<Scalar, N>> : Eigen::GenericNumTraits<doppel::Dual<Scalar, N>> {
     enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 1,
-        RequireInitialization = 1,
         ReadCost = (1 + N) * NumTraits<Scalar>::ReadCost,
         AddCost = (1 + N) * NumTraits<Scalar>::AddCost,
         MulCost = (1 + 2 * N) * NumTraits<Scalar>::MulCost
     };
-    static int digits10() { return NumTraits<Scalar>::digits10(); }
 };

@@ -224,13 +224,5 @@ template <class Scalar>
 
 template <int width, class Build>
 struct Eigen::NumTraits<doppel::Lanes<width, Build>> : Eigen::GenericNumTraits<doppel::Lanes<width, Build>> {
-    enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 1,
-        RequireInitialization = 1,
-        ReadCost = 1,
-        AddCost = 1,
-        MulCost = 1
-    };
+    enum { IsSigned = 1 };
 };

@@ -18,19 +18,10 @@ namespace doppel {
 using Quad = boost::multiprecision::float128;
 }
 
-/// What Eigen requires: decimal digits and costs.
+/// Its costs, for Eigen.
 template <>
 struct Eigen::NumTraits<doppel::Quad> : Eigen::GenericNumTraits<doppel::Quad> {
-    enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 1,
-        RequireInitialization = 1,
-        ReadCost = 2,
-        AddCost = 40,
-        MulCost = 40
-    };
-    static int digits10() { return 33; }
+    enum { ReadCost = 2, AddCost = 40, MulCost = 40 };
 };
 #endif
 
