@@ -259,51 +259,27 @@ struct Euler {
 ///     v ← v + h a(q, v),   q ← q + h v
 /// Source  Hairer, Lubich & Wanner, Geometric Numerical Integration, §I.1.2 and theorem VI.3.3.
 template <System Model>
-class SemiImplicitEulerStepper {
+class SemiImplicitEulerStepper : public FixedSteps<SemiImplicitEulerStepper<Model>, Model> {
 public:
-    using Scalar = typename Model::Scalar;
-    using State = typename Model::State;
+    using Base = FixedSteps<SemiImplicitEulerStepper, Model>;
+    using typename Base::Scalar, typename Base::State;
 
     SemiImplicitEulerStepper(Model& model, const State& start, const Scalar& step)
-        : model_(model), y_(start), dydt_(start), h_(step) {
-        take_modes(model_, y_);
-    }
-
-    void advance(long steps) {
-        if constexpr (is_flattened<Model>)
-            repeat_flattened(steps);
-        else
-            repeat(steps);
-    }
-
-    const State& state() const { return y_; }
-    long evaluations() const { return evaluations_; }
+        : Base(model, start, step), dydt_(start) {}
 
 private:
-    [[gnu::flatten]] void repeat_flattened(long steps) { repeat(steps); }
-    void repeat(long steps) {
-        for (long i = 0; i < steps; ++i) {
-            if constexpr (HasEvents<Model>)
-                if (model_.switches()) {
-                    step_through_events(model_, y_, h_, [&](State& y, const Scalar& h) { step(y, h); });
-                    continue;
-                }
-            step(y_, h_);
-        }
-    }
-    void step(State& y, const Scalar& h) {
+    friend Base;
+    static constexpr long stages = 1;
+
+    void step(Model& model, State& y, const Scalar& h) {
         const auto n = y.size() / 2;
-        model_.rate(y, dydt_);
+        model.rate(y, dydt_);
         for (Eigen::Index j = n; j < 2 * n; ++j) y[j] += h * dydt_[j];
         for (Eigen::Index j = 0; j < n; ++j) y[j] += h * y[n + j];
-        project(model_, y);
-        ++evaluations_;
+        project(model, y);
     }
 
-    Model& model_;
-    State y_, dydt_;
-    Scalar h_;
-    long evaluations_ = 0;
+    State dydt_;
 };
 
 struct SemiImplicitEuler {

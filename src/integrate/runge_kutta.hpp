@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 namespace doppel {
 
@@ -113,22 +112,16 @@ constexpr bool is_zero(const Decimal& d) {
     return d.high == 0;
 }
 
-/// A model in angles that can compute the rates at the stages of a step from data of the step's start.
+/// A model with a fixed number of angles, whose rates at the stages of a step can use sines and cosines of its start.
 template <class Model>
-concept HasStageAngles = is_machine_number<typename Model::Scalar> &&
-    requires(Model model, const typename Model::State& y, typename Model::State& dydt, typename Model::Angles& angles) {
-    model.rate(y, dydt, angles);
-    model.rate_of_stage(y, dydt, angles);
+concept HasStageAngles =
+    is_machine_number<typename Model::Scalar> && Model::State::RowsAtCompileTime != Eigen::Dynamic&& requires {
+    typename Model::Angles;
 };
 template <class Model>
-auto stage_angles(Eigen::Index links) {
-    if constexpr (HasStageAngles<Model> && Model::State::RowsAtCompileTime != Eigen::Dynamic)
-        return typename Model::Angles();
-    else if constexpr (HasStageAngles<Model>)
-        return typename Model::Angles(links);
-    else
-        return std::monostate();
-}
+struct StageAnglesOf {};
+template <HasStageAngles Model>
+struct StageAnglesOf<Model> : Model::Angles {};
 
 /// The slopes k_i of one step of `pair`: any system, any scalar; no allocation after construction.
 template <System Model, const auto& pair>
@@ -220,79 +213,92 @@ template <class Model, int size = Model::State::RowsAtCompileTime>
 inline constexpr bool is_flattened = is_machine_number<typename Model::Scalar>&& size != Eigen::Dynamic&& size <= 8;
 #endif
 
-/// An explicit Runge–Kutta method with `table`, at fixed step: any system, any scalar (integrate/stepper.hpp).
-template <System Model, const auto& table>
-class RungeKutta {
+/// A method at fixed step (integrate/stepper.hpp), `Method`, which has step(model, y, h) and a number of stages.
+template <class Method, System Model>
+class FixedSteps {
 public:
     using Scalar = typename Model::Scalar;
     using State = typename Model::State;
 
-    RungeKutta(Model& model, const State& start, const Scalar& step)
-        : model_(model), y_(start), h_(step), angles_(stage_angles<Model>(start.size() / 2)) {
-        slopes_.fill(start);
-        at_ = start;
+    FixedSteps(Model& model, const State& start, const Scalar& step) : model_(model), y_(start), h_(step) {
         take_modes(model_, y_);
     }
 
     void advance(long steps) {
         if constexpr (HasEvents<Model>)
-            if (model_.switches()) return advance_through_events(steps);
+            if (model_.switches()) {
+                for (; steps > 0; --steps)
+                    step_through_events(model_, y_, h_, [&](State& y, const Scalar& h) {
+                        method().step(model_, y, h);
+                        evaluations_ += Method::stages;
+                    });
+                return;
+            }
         if constexpr (is_flattened<Model>)
             repeat_flattened(steps);
         else
             repeat(steps);
-        evaluations_ += steps * static_cast<long>(stages);
+        evaluations_ += steps * Method::stages;
     }
 
     const State& state() const { return y_; }
     long evaluations() const { return evaluations_; }
 
 private:
-    static constexpr std::size_t stages = table.b.size();
-    static constexpr bool reuses_angles = stages > 1 && HasStageAngles<Model>;
-
+    Method& method() { return static_cast<Method&>(*this); }
     void repeat(long steps) {
-        for (long i = 0; i < steps; ++i) step(y_);
+        for (long i = 0; i < steps; ++i) method().step(model_, y_, h_);
     }
-    void advance_through_events(long steps) {
-        const Scalar h = h_;
-        for (long i = 0; i < steps; ++i)
-            step_through_events(model_, y_, h, [&](State& y, const Scalar& t) {
-                h_ = t;
-                step(y);
-                evaluations_ += static_cast<long>(stages);
-            });
-        h_ = h;
-    }
-
     [[gnu::flatten]] void repeat_flattened(long steps) { repeat(steps); }
     DOPPEL_COMPONENTS_APART [[gnu::flatten]] void repeat_flattened(long steps) requires OfBodies<Model> {
         repeat(steps);
     }
 
-    void stage_slope(const State& y, State& slope) { model_.rate_of_stage(y, slope, angles_); }
-    // one copy for all stages, of 9 kB
-    DOPPEL_COMPONENTS_APART [[gnu::flatten, gnu::noinline]] void stage_slope(
-        const State& y, State& slope) requires OfBodies<Model> && is_flattened<Model> {
-        model_.rate_of_stage(y, slope, angles_);
+    Model& model_;
+    State y_;
+    Scalar h_;
+    long evaluations_ = 0;
+};
+
+/// An explicit Runge–Kutta method with `table`: any system, any scalar.
+template <System Model, const auto& table>
+class RungeKutta : public FixedSteps<RungeKutta<Model, table>, Model> {
+public:
+    using Base = FixedSteps<RungeKutta, Model>;
+    using typename Base::Scalar, typename Base::State;
+
+    RungeKutta(Model& model, const State& start, const Scalar& step) : Base(model, start, step), at_(start) {
+        slopes_.fill(start);
     }
 
-    void step(State& y) {
+private:
+    friend Base;
+    static constexpr long stages = table.b.size();
+    static constexpr bool reuses_angles = stages > 1 && HasStageAngles<Model>;
+
+    void stage_slope(Model& model, const State& y, State& slope) { model.rate(y, slope, angles_.stage()); }
+    // one copy for all stages, of 9 kB
+    DOPPEL_COMPONENTS_APART [[gnu::flatten, gnu::noinline]] void stage_slope(
+        Model& model, const State& y, State& slope) requires OfBodies<Model> && is_flattened<Model> {
+        model.rate(y, slope, angles_.stage());
+    }
+
+    void step(Model& model, State& y, const Scalar& h) {
         // slopes k_i = f(y + h Σ_{j<i} a_ij k_j)
         const auto slope = [&]<std::size_t i>() {
             if constexpr (i == 0) {
                 if constexpr (reuses_angles)
-                    model_.rate(y, slopes_[0], angles_);
+                    model.rate(y, slopes_[0], angles_.start());
                 else
-                    model_.rate(y, slopes_[0]);
+                    model.rate(y, slopes_[0]);
             } else {
                 static constexpr auto row = table.a[i];
                 at_ = y;
-                move<row>(at_, std::make_index_sequence<i>());
+                move<row>(at_, h, std::make_index_sequence<i>());
                 if constexpr (reuses_angles)
-                    stage_slope(at_, slopes_[i]);
+                    stage_slope(model, at_, slopes_[i]);
                 else
-                    model_.rate(at_, slopes_[i]);
+                    model.rate(at_, slopes_[i]);
             }
         };
         [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -302,14 +308,14 @@ private:
 
         // y + h Σ b_i k_i
         static constexpr auto b = table.b;
-        move<b>(y, std::make_index_sequence<stages>());
-        project(model_, y);
+        move<b>(y, h, std::make_index_sequence<stages>());
+        project(model, y);
     }
 
     /// y ← y + h Σ_j weight_j k_j over the nonzero weights, which are known at compile time.
     template <const auto& weights, std::size_t... J>
-    void move(State& y, std::index_sequence<J...>) {
-        [[maybe_unused]] const std::array<Scalar, sizeof...(J)> share{Scalar(h_ * value<Scalar>(weights[J]))...};  // s
+    void move(State& y, const Scalar& h, std::index_sequence<J...>) {
+        [[maybe_unused]] const std::array<Scalar, sizeof...(J)> share{Scalar(h * value<Scalar>(weights[J]))...};  // s
         for (Eigen::Index i = 0; i < y.size(); ++i) {
             Scalar change(-0.0);  // unlike +0, −0 changes no sum, so that the addition can be removed
             [[maybe_unused]] const auto add = [&]<std::size_t j>() {
@@ -320,13 +326,9 @@ private:
         }
     }
 
-    Model& model_;
-    State y_;
-    Scalar h_;
-    long evaluations_ = 0;
     std::array<State, stages> slopes_;
     State at_;
-    [[no_unique_address]] decltype(stage_angles<Model>(0)) angles_;
+    [[no_unique_address]] StageAnglesOf<Model> angles_;
 };
 
 /// Runge 1895; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, eq. II.1.4.

@@ -93,26 +93,28 @@ struct SinCos<double> {
     }
 };
 
-/// Sine and cosine of each of `angles`, rad, into columns with the same number of rows.
-template <class Angles, class Column>
-[[gnu::always_inline]] inline void take_sin_cos(const Angles& angles, Column& sin, Column& cos) {
-    using Scalar = typename Column::Scalar;
-    Eigen::Index i = 0;
-    if constexpr (std::is_same_v<Scalar, double>)
-        for (; i + 1 < sin.size(); i += 2) {  // side by side
-            Lanes<2> pair;
-            pair.set(0, angles[i]);
-            pair.set(1, angles[i + 1]);
-            const SinCos<Lanes<2>> turn(pair);
-            turn.sin.store(&sin[i]);
-            turn.cos.store(&cos[i]);
+/// Sine and cosine of each of some angles, rad, into columns with the same number of rows.
+struct TakeSinCos {
+    template <class Angles, class Column>
+    [[gnu::always_inline]] void operator()(const Angles& angles, Column& sin, Column& cos) const {
+        using Scalar = typename Column::Scalar;
+        Eigen::Index i = 0;
+        if constexpr (std::is_same_v<Scalar, double>)
+            for (; i + 1 < sin.size(); i += 2) {  // side by side
+                Lanes<2> pair;
+                pair.set(0, angles[i]);
+                pair.set(1, angles[i + 1]);
+                const SinCos<Lanes<2>> turn(pair);
+                turn.sin.store(&sin[i]);
+                turn.cos.store(&cos[i]);
+            }
+        for (; i < sin.size(); ++i) {
+            const SinCos<Scalar> turn(angles[i]);
+            sin[i] = turn.sin;
+            cos[i] = turn.cos;
         }
-    for (; i < sin.size(); ++i) {
-        const SinCos<Scalar> turn(angles[i]);
-        sin[i] = turn.sin;
-        cos[i] = turn.cos;
     }
-}
+};
 
 /// The largest rotation of TurningAngle in one step, rad.
 inline constexpr double largest_turn = 1.0 / 1024;
@@ -133,37 +135,38 @@ struct TurningAngle {
     }
 };
 
-/// Sines and cosines of the angles at the start of a step, and from these those of its stages, if they are near. For
-/// double and lanes; every lane gives the same as a single double.
+/// Sines and cosines of N angles at the start of a step, and from these those of its stages, if they are near. For
+/// double and lanes; every lane gives the same as a single double. Both are used in place of TakeSinCos.
 template <class Scalar, int N>
 class StageAngles {
 public:
     using Column = Eigen::Matrix<Scalar, N, 1>;
 
-    explicit StageAngles(Eigen::Index count = N) : angle_(count), sin_(count), cos_(count) {}
-
-    template <class Angles>
-    [[gnu::always_inline]] void start(const Angles& angles, Column& sin, Column& cos) {
-        for (Eigen::Index i = 0; i < angle_.size(); ++i) angle_[i] = angles[i];
-        take_sin_cos(angle_, sin_, cos_);
-        sin = sin_;
-        cos = cos_;
+    /// At the start of a step.
+    auto start() {
+        return [this](const auto& angles, Column& sin, Column& cos) __attribute__((always_inline)) {
+            for (Eigen::Index i = 0; i < N; ++i) angle_[i] = angles[i];
+            TakeSinCos()(angle_, sin_, cos_);
+            sin = sin_;
+            cos = cos_;
+        };
     }
 
     /// At a stage.
-    template <class Angles>
-    [[gnu::always_inline]] void at(const Angles& angles, Column& sin, Column& cos) const {
-        using std::abs;
-        for (Eigen::Index i = 0; i < angle_.size(); ++i) {
-            const Scalar d = angles[i] - angle_[i];
-            TurningAngle<Scalar> turned{sin_[i], cos_[i]};
-            turned.turn(d, d * d);
-            const auto is_near = abs(d) <= Scalar(largest_turn);
-            if (!all_of(is_near)) [[unlikely]]
-                turned = evaluated(is_near, angles[i], turned);
-            sin[i] = turned.sin;
-            cos[i] = turned.cos;
-        }
+    auto stage() const {
+        return [this](const auto& angles, Column& sin, Column& cos) __attribute__((always_inline)) {
+            for (Eigen::Index i = 0; i < N; ++i) {
+                using std::abs;
+                const Scalar d = angles[i] - angle_[i];
+                TurningAngle<Scalar> turned{sin_[i], cos_[i]};
+                turned.turn(d, d * d);
+                const auto is_near = abs(d) <= Scalar(largest_turn);
+                if (!all_of(is_near)) [[unlikely]]
+                    turned = evaluated(is_near, angles[i], turned);
+                sin[i] = turned.sin;
+                cos[i] = turned.cos;
+            }
+        };
     }
 
 private:

@@ -61,19 +61,10 @@ struct AngleChain {
 
     static State start(const Pendulum<Scalar>& p) { return released_in_angles<Scalar, N>(p); }
 
-    /// dydt ← d/dt of the state.
-    void rate(const State& y, State& dydt) {
-        update(y);
-        rate_of_angles(y, dydt);
-    }
-    /// dydt ← d/dt of the state at the start of a step, or at one of its stages.
-    void rate(const State& y, State& dydt, Angles& angles) {
-        angles.start(turned(y), sin, cos);
-        factor();
-        rate_of_angles(y, dydt);
-    }
-    void rate_of_stage(const State& y, State& dydt, const Angles& angles) {
-        angles.at(turned(y), sin, cos);
+    /// dydt ← d/dt of the state. `take` is TakeSinCos, or one of StageAngles.
+    template <class Take = TakeSinCos>
+    void rate(const State& y, State& dydt, const Take& take = {}) {
+        take(turned(y), sin, cos);
         factor();
         rate_of_angles(y, dydt);
     }
@@ -81,7 +72,7 @@ struct AngleChain {
     /// Computes everything that depends only on the angles, the first elements of `y`, and factors the matrix.
     template <class Y>
     void update(const Y& y) {
-        take_sin_cos(turned(y), sin, cos);
+        TakeSinCos()(turned(y), sin, cos);
         factor();
     }
 
@@ -177,30 +168,11 @@ struct DoublePendulum {
     /// dydt ← d/dt of the state. With D = θ2 − θ1, L = l2/l1, μ = m1/m2 and q = ω1² + (g/l1) cosθ1:
     ///     θ1″ =  (q cosD + L ω2²) f − (g/l1) sinθ1
     ///     θ2″ = −(q (1 + μ) / L + ω2² cosD) f,      f = sinD / (μ + sin²D)
-    void rate(const State& y, State& dydt) const {
-        Pair sin, cos;
-        take_sin_cos(turned(y), sin, cos);
-        rate_of_angles(y, sin, cos, dydt);
-    }
-    /// dydt ← d/dt of the state at the start of a step, or at one of its stages.
-    void rate(const State& y, State& dydt, Angles& angles) const {
-        Pair sin, cos;
-        angles.start(turned(y), sin, cos);
-        rate_of_angles(y, sin, cos, dydt);
-    }
-    void rate_of_stage(const State& y, State& dydt, const Angles& angles) const {
-        Pair sin, cos;
-        angles.at(turned(y), sin, cos);
-        rate_of_angles(y, sin, cos, dydt);
-    }
-
-private:
-    using Pair = doppel::State<Scalar, 2>;
-
-    /// θ1 and D
-    static std::array<Scalar, 2> turned(const State& y) { return {y[0], Scalar(y[1] - y[0])}; }
-
-    void rate_of_angles(const State& y, const Pair& sin, const Pair& cos, State& dydt) const {
+    /// `take` is TakeSinCos, or one of StageAngles.
+    template <class Take = TakeSinCos>
+    void rate(const State& y, State& dydt, const Take& take = {}) const {
+        doppel::State<Scalar, 2> sin, cos;
+        take(std::array{y[0], Scalar(y[1] - y[0])}, sin, cos);
         const Scalar square1 = y[2] * y[2], square2 = y[3] * y[3];
         const Scalar f = sin[1] / (mass_ratio_ + sin[1] * sin[1]);
         const Scalar q = square1 + gravity_by_length_ * cos[0];
@@ -212,6 +184,7 @@ private:
         dydt[3] = a2;
     }
 
+private:
     Scalar mass_ratio_, length_ratio_;  // μ, L
     Scalar lever_;                      // (1 + μ) / L
     Scalar gravity_by_length_;          // g / l1, 1/s²

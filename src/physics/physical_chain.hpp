@@ -25,6 +25,8 @@ class PhysicalChain {
 public:
     using Scalar = S;
     static constexpr bool has_all = N != Eigen::Dynamic;
+    /// Not over numbers with derivatives or a tape, which have no motion of their own.
+    static constexpr bool chooses_modes = !requires(const Scalar& number) { number.value; };
     using State = doppel::State<Scalar, has_all ? 2 * (N + 2) : N>;
     using Half = doppel::State<Scalar, N>;
     using Angles = StageAngles<Scalar, N>;
@@ -57,21 +59,12 @@ public:
 
     /// dydt ← d/dt of the state. The modes of the joints (held, or sliding in one direction) are those set by
     /// take_modes() and settle(), or if none were set, those at y.
-    void rate(const State& y, State& dydt) {
-        if (switches() && !has_modes_) choose_modes(y);
-        take_angles(y);
-        rate_at_angles(y, dydt);
-    }
-    /// dydt ← d/dt of the state at the start of a step, or at one of its stages.
-    void rate(const State& y, State& dydt, Angles& angles) requires(has_all) {
-        if (switches() && !has_modes_) choose_modes(y);
-        angles.start(turned(y), sin_, cos_);
-        bodies_.factor(sin_, cos_);
-        rate_at_angles(y, dydt);
-    }
-    void rate_of_stage(const State& y, State& dydt, const Angles& angles) requires(has_all) {
-        angles.at(turned(y), sin_, cos_);
-        bodies_.factor(sin_, cos_);
+    /// `take` is TakeSinCos, or one of StageAngles.
+    template <class Take = TakeSinCos>
+    void rate(const State& y, State& dydt, const Take& take = {}) {
+        if constexpr (chooses_modes)
+            if (switches() && !has_modes_) choose_modes(y);
+        take_angles(y, take);
         rate_at_angles(y, dydt);
     }
 
@@ -111,8 +104,9 @@ public:
     const std::vector<int>& modes() const { return slides_; }
 
     /// For the Hamiltonian form (Canonical), at the angles of y = (q, …).
-    void take_angles(const State& y) {
-        take_sin_cos(turned(y), sin_, cos_);
+    template <class Take = TakeSinCos>
+    void take_angles(const State& y, const Take& take = {}) {
+        take(turned(y), sin_, cos_);
         bodies_.factor(sin_, cos_);
     }
     void solve_mass(const Half& f, Half& a) { bodies_.solve_mass(f, a); }

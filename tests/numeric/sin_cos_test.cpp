@@ -84,7 +84,7 @@ TEST(SinCos, OfADoubleIsThatOfALaneAtEveryWidth) {
     expect_the_bits_of_double<4>(all);
     expect_the_bits_of_double<8>(all);
     Eigen::VectorXd sin(all.size()), cos(all.size());
-    take_sin_cos(all, sin, cos);
+    TakeSinCos()(all, sin, cos);
     for (std::size_t k = 0; k < all.size(); ++k) {
         ASSERT_EQ(bits(SinCos<double>(all[k]).sin), bits(sin[static_cast<Eigen::Index>(k)])) << all[k];
         ASSERT_EQ(bits(SinCos<double>(all[k]).cos), bits(cos[static_cast<Eigen::Index>(k)])) << all[k];
@@ -112,9 +112,9 @@ TEST(SinCos, OfStagesAreRotatedIfNearAndOtherwiseEvaluated) {
     StageAngles<double, 3> stages;
     const Column start(0.3, -2.0, 50.0), moved(0.3 + 0.9 / 1024, -2.0 - 1.0 / 1024, 50.4);
     Column s, c;
-    stages.start(start, s, c);
+    stages.start()(start, s, c);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(s[i], SinCos<double>(start[i]).sin);
-    stages.at(moved, s, c);
+    stages.stage()(moved, s, c);
     for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(s[i], static_cast<double>(Quad(sin(Quad(moved[i])))), 2.3e-16) << i;  // measured 1.2e-16
         EXPECT_NEAR(c[i], static_cast<double>(Quad(cos(Quad(moved[i])))), 2.3e-16) << i;  // measured 1.3e-16
