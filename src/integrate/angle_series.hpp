@@ -5,7 +5,6 @@
 #include "physics/angle_chain.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -34,7 +33,8 @@ public:
     using State = typename Chain::State;
 
     AngleSeries(const Pendulum<Scalar>& p, int order)
-        : order_(order),
+        : Series<Scalar>(longest_chain_step(static_cast<double>(p.reach()), static_cast<double>(p.gravity))),
+          order_(order),
           chain_(p),
           links_(chain_.w.size()),
           terms_(static_cast<std::size_t>(order + 2), Term(links_)),
@@ -51,7 +51,7 @@ public:
         term(0).rate = y.tail(links_);
         term(1).y = -term(0).rate;
         for (int k = 0; k < order_; ++k) next(k);
-        amount_ = static_cast<double>(largest(0)) + std::sqrt(static_cast<double>(largest(1)));
+        this->take_scale();
     }
 
     void move(const Scalar& h, State& change) override {
@@ -71,19 +71,7 @@ public:
         }
     }
 
-    double size(int k) const override { return amount_ == 0 ? 0 : static_cast<double>(largest(k)) / amount_; }
-    double log2_tolerance_ratio(double tolerance, int k) const override {
-        const double ratio = Series<Scalar>::log2_tolerance_ratio(tolerance, k);
-        if (std::is_same_v<Scalar, double> || !std::isnan(ratio)) return ratio;
-        return Series<Scalar>::log2_tolerance_ratio(tolerance, amount_, largest(k));
-    }
-
     double rate(int k, Eigen::Index link) const override { return static_cast<double>(term(k).rate[link]); }
-
-    double longest_step() const override {
-        return longest_chain_step(static_cast<double>(chain_.pendulum.reach()),
-                                  static_cast<double>(chain_.pendulum.gravity));
-    }
 
 private:
     using Half = typename Chain::Half;
@@ -158,7 +146,7 @@ private:
         store(-across, term(k).across);
     }
 
-    Scalar largest(int k) const {
+    Scalar largest(int k) const override {
         using std::abs;
         Scalar maximum(0);
         for (Eigen::Index i = 0; i < links_; ++i) maximum = greater(maximum, Scalar(abs(term(k).rate[i])));
@@ -175,7 +163,6 @@ private:
     std::vector<Term> terms_;
     std::vector<Scalar> inverse_;  // 1/k
     Half known_, along_;           // R_k across and along, divided by the length
-    double amount_ = 0;            // scale of the rates, rad/s
 };
 
 }  // namespace doppel

@@ -11,7 +11,7 @@ namespace doppel {
 LaneRecurrence::~LaneRecurrence() = default;
 
 LaneSeries::LaneSeries(const Pendulum<double>& p, int order, int width)
-    : links_(p.links()), longest_step_(longest_chain_step(p.reach(), p.gravity)) {
+    : Series<double>(longest_chain_step(p.reach(), p.gravity)), links_(p.links()) {
     const auto make = at_width(std::min(chosen_width(width), 4),
                                []<int chosen>() { return make_lane_recurrence < chosen == 2 ? 2 : 4 > ; });
     lanes_.reset(make(p, order));
@@ -19,7 +19,7 @@ LaneSeries::LaneSeries(const Pendulum<double>& p, int order, int width)
 
 void LaneSeries::expand(const State& y) {
     lanes_->expand(y.data());
-    amount_ = largest(0) + std::sqrt(largest(1));
+    take_scale();
 }
 
 double LaneSeries::largest(int k) const {

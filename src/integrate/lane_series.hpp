@@ -33,17 +33,13 @@ public:
 
     void expand(const State& y) override;
     void move(const double& h, State& change) override { lanes_->move(h, change.data()); }
-    double size(int k) const override { return amount_ == 0 ? 0 : largest(k) / amount_; }
-    double longest_step() const override { return longest_step_; }
     double rate(int k, Eigen::Index link) const override { return lanes_->rates(k)[link]; }
 
 private:
-    double largest(int k) const;  // |ω_k|
+    double largest(int k) const override;  // |ω_k|
 
     std::size_t links_;
-    double longest_step_;  // s
     std::unique_ptr<LaneRecurrence> lanes_;
-    double amount_ = 0;  // scale of the rates, rad/s
 };
 
 }  // namespace doppel

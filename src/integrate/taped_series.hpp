@@ -35,7 +35,11 @@ public:
     using State = typename Series<Scalar>::State;
 
     TapedSeries(Model taped, const SeriesScale& scale, int order)
-        : taped_(std::move(taped)), order_(order), tape_(order + 1), scale_(scale) {}
+        : Series<Scalar>(scale.longest, !std::is_same_v<Scalar, double>),
+          taped_(std::move(taped)),
+          order_(order),
+          tape_(order + 1),
+          scale_(scale) {}
 
     void expand(const State& y) override {
         if (!is_as_recorded(y)) record(y);
@@ -48,7 +52,7 @@ public:
                 tape_.term(y_[i].node(), k + 1) = rate * by_next;
             }
         }
-        amount_ = largest(0) + std::sqrt(scale_.length * largest(1));
+        this->take_scale(scale_.length);
     }
 
     void move(const Scalar& h, State& change) override {
@@ -59,15 +63,7 @@ public:
         }
     }
 
-    double size(int k) const override { return amount_ == 0 ? 0 : largest(k) / amount_; }
-    double longest_step() const override { return scale_.longest; }
     double rate(int k, Eigen::Index i) const override { return static_cast<double>(series(scale_.rates + i)[k]); }
-
-    double log2_tolerance_ratio(double tolerance, int k) const override {
-        using Base = Series<Scalar>;
-        if constexpr (std::is_same_v<Scalar, double>) return Base::log2_tolerance_ratio(tolerance, k);
-        return Base::log2_tolerance_ratio(tolerance, amount_, largest_of(k));
-    }
 
     /// Just after the first change of a comparison, s; at most `h`.
     double first_event(double h) const override {
@@ -131,7 +127,7 @@ private:
 
     const Scalar* series(Eigen::Index i) const { return tape_.series(y_[i].node()); }
     /// The largest coefficient k of the rates of angles or positions.
-    Scalar largest_of(int k) const {
+    Scalar largest(int k) const override {
         using std::abs;
         Scalar maximum(0);
         for (Eigen::Index i = 0; i < scale_.coordinates; ++i) {
@@ -140,12 +136,10 @@ private:
         }
         return maximum;
     }
-    double largest(int k) const { return static_cast<double>(largest_of(k)); }
 
     int order_;
     Tape<Scalar> tape_;
     SeriesScale scale_;
-    double amount_ = 0;  // scale of the rates, rad/s or m/s
     typename Model::State y_, rate_;
 };
 
