@@ -32,7 +32,7 @@ struct SideBatch {
             if (side.model == Model::angles)
                 place_angles(members[i], state, seen[i]);
             else
-                place_particles(members[i], state, seen[i]);
+                place_particles(members[i].mass, state, seen[i]);
         }
     }
 };

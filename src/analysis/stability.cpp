@@ -184,20 +184,6 @@ std::optional<double> step_limit(std::string_view method, std::span<const Mode> 
     return fails;
 }
 
-double released_energy(const Pendulum<double>& release) {
-    // Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …) avoids cancellation of potential energies
-    double vx = 0, vy = 0, height = 0, sum = 0;
-    for (std::size_t i = 0; i < release.links(); ++i) {
-        const double l = release.length[i], theta = release.angle[i], half = SinCos<double>(theta / 2).sin;
-        const SinCos<double> turn(theta);
-        vx += l * release.rate[i] * turn.cos;
-        vy += l * release.rate[i] * turn.sin;
-        height += 2 * l * half * half;
-        sum += release.mass[i] * ((vx * vx + vy * vy) / 2 + release.gravity * height);
-    }
-    return sum;
-}
-
 std::vector<double> max_energy_errors(MotionSpec spec, std::span<const Pendulum<Quad>> releases, long samples,
                                       const std::atomic<bool>& stop) {
     if (!releases.empty() && Batch::supports(spec.method, releases[0].links()))

@@ -41,9 +41,6 @@ double largest_real_part(const Eigen::MatrixXd& matrix);
 /// Energies are compared with the release's energy above the hanging equilibrium. A larger relative error is a failure.
 inline constexpr double failure_error = 100;
 
-/// The energy of a release above the hanging equilibrium, J.
-double released_energy(const Pendulum<double>& release);
-
 /// The largest energy error at the first samples of a motion like `spec`, for each release, relative to the released
 /// energy. NaN for a failed run: an error above `failure_error`, NaN, or a step that cannot be made. All releases must
 /// have the same number of links. Throws Error: exit 2 if the method does not support the model, exit 130 soon after

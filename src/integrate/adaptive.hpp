@@ -130,7 +130,7 @@ private:
         };
         const auto event = first_event(model_, span_, state_at);
         if (!event) return;
-        repeated_events_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * span_);
+        repeated_events_.note(*event, span_);
         take(*event);
         arrive();
         ends_at_event_ = true;

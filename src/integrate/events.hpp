@@ -85,9 +85,11 @@ std::optional<Scalar> first_event(Model& model, const Scalar& h, StateAt&& state
 /// Counts consecutive events at the same time. Throws Error (exit 3) if they do not end.
 class RepeatedEvents {
 public:
-    void note(bool advances) {
+    /// An event so long after the start of a step, s.
+    template <class Scalar>
+    void note(const Scalar& event, const Scalar& step) {
         constexpr int maximum = 100;
-        count_ = advances ? 0 : count_ + 1;
+        count_ = event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * step ? 0 : count_ + 1;
         if (count_ > maximum)
             throw method_failed("joints stick and slip {} times at one time; the motion cannot continue", maximum);
     }
@@ -114,7 +116,7 @@ void step_through_events(Model& model, State& y, const Scalar& h, Take&& take) {
             bisect_event(Scalar(0), left, left, [&](const Scalar& t) { return model.margin(state_at(t)); });
         y = state_at(event);
         model.settle(y);
-        repeated.note(event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * h);
+        repeated.note(event, h);
         left -= event;
         if (!(left > Scalar(0))) return;
     }

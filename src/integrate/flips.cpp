@@ -15,13 +15,6 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// g l_i Σ_{k≥i} m_k, J: half of the energy that lifts rod i from hanging to upright.
-double weight(const Pendulum<double>& p, std::size_t rod) {
-    double below = 0;
-    for (std::size_t k = rod; k < p.links(); ++k) below += p.mass[k];
-    return p.gravity * p.length[rod] * below;
-}
-
 void check(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times) {
     for (const auto& p : pendulums)
         if (p.links() != 2) throw bad_input("flips are computed for two links; there are {}", p.links());
@@ -69,17 +62,12 @@ double flip_tolerance(double duration) {
 
 bool flip_is_forbidden(const Pendulum<double>& p) {
     if (p.gravity < 0) return false;  // a rod then needs no energy to stand upright
-    // J above the hanging equilibrium; in this form, a heavy hanging rod costs a light one no digits
-    double energy = 0, minimum = never, vx = 0, vy = 0;
-    for (std::size_t i = 0; i < p.links(); ++i) {
-        const SinCos<double> turn(p.angle[i]);
-        const double half = SinCos<double>(0.5 * p.angle[i]).sin, upright = 2 * weight(p, i);
-        vx += p.length[i] * p.rate[i] * turn.cos;
-        vy += p.length[i] * p.rate[i] * turn.sin;
-        energy += upright * half * half + 0.5 * p.mass[i] * (vx * vx + vy * vy);
-        minimum = std::min(minimum, upright);
+    double minimum = never, below = 0;
+    for (std::size_t i = p.links(); i-- > 0;) {
+        below += p.mass[i];
+        minimum = std::min(minimum, 2 * p.gravity * p.length[i] * below);
     }
-    return energy < minimum;
+    return released_energy(p) < minimum;
 }
 
 void first_flips(std::span<const Pendulum<double>> pendulums, const FlipSpec& spec, std::span<double> times,

@@ -89,10 +89,6 @@ private:
     static constexpr long remembered = 10;  // steps
     static constexpr int limit = 500;       // iterations
 
-    static void add(State& to, const Scalar& factor, const State& what) {
-        for (Eigen::Index c = 0; c < to.size(); ++c) to[c] += factor * what[c];
-    }
-
     /// Largest changes of angles and momenta in an iteration.
     struct Change {
         Scalar angle, momentum;

@@ -45,8 +45,8 @@ public:
         stepper_->read(y_);
         if (const auto links = static_cast<Eigen::Index>(spec.chain ? spec.chain->links() : 0); physical_)
             layout_.emplace(*physical_, links, true, y_.size() == 2 * (links + 2));
-        const auto released = configuration_of(y_);
-        start_energy_ = released.energy.total;
+        const auto released = configuration(y_);
+        start_energy_ = released.energy;
         const double interval = spec.sample_interval.value();
         const bool follows_turns = model_ != Model::angles && pendulum_ && spec.follows_turns;
         if (adaptive_) {
@@ -92,18 +92,17 @@ public:
     Observation observe() const override {
         State y;
         stepper_->read(y);
-        auto [bobs, pivot, energy] = configuration_of(y);
+        auto [bobs, pivot, energy, kinetic_energy] = configuration(y);
         (ahead_ ? *ahead_ : turns_).add_to(bobs);
         const Scalar work = layout_ ? layout_->work_of(y) : Scalar(0);
-        Observation seen{.bobs = {},
+        Observation seen{.bobs = Cast<double>()(bobs),
                          .exact = {},
-                         .pivot = in_double(pivot),
-                         .energy = static_cast<double>(energy.total),
-                         .kinetic_energy = static_cast<double>(energy.kinetic),
+                         .pivot = Cast<double>()(pivot),
+                         .energy = static_cast<double>(energy),
+                         .kinetic_energy = static_cast<double>(kinetic_energy),
                          .work = static_cast<double>(work),
-                         .energy_change = static_cast<double>(Scalar(energy.total - start_energy_ - work)),
+                         .energy_change = static_cast<double>(Scalar(energy - start_energy_ - work)),
                          .length_error = length_error_of(y, bobs)};
-        for (const auto& bob : bobs) seen.bobs.push_back(in_double(bob));
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         if (wants_tension_)
             seen.tension = tension_model_ ? tension_model_->tensions(particles_of(seen.bobs))
@@ -132,37 +131,15 @@ private:
         return make_mechanism_stepper<Scalar>(spec);
     }
 
-    /// Bobs, pivot and energy of a state.
-    struct Configuration {
-        Bobs<Scalar> bobs;  // for a chain with their angles, which are within (−π, π] except in the model of angles
-        Bob<Scalar> pivot{};
-        struct {
-            Scalar total, kinetic;
-        } energy;
-    };
-    Configuration configuration_of(const State& y) const {
-        if (physical_) {
-            const PivotPlace<Scalar> at(physical_->pivot, layout_->time_of(y));
-            Configuration seen{.bobs = bobs_of_angles(*pendulum_, layout_->of_links(y)),
-                               .pivot = {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y},
-                               .energy = {}};
-            move_with(seen.bobs, seen.pivot);
-            const auto parts = energies(*physical_, seen.bobs, seen.pivot);
-            seen.energy = {Scalar(parts.kinetic + parts.potential), parts.kinetic};
-            return seen;
-        }
-        Configuration seen{.bobs = model_ == Model::angles ? bobs_of_angles(*pendulum_, y)
+    /// Bobs of a chain have their angles, which are within (−π, π] except in the model of angles.
+    Configuration<Scalar> configuration(const State& y) const {
+        if (physical_) return configuration_of(*physical_, layout_->of_links(y), Scalar(layout_->time_of(y)));
+        Configuration<Scalar> seen{model_ == Model::angles ? bobs_of_angles(*pendulum_, y)
                                    : pendulum_             ? bobs_of_particles(*pendulum_, y)
-                                                           : mechanism_->bobs(y),
-                           .energy = {}};
-        seen.energy = {mechanism_ ? mechanism_->energy(y) : energy(seen.bobs, pendulum_->gravity),
-                       kinetic_energy(seen.bobs)};
+                                                           : mechanism_->bobs(y)};
+        seen.energy = mechanism_ ? mechanism_->energy(y) : energy(seen.bobs, pendulum_->gravity);
+        seen.kinetic_energy = kinetic_energy(seen.bobs);
         return seen;
-    }
-    static Bob<double> in_double(const Bob<Scalar>& bob) {
-        const auto plain = [](const Scalar& x) { return static_cast<double>(x); };
-        return {plain(bob.mass), plain(bob.x),     plain(bob.y),    plain(bob.vx),
-                plain(bob.vy),   plain(bob.theta), plain(bob.omega)};
     }
     double length_error_of(const State& y, const Bobs<Scalar>& bobs) const {
         if (model_ == Model::angles) return 0;

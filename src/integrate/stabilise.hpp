@@ -1,17 +1,11 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "physics/constraint.hpp"
+#include "integrate/stepper.hpp"
 
 #include <limits>
 
 namespace doppel {
-
-/// to ← to + factor · what, number by number as the models write: a wider load would wait for their stores.
-template <class Half>
-void add(Half& to, const typename Half::Scalar& factor, const Half& what) {
-    for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += factor * what[i];
-}
 
 /// Moves positions onto their constraints along M⁻¹Jᵀ by Newton's method for the multipliers:
 ///     C(q + M⁻¹Jᵀ(q0) λ) = 0 ,     λ ← λ − (J(q) M⁻¹ Jᵀ(q0))⁻¹ C(q) .

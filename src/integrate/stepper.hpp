@@ -28,6 +28,12 @@ namespace doppel {
 // Errors: exit 3 if a step cannot be made (no convergence, vanishing step size), exit 2 for a tolerance that the scalar
 // cannot reach.
 
+/// to ← to + factor · what, number by number as the models write: a wider load would wait for their stores.
+template <class Vector>
+void add(Vector& to, const typename Vector::Scalar& factor, const Vector& what) {
+    for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += factor * what[i];
+}
+
 /// Whether the model projects the state onto its constraints after every step.
 template <class Model>
 concept Projects = requires(Model& model, typename Model::State& y) {

@@ -28,10 +28,8 @@ namespace doppel {
 /// from the last coefficients; output times do not shorten a step, because the series is valid everywhere inside it.
 ///
 /// Order   p = 10 − ½ ln ε, more than the usual 1 − ½ ln ε, because the work grows more like p than like p².
-/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the scale of the rates.
-/// Rates
-///         have larger errors than angles, by a factor of about p/h. No step is more than twice as long as the previous
-///         one.
+/// Step    h = min (ε / |c_k|)^(1/k) over the last four coefficients of the rates, relative to the scale of the rates;
+///         at most twice the previous one. Rates have larger errors than angles, by a factor of about p/h.
 /// Rounding errors of the state are carried over to the next step.
 /// Source  Jorba & Zou 2005, A software package for the numerical integration of ODEs by means of high-order Taylor
 ///         methods, Experimental Mathematics 14:99.
@@ -148,7 +146,7 @@ private:
             return change_;
         });
         if (!event) return false;
-        repeated_events_.note(*event > Scalar(4) * std::numeric_limits<Scalar>::epsilon() * step_);
+        repeated_events_.note(*event, step_);
         step_ = *event;
         return true;
     }

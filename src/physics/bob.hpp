@@ -14,6 +14,8 @@ struct Bob {
     Scalar mass;              // kg
     Scalar x, y, vx, vy;      // m, m/s
     Scalar theta{}, omega{};  // of the rod above it, for a chain: rad, rad/s
+
+    auto members() const { return std::tie(mass, x, y, vx, vy, theta, omega); }
 };
 
 template <class Scalar>
@@ -44,14 +46,14 @@ Bobs<Scalar> bobs_of_angles(const Pendulum<Scalar>& p, const State<Scalar, N>& s
     return bobs;
 }
 
-/// Writes the bobs of a chain, without angles, from its state as particles to `bobs`, whose memory is reused. Other
-/// particles may follow those of the chain. The first half of the state contains positions, the second velocities.
-template <class Scalar, int N>
-void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
-    bobs.resize(p.links());
-    for (std::size_t k = 0; k < p.links(); ++k) {
-        const Eigen::Index q = 2 * static_cast<Eigen::Index>(k), v = state.size() / 2 + q;
-        bobs[k] = {p.mass[k], state[q], state[q + 1], state[v], state[v + 1]};
+/// Writes particles of these masses, without angles, to `bobs`, whose memory is reused. Others may follow them in the
+/// state; its first half contains positions, the second velocities.
+template <class Masses, class Scalar, int N>
+void place_particles(const Masses& mass, const State<Scalar, N>& state, Bobs<Scalar>& bobs) {
+    bobs.clear();
+    for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(mass.size()); ++k) {
+        const Eigen::Index q = 2 * k, v = state.size() / 2 + q;
+        bobs.push_back({mass[k], state[q], state[q + 1], state[v], state[v + 1]});
     }
 }
 
@@ -59,7 +61,7 @@ void place_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state, B
 template <class Scalar, int N>
 Bobs<Scalar> bobs_of_particles(const Pendulum<Scalar>& p, const State<Scalar, N>& state) {
     Bobs<Scalar> bobs;
-    place_particles(p, state, bobs);
+    place_particles(p.mass, state, bobs);
     Bob<Scalar> above{};  // the pivot
     for (auto& bob : bobs) {
         const Scalar rx = bob.x - above.x, ry = bob.y - above.y;
@@ -94,43 +96,6 @@ Scalar kinetic_energy(const Bobs<Scalar>& bobs) {
     Scalar sum(0);
     for (const auto& bob : bobs) sum += Scalar(0.5) * bob.mass * (bob.vx * bob.vx + bob.vy * bob.vy);
     return sum;
-}
-
-/// Kinetic and potential energy, J.
-template <class Scalar>
-struct Energies {
-    Scalar kinetic, potential;
-};
-
-/// For rigid bodies whose ends are the bobs. The potential energy is 0 if all centres of mass are level with the
-/// origin. The body between positions p and q, with s = a/l, has its centre at p + s (q − p) and rotates at |q′ − p′| /
-/// l.
-template <class Scalar>
-Energies<Scalar> energies(const PhysicalPendulum<Scalar>& p, const Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
-    Energies<Scalar> sum{Scalar(0), Scalar(0)};
-    const auto* above = &pivot;
-    for (std::size_t i = 0; i < bobs.size(); ++i) {
-        const auto& end = bobs[i];
-        const Scalar part = p.center[i] / p.chain.length[i];
-        const Scalar ux = end.vx - above->vx, uy = end.vy - above->vy;
-        const Scalar vx = above->vx + part * ux, vy = above->vy + part * uy;
-        const Scalar turn = (ux * ux + uy * uy) / (p.chain.length[i] * p.chain.length[i]);
-        sum.kinetic += Scalar(0.5) * (p.chain.mass[i] * (vx * vx + vy * vy) + p.inertia[i] * turn);
-        sum.potential += p.chain.mass[i] * p.chain.gravity * (above->y + part * (end.y - above->y));
-        above = &end;
-    }
-    return sum;
-}
-
-/// Moves the bobs of a chain from a pivot at the origin to `pivot`.
-template <class Scalar>
-void move_with(Bobs<Scalar>& bobs, const Bob<Scalar>& pivot) {
-    for (auto& bob : bobs) {
-        bob.x += pivot.x;
-        bob.y += pivot.y;
-        bob.vx += pivot.vx;
-        bob.vy += pivot.vy;
-    }
 }
 
 /// The largest error of a rod's length, m.

@@ -49,14 +49,10 @@ struct Mechanism : ConstraintSet<S> {
     explicit Mechanism(const Assembly<Scalar>& assembly) : Mechanism(assembly, masses_of(assembly)) {}
 
     static State start(const Assembly<Scalar>& assembly) {
-        const auto n = static_cast<Eigen::Index>(assembly.particles.size());
-        State y(4 * n);
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const auto& particle = assembly.particles[static_cast<std::size_t>(i)];
-            y.template segment<2>(2 * i) = particle.place;
-            y.template segment<2>(2 * n + 2 * i) = particle.velocity;
-        }
-        return y;
+        Bobs<Scalar> bobs;
+        for (const auto& [mass, place, velocity] : assembly.particles)
+            bobs.push_back({mass, place[0], place[1], velocity[0], velocity[1]});
+        return particles_of(bobs);
     }
 
     /// dydt ← d/dt of the state.
@@ -131,12 +127,8 @@ struct Mechanism : ConstraintSet<S> {
     }
 
     Bobs<Scalar> bobs(const State& y) const {
-        const auto n = masses_.m.size();
         Bobs<Scalar> all;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const Eigen::Index q = 2 * i, v = 2 * n + 2 * i;
-            all.push_back({masses_.m[i], y[q], y[q + 1], y[v], y[v + 1]});
-        }
+        place_particles(masses_.m, y, all);
         return all;
     }
 

@@ -60,4 +60,20 @@ State<Scalar, times<2, N>> released_in_angles(const Pendulum<Scalar>& p) {
     return y;
 }
 
+/// The energy of a release above the hanging equilibrium, J.
+///     Σ ½ m v² + m g (l1 (1 − cosθ1) + l2 (1 − cosθ2) + …) ,
+/// whose terms do not cancel as potential energies do.
+inline double released_energy(const Pendulum<double>& p) {
+    double vx = 0, vy = 0, height = 0, sum = 0;
+    for (std::size_t i = 0; i < p.links(); ++i) {
+        const double l = p.length[i], half = SinCos<double>(p.angle[i] / 2).sin;
+        const SinCos<double> turn(p.angle[i]);
+        vx += l * p.rate[i] * turn.cos;
+        vy += l * p.rate[i] * turn.sin;
+        height += 2 * l * half * half;
+        sum += p.mass[i] * ((vx * vx + vy * vy) / 2 + p.gravity * height);
+    }
+    return sum;
+}
+
 }  // namespace doppel

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "physics/physical_pendulum.hpp"
+#include "physics/bob.hpp"
 #include "physics/rod_multipliers.hpp"
 
 #include <cmath>
@@ -68,6 +68,44 @@ struct PivotPlace {
         acceleration = amplitude * Scalar(-(nu * nu * turn.cos));
     }
 };
+
+/// The bobs of a motion, its pivot, and its energies, J.
+template <class Scalar>
+struct Configuration {
+    Bobs<Scalar> bobs;
+    Bob<Scalar> pivot{};
+    Scalar energy{0}, kinetic_energy{0};
+};
+
+/// A chain of rigid bodies, whose ends are the bobs, from (θ, ω) of its links at time t. The potential energy is 0 if
+/// all centres of mass are level with the origin. The body between positions p and q, with s = a/l, has its centre at
+/// p + s (q − p) and rotates at |q′ − p′| / l.
+template <class Scalar>
+Configuration<Scalar> configuration_of(const PhysicalPendulum<Scalar>& p, const State<Scalar, Eigen::Dynamic>& links,
+                                       const Scalar& t) {
+    const auto& chain = p.chain;
+    const PivotPlace<Scalar> at(p.pivot, t);
+    Configuration<Scalar> seen{bobs_of_angles(chain, links)};
+    seen.pivot = {Scalar(0), at.place.x, at.place.y, at.velocity.x, at.velocity.y};
+    Scalar potential(0);
+    const auto* above = &seen.pivot;
+    for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
+        auto& end = seen.bobs[i];
+        end.x += at.place.x;
+        end.y += at.place.y;
+        end.vx += at.velocity.x;
+        end.vy += at.velocity.y;
+        const Scalar part = p.center[i] / chain.length[i];
+        const Scalar ux = end.vx - above->vx, uy = end.vy - above->vy;
+        const Scalar vx = above->vx + part * ux, vy = above->vy + part * uy;
+        const Scalar turn = (ux * ux + uy * uy) / (chain.length[i] * chain.length[i]);
+        seen.kinetic_energy += Scalar(0.5) * (chain.mass[i] * (vx * vx + vy * vy) + p.inertia[i] * turn);
+        potential += chain.mass[i] * chain.gravity * (above->y + part * (end.y - above->y));
+        above = &end;
+    }
+    seen.energy = seen.kinetic_energy + potential;
+    return seen;
+}
 
 /// The torques on links, N m, and forces on their ends, N, by friction and drive torques, and their power, W.
 template <class S, int N = Eigen::Dynamic>

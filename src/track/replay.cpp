@@ -5,6 +5,7 @@
 #include "track/regression.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace doppel {
 namespace {
@@ -31,15 +32,12 @@ public:
         const auto [one, two] = estimate_at(*replay_.track, replay_.samples(), replay_.start_s + time());
         State<double, Eigen::Dynamic> y(4);
         y << one.angle - replay_.offset[0], two.angle - replay_.offset[1], one.rate, two.rate;
-        const PivotPlace<double> at(pendulum_.pivot, time());
-        Observation now{.bobs = bobs_of_angles(pendulum_.chain, y),
-                        .exact = {},
-                        .pivot = {0, at.place.x, at.place.y, at.velocity.x, at.velocity.y},
-                        .tension = {}};
-        move_with(now.bobs, now.pivot);
-        const auto parts = energies(pendulum_, now.bobs, now.pivot);
-        now.kinetic_energy = parts.kinetic;
-        now.energy = parts.kinetic + parts.potential;
+        auto [bobs, pivot, energy, kinetic_energy] = configuration_of(pendulum_, y, time());
+        Observation now;
+        now.bobs = std::move(bobs);
+        now.pivot = pivot;
+        now.energy = energy;
+        now.kinetic_energy = kinetic_energy;
         return now;
     }
 

@@ -26,8 +26,7 @@ Quad energy_of(const Pendulum<Quad>& p, const Model&, const typename Model::Stat
     return energy(bobs_of_angles<Quad>(p, y), p.gravity);
 }
 Quad energy_of(const PhysicalPendulum<Quad>& p, const Bodies& model, const Bodies::State& y) {
-    const auto moved = energies_at(p, model, y);
-    return moved.kinetic + moved.potential;
+    return configuration_of(p, model.layout.of_links(y), Quad(model.layout.time_of(y))).energy;
 }
 
 /// A model, its Hamiltonian form and its start.

@@ -10,17 +10,6 @@
 
 namespace doppel {
 
-/// The energies of the bodies at y, whose pivot may move.
-template <class Scalar>
-Energies<Scalar> energies_at(const PhysicalPendulum<Scalar>& p, const PhysicalChain<Scalar>& model,
-                             const typename PhysicalChain<Scalar>::State& y) {
-    const PivotPlace<Scalar> pivot(p.pivot, model.layout.time_of(y));
-    const auto &place = pivot.place, &velocity = pivot.velocity;
-    auto bobs = bobs_of_angles<Scalar>(p.chain, model.layout.of_links(y));
-    for (auto& bob : bobs) bob.x += place.x, bob.y += place.y, bob.vx += velocity.x, bob.vy += velocity.y;
-    return energies(p, bobs, {Scalar(0), place.x, place.y, velocity.x, velocity.y});
-}
-
 /// The rates of the state at the start.
 template <class Model, class Description>
 typename Model::State rate_at_start(const Description& description) {
