@@ -15,8 +15,9 @@ constexpr int degree = 5;
 constexpr std::size_t min_points = degree + 3;
 
 /// The samples of a link in a window around a time, without outliers. The window is shifted to have its full width near
-/// the ends of the piece, and widened to contain enough samples.
-std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t link, double time_s, double window) {
+/// the ends of the piece, and widened to contain `enough` samples.
+std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t link, double time_s, double window,
+                                        std::size_t enough) {
     const auto& times = piece.time_s;
     const double from = std::max(times.front(), std::min(time_s - window / 2, times.back() - window));
     auto first = static_cast<std::size_t>(std::ranges::lower_bound(times, from) - times.begin()), last = first;
@@ -25,7 +26,7 @@ std::vector<std::size_t> samples_around(const TrackPiece& piece, std::size_t lin
         if (!piece.is_outlier[link][i]) samples.push_back(i);
     };
     while (last < times.size() && times[last] <= from + window) take(last++);
-    while (samples.size() < min_points && (first > 0 || last < times.size())) {
+    while (samples.size() < enough && (first > 0 || last < times.size())) {
         const bool back = first > 0 && (last == times.size() || time_s - times[first - 1] < times[last] - time_s);
         take(back ? --first : last++);
     }
@@ -56,7 +57,7 @@ struct Equations {
 LinkEstimate link_estimate(const TrackPiece& piece, std::size_t link, const std::vector<std::size_t>& samples,
                            double center) {
     const auto count = samples.size();
-    if (count < degree + 2) return {piece.angle[link].front()};
+    if (count < degree + 1) return {piece.angle[link].front()};
     const double span = std::max(center - piece.time_s[samples.front()], piece.time_s[samples.back()] - center);
     const auto powers_at = [&](std::size_t sample) {
         Eigen::Matrix<double, degree + 1, 1> powers;
@@ -89,12 +90,16 @@ double window_of(const Track& track) {
 LinkEstimates estimate_at(const Track& track, const TrackPiece& piece, double time_s, double longer) {
     // encoder errors are correlated over some samples, which the sample-to-sample noise does not show
     constexpr double noises = 3, shortest_s = 1e-6;
+    const double longest = longer * window_of(track);
     LinkEstimates both{};
     for (std::size_t link = 0; link < 2; ++link)
-        for (double window = longer * window_of(track); window > shortest_s; window /= 2) {
-            const auto samples = samples_around(piece, link, time_s, window);
+        for (double window = longest; window > shortest_s; window /= 2) {
+            auto samples = samples_around(piece, link, time_s, window, min_points);
+            const bool has_few = samples.size() <= min_points;
+            // coarse ones: through the nearest
+            if (has_few && window == longest) samples = samples_around(piece, link, time_s, 0, degree + 1);
             both[link] = link_estimate(piece, link, samples, time_s);
-            if (both[link].rms <= noises * track.noise[link] || samples.size() <= min_points) break;
+            if (has_few || both[link].rms <= noises * track.noise[link]) break;
         }
     return both;
 }

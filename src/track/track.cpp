@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <span>
@@ -52,9 +53,12 @@ Heading heading_of(const std::string& file, std::string_view line) {
     Heading heading{.names = cells_of(line)};
     const auto places = [&](std::initializer_list<std::string_view> wanted) {
         std::vector<std::size_t> found;
-        for (const auto name : wanted)
+        for (const auto name : wanted) {
+            if (std::ranges::count(heading.names, name) > 1)
+                throw bad_input("{}:1: the column {} occurs twice; leave one out", file, name);
             if (const auto at = std::ranges::find(heading.names, name); at != heading.names.end())
                 found.push_back(static_cast<std::size_t>(at - heading.names.begin()));
+        }
         return found;
     };
     for (const auto at : places({"theta1_deg", "theta2_deg"}))
@@ -63,7 +67,11 @@ Heading heading_of(const std::string& file, std::string_view line) {
             heading.names[at]);
     const auto time = places({"time_s"}), piece = places({"piece"}), angles = places({"theta1_rad", "theta2_rad"});
     const auto pixels = places({"x0_px", "y0_px", "x1_px", "y1_px", "x2_px", "y2_px"});
-    if (time.empty()) throw bad_input("{}:1: there is no column time_s", file);
+    if (time.empty())
+        throw bad_input("{}:1: there is no column time_s; {}", file,
+                        line.find_first_of(";\t") == std::string_view::npos
+                            ? "columns are named as here, in small letters"
+                            : "columns are separated by commas, not by semicolons or tabs");
     if (angles.size() == 1)
         throw bad_input("{}:1: there is only one link, {}; fit needs a double pendulum, with theta1_rad and theta2_rad",
                         file, heading.names[angles[0]]);
@@ -125,7 +133,8 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
     std::optional<Heading> heading;
     std::string_view piece_number;
     const auto first_piece = track.pieces.size();
-    std::size_t line_number = 0, rows = track.samples();
+    const auto rows_before = track.samples();
+    std::size_t line_number = 0, rows = rows_before;
     bool starts = true;
     while (!text.empty()) {
         throw_if_set(stop);
@@ -167,6 +176,10 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
     }
     if (!heading) throw bad_input("{}: the file is empty; it must begin with time_s,theta1_rad,theta2_rad", name);
     if (track.pieces.size() == first_piece) throw bad_input("{}: there are no rows below the header", name);
+    const auto& times = track.pieces[first_piece].time_s;
+    if (times.size() == 2 && times[1] - times[0] > long_gap_s && track.samples() > rows_before + 2)
+        throw bad_input("{}: rows are {:.3g} s apart, and more than {} s are a gap; time_s must be in seconds", name,
+                        times[1] - times[0], long_gap_s);
 }
 
 // Checks.
@@ -174,36 +187,47 @@ void read_text(const std::string& name, std::string_view text, Track& track, con
 constexpr std::size_t min_samples = 100, min_of_piece = 12;
 constexpr double min_s = 1.5, min_of_piece_s = 0.25;
 
-/// The distance of each sample from the cubic through two neighbours on either side.
-std::vector<double> residuals_of_cubics(const TrackPiece& piece, std::size_t link) {
+/// The distance of each sample from the polynomial through `some` neighbours on either side.
+std::vector<double> residuals_of(const TrackPiece& piece, std::size_t link, std::size_t some) {
     const auto &t = piece.time_s, &x = piece.angle[link];
     std::vector<double> residuals(x.size(), 0);
-    for (std::size_t i = 2; i + 2 < x.size(); ++i) {
+    for (std::size_t i = some; i + some < x.size(); ++i) {
         residuals[i] = x[i];
-        for (const auto k : {i - 2, i - 1, i + 1, i + 2}) {
+        for (auto k = i - some; k <= i + some; ++k) {
             double weight = 1;
-            for (const auto other : {i - 2, i - 1, i + 1, i + 2})
-                if (other != k) weight *= (t[i] - t[other]) / (t[k] - t[other]);
-            residuals[i] -= weight * x[k];
+            for (auto other = i - some; other <= i + some; ++other)
+                if (other != k && other != i) weight *= (t[i] - t[other]) / (t[k] - t[other]);
+            if (k != i) residuals[i] -= weight * x[k];
         }
     }
     return residuals;
 }
 
-/// Finds the noise, and outliers: samples far from the cubic while their neighbours deviate the other way.
+/// Finds the noise, and outliers: samples far from the cubic through their neighbours, which deviate the other way. Between
+/// coarse samples the motion is no cubic; there a quintic leaves less.
 void find_noise(Track& track, const std::atomic<bool>& stop) {
-    constexpr double far = 12,
-                     of_cubic = 1.39;  // the deviation from a cubic through values with noise 1, in units of that noise
+    constexpr double far = 12;
+    // the deviation from a polynomial through so many values with noise 1 on either side, in units of that noise
+    constexpr std::pair<std::size_t, double> polynomials[]{{2, 1.39}, {3, 1.52}};
     for (std::size_t link = 0; link < 2; ++link) {
-        std::vector<double> all;
+        auto& noise = track.noise[link] = std::numeric_limits<double>::infinity();
+        double size = 0;
         std::vector<std::vector<double>> of_pieces;
-        for (const auto& piece : track.pieces) {
-            throw_if_set(stop);
-            const auto& r = of_pieces.emplace_back(residuals_of_cubics(piece, link));
-            all.insert(all.end(), r.begin() + 2, r.end() - 2);
+        for (const auto& [some, unit] : polynomials) {
+            std::vector<double> all;
+            std::vector<std::vector<double>> residuals;
+            for (const auto& piece : track.pieces) {
+                throw_if_set(stop);
+                const auto& r = residuals.emplace_back(residuals_of(piece, link, some));
+                const auto ends = static_cast<std::ptrdiff_t>(some);
+                all.insert(all.end(), r.begin() + ends, r.end() - ends);
+            }
+            const double middle = 1.4826 * median_size(std::move(all));
+            if (!(middle / unit < noise)) continue;
+            noise = middle / unit;
+            size = middle;
+            of_pieces = std::move(residuals);
         }
-        const double size = 1.4826 * median_size(std::move(all));
-        track.noise[link] = size / of_cubic;
         for (std::size_t k = 0; k < track.pieces.size(); ++k)
             for (std::size_t i = 2; i + 2 < of_pieces[k].size(); ++i) {
                 const double before = of_pieces[k][i - 1], r = of_pieces[k][i], after = of_pieces[k][i + 1];
@@ -268,8 +292,11 @@ void require_motion(const Track& track) {
                 "least {} rad and 20 times the noise",
                 name, link + 1, maximum < minimum ? "is flat" : "is mostly noise", maximum, track.noise[link], minimum);
     }
-    if (std::ranges::all_of(track.pieces, [](const auto& piece) { return piece.angle[0] == piece.angle[1]; }))
-        throw bad_input("{}: theta1_rad and theta2_rad have the same numbers; both links are needed", name);
+    double squares = 0;
+    for (const auto& piece : track.pieces)
+        for (std::size_t i = 0; i < piece.size(); ++i) squares += std::pow(piece.angle[1][i] - piece.angle[0][i], 2);
+    if (std::sqrt(squares / static_cast<double>(track.samples())) <= 2 * std::max(track.noise[0], track.noise[1]))
+        throw bad_input("{}: theta1_rad and theta2_rad are equal within noise; both links are needed", name);
 }
 
 /// Another interpretation of the columns.

@@ -37,7 +37,11 @@ TEST(FitTrack, RefusesWhatIsNoTable) {
     const std::pair<std::string, const char*> cases[]{
         {"", "a.csv: the file is empty"},
         {head, "a.csv: there are no rows"},
-        {"t,theta1_rad,theta2_rad\n", "a.csv:1: there is no column time_s"},
+        {"t,theta1_rad,theta2_rad\n",
+         "a.csv:1: there is no column time_s; columns are named as here, in small letters"},
+        {"time_s;theta1_rad;theta2_rad\n",
+         "a.csv:1: there is no column time_s; columns are separated by commas, not by"},
+        {"time_s,theta1_rad,theta1_rad,theta2_rad\n", "a.csv:1: the column theta1_rad occurs twice; leave one out"},
         {"time_s,a,b\n", "there are no angles; the columns must be theta1_rad and theta2_rad, or x0_px"},
         {"time_s,theta1_rad\n", "a.csv:1: there is only one link, theta1_rad"},
         {"time_s,x0_px,y0_px,x1_px,y1_px\n", "x2_px, y2_px (end) there are 4 columns"},
@@ -48,6 +52,8 @@ TEST(FitTrack, RefusesWhatIsNoTable) {
         {head + "0,1,2\n0.1,1e300,2\n", "a.csv:3: theta1_rad is beyond 1000000 rad; check its unit"},
         {head + "0,1,2\n0.1,1,2\n0.05,1,2\n",
          "a.csv:4: time_s goes from 0.1 to 0.05; rows must be in the order of time"},
+        {head + "0,1,2\n5,1,2\n10,1,2\n15,1,2\n",
+         "a.csv: rows are 5 s apart, and more than 0.2 s are a gap; time_s must be in seconds"},
         {"time_s,x0_px,y0_px,x1_px,y1_px,x2_px,y2_px\n0,5,5,5,5,9,9\n", "a.csv:2: two of pivot, joint"}};
     for (const auto& [text, words] : cases) expect_refused({text}, words);
 }
@@ -61,6 +67,8 @@ TEST(FitTrack, RefusesTracksThatDetermineNoModel) {
                    "b.csv: the piece from 0 s on is too short: 11 samples in 0.1 s");
     expect_refused({changed([](double, double a, double) { return std::pair(a, 0.3); })}, "theta2 is flat");
     expect_refused({changed([](double, double a, double) { return std::pair(a, a); })}, "both links are needed");
+    expect_refused({changed([](double t, double a, double) { return std::pair(a, a + 1e-4 * std::sin(1e4 * t)); })},
+                   "theta1_rad and theta2_rad are equal within noise; both links are needed");
     track = simulated(lab_arms(), Drag::own, {.pieces = 1, .piece_s = 6, .noise = 0.05, .amplitude = 0.01});
     for (auto& angle : track.pieces[0].angle)
         for (auto& value : angle) value *= 0.1;

@@ -49,6 +49,24 @@ TEST(Replay, ShowsTheMotionThatWasMeasured) {
     EXPECT_LT(worst.rate, 0.15);   // measured 0.097; differences of samples would give 0.2
 }
 
+TEST(Replay, GoesThroughCoarseSamples) {
+    auto spec = swinging_rods({1, 30});
+    spec.chain->angle = {Quad(0.6), Quad(-0.5)};
+    spec.chain->rate = {0, 0};
+    spec.physical->chain = *spec.chain;
+    for (const double noise : {0.0, 1e-3}) {
+        const auto shown = make_replay(spec, replay_from(track_of(csv_of_motion(spec, 102, noise)), std::nullopt, {}));
+        const auto truth = make_motion(spec);
+        double worst = 0;
+        for (int k = 0; k < 60; ++k) {
+            if (k > 0) truth->advance(never_stop), shown->advance(never_stop);
+            for (std::size_t i = 0; i < 2; ++i)
+                worst = std::max(worst, std::abs(truth->observe().bobs[i].theta - shown->observe().bobs[i].theta));
+        }
+        EXPECT_LT(worst, 1e-6 + 4 * noise);
+    }
+}
+
 TEST(Replay, SubtractsEncoderOffsets) {
     const auto text = csv_of_motion(swinging_rods(), 1002, 0, 0.05);
     EXPECT_GT(errors_of(text).angle, 0.049);
