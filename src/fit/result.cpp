@@ -180,6 +180,8 @@ FitResult analyse(Track track, const FitOptions& options, const std::atomic<bool
         result.uncertainty = uncertainty_of(job, fit);
         if (!result.uncertainty.is_white) break;
     }
+    for (std::size_t link = 0; link < 2; ++link)  // what scatters between coarse samples is mostly motion
+        result.track.noise[link] = std::min(result.track.noise[link], fit.scale[link]);
     put_on_one_clock(result, options.every_s, stop);
     if (!result.track.start_s.empty()) {
         auto horizon = measure_horizon(job, fit, result.uncertainty);

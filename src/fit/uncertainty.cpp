@@ -31,7 +31,8 @@ std::vector<double> correlations_of(const Fit& fit, std::size_t link, std::size_
 void test_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     constexpr std::size_t lags = 10, furthest = 400;
     constexpr double limit = 29.6, limit_of_one = 3.29;  // 99.9 %: χ² with ten degrees of freedom; σ
-    // fitting p numbers to n residuals of white noise gives near ones a correlation of about −p / (n − p)
+    // fitting p numbers to n residuals of white noise gives the nearest ones a correlation of about −p / (n − p), those
+    // further apart one between that and 0
     const auto n = static_cast<double>(fit.residual_count());
     const auto p = static_cast<double>(fit.model.fitted.count() + 4 * fit.shots.size());
     double intervals = 0;
@@ -39,7 +40,8 @@ void test_residuals(const FitJob& job, const Fit& fit, Uncertainty& result) {
     for (std::size_t link = 0; link < 2; ++link) {
         const auto sums = correlations_of(fit, link, furthest, job.stop);
         const auto significance = [&](std::size_t shift) {
-            return (sums[shift] / sums[0] + p / (n - p)) * std::sqrt(n / 2);
+            const double r = sums[shift] / sums[0];
+            return (r - std::clamp(r, -p / (n - p), 0.0)) * std::sqrt(n / 2);
         };
         double portmanteau = 0;
         for (std::size_t shift = 1; shift <= lags; ++shift) portmanteau += std::pow(significance(shift), 2);

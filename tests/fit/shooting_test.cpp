@@ -140,6 +140,16 @@ TEST(FitHierarchy, ChoosesTheModelThatMadeTheTrack) {
     EXPECT_NEAR(chain.mass[0], 1.3, 1e-2);
 }
 
+TEST(FitUncertainty, TakesTheNoiseOfCoarseTracksForWhite) {
+    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+        const auto track =
+            simulated(lab_arms(false), Drag::own,
+                      {.pieces = 8, .piece_s = 2.5, .hz = 10, .noise = 1e-3, .amplitude = 0.8, .seed = seed});
+        const auto fit = fitted(model_of(false, 1), lab_arms(false), track);
+        EXPECT_TRUE(uncertainty_of({track, no_stop}, fit).is_white) << seed;
+    }
+}
+
 /// With the correct model, only the error of the start limits predictions; and the interval of the pieces is found.
 TEST(FitHorizon, FindsTheIntervalOfPiecesAndTheHorizon) {
     auto truth = lab_arms(false);
