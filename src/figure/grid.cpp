@@ -221,10 +221,8 @@ SweptKeys Grid::swept_keys() const {
         swept.keys.push_back(axis->key);
         for (const std::string key :
              {"model", "integrator", "step_s", "tolerance", "accuracy", "precision", "angle_deg"})
-            for (const auto& level : axis->levels) {
-                auto top = level.top();
-                if (axis->key == "system" && level.table(top, "a").has(key)) swept.keys.push_back("." + key);
-            }
+            for (const auto& level : axis->levels)
+                if (axis->key == "system" && level.top().inner("a").has(key)) swept.keys.push_back("." + key);
     }
     return swept;
 }

@@ -9,10 +9,6 @@
 namespace doppel {
 namespace {
 
-bool is_number(const std::string& text) {
-    return text.find_first_not_of("0123456789+-.eE") == std::string::npos;
-}
-
 /// "mass m₂" and "kg" of "mass m₂, kg"; no unit for "mass ratio m₁/m₂".
 std::pair<std::string, std::string> name_and_unit(const std::string& label) {
     const auto comma = label.rfind(", ");
@@ -24,10 +20,17 @@ std::string unquoted(const std::string& text) {
     return text[0] == '"' || text[0] == '\'' ? text.substr(1, text.size() - 2) : text;
 }
 
+/// The number that a value is, 1e-4 or "1/30000"; nothing if it is another text.
+std::optional<Quad> number_in(const std::string& text) {
+    if (text.find_first_not_of("0123456789+-.eE") == std::string::npos) return parse_quad(text);
+    const auto ratio = text.find('/') == std::string::npos ? std::nullopt : parse_rational(unquoted(text));
+    return ratio ? std::optional(ratio->as<Quad>()) : std::nullopt;
+}
+
 /// Throws if [a] or [b] override a key of both sides. A resolved preset has all keys in both.
 void require_last_word(FigureReader& reader, const TomlReader& table, const std::string& path) {
     const auto key = path.substr(path.find('.') + 1);
-    const auto has = [&](const char* side) { return reader.document.table(reader.top, side).has(key); };
+    const auto has = [&](const char* side) { return reader.top.inner(side).has(key); };
     for (const auto* side : {"a", "b"})
         if (path.starts_with("system.") && has(side) && has("a") != has("b"))
             throw table.error("key", "\"{}\" is also in [{}], which overrides it; vary {}.{} or take it out", path,
@@ -98,6 +101,10 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
         for (auto text = values->texts.begin(); text != values->texts.end(); ++text)
             if (std::find(values->texts.begin(), text, *text) != text)
                 throw table.error("values", "must differ; {} is there twice", *text);
+    const bool takes_fractions = role == "x" || role == "y";  // curves and panels are named by them
+    const auto is_number = [&](const std::string& text) {
+        return number_in(text) && (takes_fractions || text.find('/') == std::string::npos);
+    };
     if (values && !std::ranges::all_of(values->texts, is_number)) return find_texts(reader, table);
     if (is_setting()) return find_settings(table, pair);
     find_number(reader, table, pair);
@@ -160,7 +167,7 @@ void GridAxis::find_texts(FigureReader& reader, const TomlReader& table) {
     label = is_all ? key : caption_of({.key = std::string_view(key).substr(key.find('.') + 1)});
     keeps_method = false;
     count = values->texts.size();
-    const auto origin = fmt::format("{}: {} values", table.place("values"), key);
+    const auto origin = fmt::format("{}: {} values", table.place_of("values").first, key);
     for (const auto& text : values->texts) {
         table.require_drawable("values", text);
         auto keys = fmt::format("{} = {}\n", key, text);
@@ -212,7 +219,7 @@ void GridAxis::require_in(const TomlReader& table, std::string_view of, const Pr
 
 void GridAxis::find_values(const TomlReader& table, const Preset& pair) {
     if (values) {
-        for (const auto& text : values->texts) require(table, "values", numbers_.emplace_back(parse_quad(text)));
+        for (const auto& text : values->texts) require(table, "values", numbers_.emplace_back(*number_in(text)));
         count = numbers_.size();
     } else {
         find_even_values(table);
@@ -360,15 +367,10 @@ std::string GridAxis::difference_words(const Quad& difference) const {
 void GridAxis::require(const TomlReader& table, std::string_view of, const Quad& number) const {
     if (is_whole() && number != round(number))
         throw table.error(of, "must be a whole number, as {} is; it is {}", key, text_of(number));
-    const bool is_above = bounds_.is_open || bounds_.is_positive;
-    const bool too_low = bounds_.has_low() && (is_above ? number <= bounds_.low : number < bounds_.low);
-    if (!too_low && !(bounds_.has_high() && number > bounds_.high)) return;
-    const auto low = fmt::format("{} {}", is_above ? ">" : "at least", bounds_.low);
-    const auto range = !bounds_.has_high() ? low
-                       : bounds_.is_open   ? fmt::format("{} and at most {}", low, bounds_.high)
-                                           : fmt::format("from {} to {}", bounds_.low, bounds_.high);
-    if (of == "difference") throw table.error(of, "must keep {} {}; one would be {}", key, range, text_of(number));
-    throw table.error(of, "must be {}, as {} is; it is {}", range, key, text_of(number));
+    const auto range = missed_range(bounds_, number);
+    if (!range) return;
+    if (of == "difference") throw table.error(of, "must keep {} {}; one would be {}", key, *range, text_of(number));
+    throw table.error(of, "must be {}, as {} is; it is {}", *range, key, text_of(number));
 }
 
 }  // namespace doppel

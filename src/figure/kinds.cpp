@@ -1,7 +1,5 @@
 #include "figure/kinds.hpp"
 
-#include "scene/side_keys.hpp"
-
 #include <algorithm>
 #include <array>
 
@@ -13,21 +11,14 @@ Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     clock_fields(scene, preset);
     std::vector<TomlReader*> levels{&top};
     levels.insert(levels.end(), more.begin(), more.end());
-    read_sides(document, levels, preset);
+    read_sides(levels, preset);
     if (!only_keys) check_clock(preset, scene);
     return preset;
 }
 
-std::vector<TomlReader> FigureReader::entries(std::string_view key) {
-    std::vector<TomlReader> all;
-    for (const auto* table : top.read_tables(key))
-        all.push_back(top.inner(table, fmt::format("[[{}]] {}", key, all.size() + 1)));
-    return all;
-}
-
 SideSpec FigureReader::release(bool physical) {
     SideSpec side;
-    auto system = document.table(top, "system");
+    auto system = top.inner("system");
     read_release(system, side, physical);
     return side;
 }
@@ -53,12 +44,6 @@ bool have_same_release(const SideSpec& a, const SideSpec& b) {
     return a.mass_kg == b.mass_kg && a.length_m == b.length_m && a.angle_deg == b.angle_deg &&
            a.omega_deg_per_s == b.omega_deg_per_s &&
            std::equal(a.particles.begin(), a.particles.end(), b.particles.begin(), b.particles.end(), same);
-}
-
-bool are_one(const Scene& scene) {
-    auto b = scene.preset.b;
-    b.model = scene.preset.a.model;  // compares the resulting scenes
-    return scene.a.motion.model == scene.b.motion.model && differing_keys(scene.preset.a, b).empty();
 }
 
 std::span<const FigureKind> figure_kinds() {

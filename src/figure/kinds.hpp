@@ -171,8 +171,7 @@ std::string settings_text(Kind& kind) {
 
 /// A preset being read: each kind of figure reads its own tables.
 struct FigureReader {
-    std::string name;  // of the preset
-    const TomlDocument& document;
+    std::string name;                 // of the preset
     TomlReader &top, &scene, &chart;  // a kind may read further keys of [chart]
     const std::atomic<bool>& stop = never_stopped;
     bool only_keys = false;  // each key is read by itself, so that all errors are found, and nothing is checked further
@@ -180,14 +179,13 @@ struct FigureReader {
     /// Reads all fields of the kind's own table.
     template <class Kind>
     TomlReader settings(Kind& kind) {
-        auto table = document.table(top, Kind::table_key);
+        auto table = top.inner(Kind::table_key);
         kind.fields(table);
         table.finish();
         return table;
     }
     /// The pair described by [scene], [system], [a] and [b], with `more` levels on top (scene/preset_fields.hpp).
     Preset pair(const std::vector<TomlReader*>& more = {});
-    std::vector<TomlReader> entries(std::string_view key);
     /// The chain that [system] describes, for figures that integrate it themselves. `physical`: links with mass,
     /// friction and drives are allowed.
     SideSpec release(bool physical = false);
@@ -201,9 +199,6 @@ std::vector<std::string> methods_of(Model model, std::vector<std::string> names)
 
 /// Whether both sides have the same release, so that their initial distance is 0.
 bool have_same_release(const SideSpec& a, const SideSpec& b);
-
-/// Whether both sides are the same system with the same release and integration: they move identically.
-bool are_one(const Scene& scene);
 
 /// An entry of the list of kinds.
 struct FigureKind {

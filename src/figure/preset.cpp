@@ -145,16 +145,10 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, K
     auto top = document.top(errors);
     top.require_title(figure.name);
     top_fields(top, figure);
-    auto scene = document.table(top, "scene");
-    figure.kind = read_kind(scene);
-    if (errors && errors->concern("scene"))
-        errors->throw_if_any();  // without the kind it is unknown which tables are allowed
-    if (figure.kind == pair_kind && scene.from_command_line("kind"))
-        throw scene.error("kind", "must be that of a figure; it is \"{}\"", pair_kind);
-    if (figure.kind == pair_kind)
-        throw bad_input("{}: this is a film, not a figure; make it with: doppel render {}", source.path, source.call);
-    auto chart = document.table(top, "chart");
-    FigureReader reader{source.name, document, top, scene, chart, stop, errors != nullptr};
+    auto scene = top.inner("scene");
+    figure.kind = read_kind(scene, source, false);
+    auto chart = top.inner("chart");
+    FigureReader reader{source.name, top, scene, chart, stop, errors != nullptr};
     const auto& kind = *std::ranges::find(figure_kinds(), figure.kind, &FigureKind::name);
     try {
         figure.experiment = kind.read(reader);

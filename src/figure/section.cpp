@@ -33,7 +33,7 @@ public:
     explicit Section(FigureReader& reader) : release_(reader.release()) {
         const auto table = reader.settings(*this);
         if (reader.only_keys) return;
-        auto system = reader.document.table(reader.top, "system");
+        auto system = reader.top.inner("system");
         for (const char* key : {"angle_deg", "omega_deg_per_s"})
             if (system.has(key))
                 throw system.error(key, "is not for a section, whose orbits start at all states of an energy");

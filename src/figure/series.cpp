@@ -67,7 +67,7 @@ public:
         : check_tolerance_(keys.check_tolerance) {
         columns_ = {"sample", "time_s"};
         const auto shown = keys.film_column.value_or(std::string(name_of(keys.quantity)));
-        auto entries = reader.entries("curve");
+        auto entries = reader.top.entries("curve");
         if (entries.empty() || reader.only_keys) curves_.push_back({shown, "", shown, reader.pair()});
         for (auto& entry : entries) {
             auto& curve = curves_.emplace_back();
@@ -227,9 +227,9 @@ public:
         : release_(reader.release(true)), spec_{keys.duration_s, keys.samples, keys.tolerance} {
         if (reader.only_keys) return;
         if (release_.physical.has_coulomb())
-            throw reader.document.table(reader.top, "system")
-                .error("joint_coulomb_N_m",
-                       "is not for Lyapunov exponents, which need a smooth motion: these joints stick and slip");
+            throw reader.top.inner("system").error(
+                "joint_coulomb_N_m",
+                "is not for Lyapunov exponents, which need a smooth motion: these joints stick and slip");
         constexpr std::size_t max_links = 4;
         if (release_.links() > max_links)
             throw table.error("quantity", "= \"exponents\" is for 1 to {} links; there are {}", max_links,

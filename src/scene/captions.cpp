@@ -27,10 +27,6 @@ std::string with_unit(std::string_view number, std::string_view unit) {
     return fmt::format("{}{}{}", number, unit.empty() ? "" : " ", unit);
 }
 
-bool are_one(const std::vector<Quad>& numbers) {
-    return std::ranges::all_of(numbers, [&](const Quad& number) { return number == numbers[0]; });
-}
-
 /// The keys of a side with the model and method by which it is computed.
 std::vector<SideKey> shown_keys(SideSpec spec, const Side& side) {
     spec.model = value_named<ModelChoice>(name_of(side.motion.model));
@@ -61,7 +57,7 @@ Texts symbol_texts(const SideKey& key, const SideKey& other) {
     const auto of_link = [&](std::size_t i) { return text(fmt::format("{}{}", key.symbol, subscript(i + 1)), i); };
     if (!key.is_of_links) return {text(std::string(key.symbol), 0)};
     const bool is_long = numbers.size() > max_listed;
-    if (is_long && are_one(numbers) && are_one(others)) return {text(fmt::format("all {}", key.symbol), 0)};
+    if (is_long && are_equal(numbers) && are_equal(others)) return {text(fmt::format("all {}", key.symbol), 0)};
     if (is_long && numbers == others) return {fmt::format("{}, {} …", of_link(0), of_link(1))};
     Texts all;
     for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -89,7 +85,7 @@ Texts texts_of(const KeyPair& pair, bool of_b) {
     if (!known.symbol.empty()) return symbol_texts(*self, are_alike ? *other : *self);
     auto shown = *self;
     std::string link;
-    if (known.is_of_links && are_one(numbers) && (!are_alike || are_one(other->numbers))) {
+    if (known.is_of_links && are_equal(numbers) && (!are_alike || are_equal(other->numbers))) {
         shown.numbers.resize(1);
     } else if (are_alike && numbers.size() > max_listed && numbers != other->numbers) {
         // only the first number in which the sides differ
@@ -327,7 +323,7 @@ std::string slashed(const std::vector<Quad>& numbers, std::string_view unit, boo
     const bool is_long = numbers.size() > max_slashed;
     Texts texts;
     for (const auto& number : numbers) texts.push_back(fmt::format("{}{}", text_of(number), unit));
-    if ((is_long || once) && are_one(numbers)) return texts[0];
+    if ((is_long || once) && are_equal(numbers)) return texts[0];
     if (!is_long) return fmt::format("{}", fmt::join(texts, "/"));
     const auto [low, high] = std::ranges::minmax_element(numbers);
     return fmt::format("{1}{0} to {2}{0}", unit, text_of(*low), text_of(*high));

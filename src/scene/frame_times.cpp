@@ -45,6 +45,12 @@ long frames_in(double times) {
     return std::lround(std::ceil(times - rounding)) + 1;
 }
 
+/// Throws the error that the frame rate must be as `words` say: of fps, or else of speed.
+[[noreturn]] void refuse_rate(const VideoSpec& spec, const TomlReader& video, const std::string& words) {
+    if (spec.fps) throw video.error("fps", "{}", words);
+    throw video.error("speed", "times sample_hz, the frames a second without fps, {}; set fps", words);
+}
+
 }  // namespace
 
 Moment moment_at(double samples) {
@@ -114,11 +120,6 @@ FrameTimes frame_times(const Preset& preset, const Rational& fps, long samples) 
     return frames;
 }
 
-void refuse_rate(const VideoSpec& spec, const TomlReader& video, const std::string& words) {
-    if (spec.fps) throw video.error("fps", "{}", words);
-    throw video.error("speed", "times sample_hz, the frames a second without fps, {}; set fps", words);
-}
-
 void check_frames(Preset& preset, const TomlReader& video) {
     auto& spec = preset.video;
     if (spec.speed.changes_over_time()) check_changes(preset, video);
@@ -146,6 +147,7 @@ void check_frames(Preset& preset, const TomlReader& video) {
                           spec.speed.constant.text());
     if (spec.poster_s && spec.poster_s->value() > end)
         throw video.error("poster_s", "must be up to {} s; it is {}", end, spec.poster_s->value());
+    if (const auto error = rate_error(spec.options(*fps))) refuse_rate(spec, video, error->words);
 }
 
 }  // namespace doppel

@@ -68,8 +68,7 @@ int level_of_steps(double minimum) {
 
 /// Whether two sides get the same choice: they differ only in the system.
 bool choose_together(const SideSpec& a, const SideSpec& b) {
-    return a.accuracy == b.accuracy && a.model == b.model && a.precision == b.precision && a.stabilise == b.stabilise &&
-           a.stabilise_rate_per_s == b.stabilise_rate_per_s;
+    return std::ranges::none_of(differing_keys(a, b), [](const KeyPair& pair) { return pair.any().is_setting; });
 }
 
 /// The loosest level that passes, searched level by level from the start. Finer levels are only tried while the work is

@@ -68,10 +68,6 @@ FoundNumber find_number(SideSpec& side, const Place& place, std::optional<int> p
     return found;
 }
 
-bool are_one(std::span<const Quad> all) {
-    return !all.empty() && std::ranges::all_of(all, [&](const Quad& x) { return x == all[0]; });
-}
-
 /// All numbers of a chain, array by array.
 std::vector<std::span<Quad>> all_numbers(SideSpec& side) {
     std::vector<std::span<Quad>> all;
@@ -142,9 +138,16 @@ void find_in(SideSpec side, const Rational& sample_hz, const TomlReader& table, 
     for_each_key(side, [&](const SideEntry& owner, const Field& other, const KeyMember& any) {
         const auto all = numbers_of(any);
         const bool is_of_links = place.key == "links" && owner.number == 0 && all;
-        if (is_of_links && !all->empty() && !are_one(*all))
+        if (is_of_links && !all->empty() && !are_equal(*all))
             refuse(fmt::format("needs links that are all equal; {} has different numbers", other.key));
     });
+}
+
+/// The step nearest to `value` of which a sample takes a whole number.
+Rational step_near(const Quad& value, const Rational& sample_hz) {
+    const auto interval = *quotient({1, 1}, sample_hz);
+    const auto steps = std::lround(static_cast<double>(Quad(interval.as<Quad>() / value)));
+    return quotient(interval, {steps, 1}).value_or(default_step);
 }
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {
@@ -154,9 +157,7 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
         number.is_whole ? std::optional(static_cast<int>(std::lround(static_cast<double>(value)))) : std::nullopt;
     const auto found = find_number(side, place, whole);
     if (found.step) {
-        const auto interval = quotient({1, 1}, sample_hz);
-        const auto steps = std::lround(static_cast<double>(Quad(interval->as<Quad>() / value)));
-        *found.step = interval ? quotient(*interval, {steps, 1}) : std::nullopt;
+        *found.step = step_near(value, sample_hz);
     } else if (number.element) {
         found.values[*number.element] = value;
     } else {
@@ -166,7 +167,7 @@ void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rati
     // equal links stay equal
     const auto numbers = all_numbers(side), were = all_numbers(old);
     for (std::size_t i = 0; i < numbers.size(); ++i)
-        if (are_one(were[i])) std::ranges::fill(numbers[i], were[i][0]);
+        if (are_equal(were[i])) std::ranges::fill(numbers[i], were[i][0]);
     if (const auto& centers = old.physical.center_m; !centers.empty())
         side.physical.center_m.assign(side.links(), centers[0]);
 }
@@ -183,10 +184,7 @@ NumericKey::NumericKey(const TomlReader& table, std::string_view key, std::strin
 
 Quad NumericKey::taken(const Quad& value, const Preset& preset) const {
     if (is_whole) return Quad(round(value));
-    if (!is_step) return value;
-    auto probe = preset;
-    set(probe, value, 0);
-    return (sides == Sides::b ? probe.b : probe.a).step().as<Quad>();
+    return is_step ? step_near(value, preset.sample_hz).as<Quad>() : value;
 }
 
 void NumericKey::set(Preset& preset, const Quad& value, const Quad& difference) const {

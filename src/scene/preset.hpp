@@ -378,8 +378,6 @@ inline constexpr std::array<PhysicalSpec::Property, 10> PhysicalSpec::properties
      "drag on each end of a link, proportional to the square of its speed"},
 }};
 
-bool differ_in_numbers_only(const PhysicalSpec& one, const PhysicalSpec& other);
-
 /// [a.track]: a measured motion, shown instead of a simulation.
 struct TrackSpec {
     std::string file;                    // as found; empty: none
@@ -503,17 +501,13 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
 /// Parses the key=value of --set. Throws Error (exit 2) if it has another form.
 Override parse_set(const std::string& argument);
 
-struct TomlDocument;
 class TomlReader;
 
 // Readers of the tables that films and figures share. They change only members whose keys are given, and throw Error
 // (exit 2) as TomlReader does.
 
-/// One of scene_kinds.
-std::string read_kind(TomlReader& scene);
-
-/// Reads [system], [a] or [b]; `has_text` = including side_text_fields().
-void read_side(TomlReader& table, SideSpec& side, bool has_text = false);
+/// One of scene_kinds. Throws Error if it is not that of a film, or of a figure.
+std::string read_kind(TomlReader& scene, const PresetText& source, bool is_film);
 
 /// Reads a [system] of which only the chain and its release matter, not the integration; `is_physical`: including the
 /// properties of rigid-body chains.
@@ -521,8 +515,7 @@ void read_release(TomlReader& table, SideSpec& side, bool is_physical);
 
 /// Reads [system], then [a] and [b] on top, each level by level: later levels override earlier ones. Sides of a film
 /// have texts of their own.
-void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset,
-                bool is_film = false);
+void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film = false);
 
 /// Checks that samples are at steps, that the end is at a sample, and that no sum of times overflows 64 bits.
 void check_clock(const Preset& preset, const TomlReader& scene);
@@ -530,7 +523,5 @@ void check_clock(const Preset& preset, const TomlReader& scene);
 /// Checks the number of frames. Rounded rates become exact ones: 23.976 becomes 24000/1001. A GIF, and a film whose
 /// speed changes, get a rate if none is given.
 void check_frames(Preset& preset, const TomlReader& video);
-/// Throws the error that the frame rate must be as `words` say: of fps, or else of speed.
-[[noreturn]] void refuse_rate(const VideoSpec& spec, const TomlReader& video, const std::string& words);
 
 }  // namespace doppel

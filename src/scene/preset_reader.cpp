@@ -1,6 +1,7 @@
 #include "integrate/methods.hpp"
 #include "scene/numeric_key.hpp"
 #include "scene/resolved.hpp"
+#include "scene/side_keys.hpp"
 #include "scene/toml_reader.hpp"
 
 #include <fmt/ranges.h>
@@ -81,20 +82,12 @@ void check_layout(const Preset& preset, const TomlReader& video) {
     const auto &a = preset.a, &b = preset.b;
     if (!a.track.is_none() || !b.track.is_none())
         throw video.error("layout", "\"{}\" needs two simulations; a side shows a track", name);
-    if (!differ_in_numbers_only(a.physical, b.physical))
-        throw video.error(
-            "layout", "\"{}\" needs sides with the same kinds of torques, and center_m on both or on neither", name);
     if (a.is_mechanism() || b.is_mechanism())
         throw video.error("layout", "\"{}\" is for chains without further constraints and forces", name);
-    if (a.model != b.model || a.integrator != b.integrator || a.step() != b.step() ||
-        a.allowed_error() != b.allowed_error() || a.accuracy != b.accuracy || a.precision != b.precision ||
-        a.stabilise != b.stabilise)
-        throw video.error("layout", "\"{}\" needs sides that differ only in numbers, not in model or method", name);
-}
-
-/// Reports what the format does not allow; the frame rate is checked once it is known.
-void check_format(const TomlReader& table, const std::optional<FormatError>& error) {
-    if (error) throw table.error(error->key, "{}", error->words);
+    for (const auto& pair : differing_keys(a, b))
+        if (const auto& key = pair.any(); key.is_setting || (!pair.has_numbers() && key.place != "pivot motion"))
+            throw video.error("layout", "\"{}\" needs sides that differ only in numbers of the system, not in {}", name,
+                              key.name());
 }
 
 void check_layout(const TomlReader& table, const VideoSpec& video) {
@@ -122,14 +115,14 @@ void read_video(TomlReader& table, VideoSpec& video) {
     table(size_field, video.size);
     video_fields(table, video);
     if (video.layout == Arrangement::portrait && !table.has("size")) video.size = {1080, 1920};
-    if (video.layout == Arrangement::single && !table.has("panels")) video.strips = {StripKind::energies_a};
     // members of an ensemble have short trails
     if (video.layout == Arrangement::ensemble && !table.has("trail_s"))
         video.trail_s = video.members.releases.empty() ? 0.3 : 1;
     table.finish();
     table.check_together([&] {
         check_layout(table, video);
-        check_format(table, format_error(video.options({1, 1})));
+        // the frame rate is checked once it is known
+        if (const auto error = format_error(video.options({1, 1}))) throw table.error(error->key, "{}", error->words);
         if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
             throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
                               *video.glow_px);
@@ -140,14 +133,13 @@ void read_video(TomlReader& table, VideoSpec& video) {
 /// Reads the font of the film's text first, because it decides which letters are allowed. The path is relative to the
 /// preset, or else to the current folder; from the command line always to the latter. Returns whether the font is
 /// known.
-bool read_font(TomlReader& top, const TomlDocument& document, VideoSpec& video) {
-    auto table = document.table(top, "video");
-    auto fonts = table.inner("fonts");
+bool read_font(TomlReader& top, const std::string& preset_path, VideoSpec& video) {
+    auto fonts = top.inner("video").inner("fonts");
     constexpr std::string_view key = "text";
     std::string given;
     fonts({.key = key}, given);
     if (given.empty()) return !fonts.has(key);
-    video.text_font = path_beside(document.path, given, fonts.from_command_line(key));
+    video.text_font = path_beside(preset_path, given, fonts.from_command_line(key));
     return fonts.guarded(key, [&] { video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font)); });
 }
 
@@ -161,7 +153,7 @@ void fill(std::vector<Release>& members, const Release::List& list, const Preset
 
 /// If members of an ensemble are listed, its pair is the first and the last one. Throws if the file gives a side other
 /// numbers, or lists with too many or too few of them.
-void place_members(const TomlDocument& document, TomlReader& top, TomlReader& video, Preset& preset) {
+void place_members(TomlReader& top, TomlReader& video, Preset& preset) {
     auto& members = preset.video.members.releases;
     if (members.empty()) return;
     for (std::size_t k = 0; k < members.size(); ++k)
@@ -174,7 +166,7 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
         const auto &first = members.front().*list.member, &last = members.back().*list.member;
         const auto check_side = [&](const char* table, const std::vector<Quad>& given,
                                     const std::vector<Quad>& member) {
-            auto side = document.table(top, table);
+            auto side = top.inner(table);
             const bool is_replaced = video.from_command_line("members") && !side.from_command_line(list.key);
             if (member.empty() || is_replaced || !side.has(list.key) || given == member) return;
             throw video.error("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
@@ -188,12 +180,24 @@ void place_members(const TomlDocument& document, TomlReader& top, TomlReader& vi
     }
 }
 
-}  // namespace
-
-std::string read_kind(TomlReader& scene) {
+std::string kind_in(TomlReader& scene) {
     std::string kind(pair_kind);
     scene(kind_field, kind);
     return kind;
+}
+
+}  // namespace
+
+std::string read_kind(TomlReader& scene, const PresetText& source, bool is_film) {
+    const auto kind = kind_in(scene);
+    scene.throw_if_any();  // without the kind it is unknown which tables are allowed
+    if ((kind == pair_kind) == is_film) return kind;
+    const auto wanted = is_film ? "\"pair\" for a film" : "that of a figure";
+    if (scene.from_command_line("kind")) throw scene.error("kind", "must be {}; it is \"{}\"", wanted, kind);
+    throw bad_input(
+        "{}: this is a {} {}", source.path,
+        is_film ? "figure, not a film; draw it with: doppel figure" : "film, not a figure; make it with: doppel render",
+        source.call);
 }
 
 void check_clock(const Preset& preset, const TomlReader& scene) {
@@ -226,33 +230,26 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     Preset preset;
     preset.name = preset.title = source.name;
     auto first = document.top(&errors);
-    const bool knows_font = read_font(first, document, preset.video);
+    const bool knows_font = read_font(first, source.path, preset.video);
     const auto font = preset.video.text_font;
     auto top = document.top(&errors, knows_font ? &preset.video.typeface : nullptr);
     top.require_title(preset.name);
     top(title_field, preset.title);
     top(subtitle_field, preset.subtitle);
 
-    auto scene = document.table(top, "scene");
-    const auto kind = read_kind(scene);
-    if (errors.concern("scene")) errors.throw_if_any();  // without the kind it is unknown which tables are allowed
-    if (kind != pair_kind && scene.from_command_line("kind"))
-        throw scene.error("kind", "must be \"{}\" for a film; it is \"{}\"", pair_kind, kind);
-    if (kind != pair_kind)
-        throw bad_input("{}: this is a figure, not a film; draw it with: doppel figure {}", source.path, source.call);
+    auto scene = top.inner("scene");
+    read_kind(scene, source, true);
     film_fields(scene, preset);
     scene.finish();
-    read_sides(document, {&top}, preset, true);
-    auto video = document.table(top, "video");
+    read_sides({&top}, preset, true);
+    auto video = top.inner("video");
     read_video(video, preset.video);
     preset.video.text_font = font;  // path as found
     top.finish();
     errors.throw_if_any();
-    place_members(document, top, video, preset);
+    place_members(top, video, preset);
     check_clock(preset, scene);
     check_frames(preset, video);
-    const auto rate = preset.video.fps ? preset.video.fps : product(preset.sample_hz, preset.video.speed.constant);
-    if (const auto error = rate_error(preset.video.options(*rate))) refuse_rate(preset.video, video, error->words);
     check_single(preset, top, video);
     check_view(preset, video, scene);
     check_layout(preset, video);
@@ -261,9 +258,8 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
 
 std::string kind_of_preset(const PresetText& source) {
     const auto document = parse_document(source, {});
-    auto top = document.top();
-    auto scene = document.table(top, "scene");
-    return read_kind(scene);
+    auto scene = document.top().inner("scene");
+    return kind_in(scene);
 }
 
 bool is_figure(const PresetText& source) {

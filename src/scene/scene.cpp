@@ -12,6 +12,7 @@
 #include "scene/side_keys.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <thread>
@@ -87,19 +88,26 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     return members;
 }
 
+/// A number of a mass, in words.
+struct BobNumber {
+    std::string_view words, unit;
+    double Bob<double>::*member;
+};
+constexpr std::array<BobNumber, 7> bob_numbers{{{"rate of the rod", "rad/s", &Bob<double>::omega},
+                                                {"angle of the rod", "rad", &Bob<double>::theta},
+                                                {"mass", "kg", &Bob<double>::mass},
+                                                {"place in x", "m", &Bob<double>::x},
+                                                {"place in y", "m", &Bob<double>::y},
+                                                {"velocity in x", "m/s", &Bob<double>::vx},
+                                                {"velocity in y", "m/s", &Bob<double>::vy}}};
+
 /// The first number of the observation that is not finite, in words; nothing if all are.
-std::optional<std::string> not_finite(const Observation& seen, bool has_angles) {
+std::optional<std::string> not_finite(const Observation& seen) {
     const auto text = [](double value) { return std::isnan(value) ? "not a number" : fmt::to_string(value); };
-    for (std::size_t i = 0; i < seen.bobs.size(); ++i) {
-        const auto& bob = seen.bobs[i];
-        const auto name = [&](std::string_view symbol, double value) {
-            return fmt::format("{}{} is {}", symbol, i + 1, text(value));
-        };
-        if (has_angles && !std::isfinite(bob.omega)) return name("the rate ω", bob.omega);
-        if (has_angles && !std::isfinite(bob.theta)) return name("the angle θ", bob.theta);
-        if (!std::isfinite(bob.x) || !std::isfinite(bob.y)) return name("the place of mass ", bob.x + bob.y);
-        if (!std::isfinite(bob.vx) || !std::isfinite(bob.vy)) return name("the velocity of mass ", bob.vx + bob.vy);
-    }
+    for (std::size_t i = 0; i < seen.bobs.size(); ++i)
+        for (const auto& [words, unit, member] : bob_numbers)
+            if (const double value = seen.bobs[i].*member; !std::isfinite(value))
+                return fmt::format("the {} of mass {} is {}", words, i + 1, text(value));
     if (!std::isfinite(seen.energy)) return "the energy is " + text(seen.energy);
     if (!std::isfinite(seen.length_error)) return "the rod error is " + text(seen.length_error);
     return std::nullopt;
@@ -176,7 +184,7 @@ RunFailure SideRun::broken(const std::string& what) const {
 }
 
 void SideRun::watch(const Observation& seen) {
-    if (const auto error = not_finite(seen, side_.has_angles)) throw broken(*error);
+    if (const auto error = not_finite(seen)) throw broken(*error);
     if (seen.energy_change > proportion_.gain)
         throw broken(fmt::format("the energy has grown by {:.3g} J, more than tenfold", seen.energy_change));
     if (seen.length_error > proportion_.reach)
@@ -239,16 +247,14 @@ void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
     }
     const auto advance_b = [&] { now.b = b_->advance_to(now.moment(), stop); };
     std::exception_ptr error;
-    std::vector<std::jthread> other;
-    if (are_large_)
-        other = start_threads(1, [&] {
-            try {
-                advance_b();
-            } catch (...) {
-                error = std::current_exception();
-            }
-            other_cpu_s_ += seconds_of(CLOCK_THREAD_CPUTIME_ID);
-        });
+    auto other = start_threads(are_large_ ? 1 : 0, [&] {
+        try {
+            advance_b();
+        } catch (...) {
+            error = std::current_exception();
+        }
+        other_cpu_s_ += seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    });
     const bool is_alone = other.empty();
     now.a = a_.advance_to(now.moment(), stop);
     if (is_alone) return advance_b();
@@ -280,17 +286,12 @@ void check_distance(const Scene& scene, const PairState& state) {
         std::string what;
         double a = 0, b = 0;
     } worst;
-    using Member = double Bob<double>::*;
     const auto all_a = compared_bobs(scene, state.a.bobs), all_b = compared_bobs(scene, state.b.bobs);
     for (std::size_t i = 0; i < all_a.size(); ++i)
-        for (const auto& [what, member] : {std::pair<const char*, Member>{"the mass, kg,", &Bob<double>::mass},
-                                           {"the place in x, m,", &Bob<double>::x},
-                                           {"the place in y, m,", &Bob<double>::y},
-                                           {"the velocity in x, m/s,", &Bob<double>::vx},
-                                           {"the velocity in y, m/s,", &Bob<double>::vy}}) {
+        for (const auto& [words, unit, member] : std::span(bob_numbers).subspan(2)) {  // without angles
             const double a = all_a[i].*member, b = all_b[i].*member;
             if (std::abs(a - b) > std::abs(worst.a - worst.b))
-                worst = {fmt::format("{} of mass {}", what, i + 1), a, b};
+                worst = {fmt::format("the {}, {}, of mass {}", words, unit, i + 1), a, b};
         }
     const bool of_b = std::abs(worst.b) > std::abs(worst.a);
     throw Error(state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,

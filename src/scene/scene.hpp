@@ -111,8 +111,9 @@ Pendulum<Quad> chain_of(const SideSpec& spec);
 /// The same with the properties of a rigid-body chain.
 PhysicalPendulum<Quad> physical_of(const SideSpec& spec);
 
-/// The particles of a side (if it names none, those of its chain: "bob1", "bob2" …), its constraints, forces and
-/// gravity. Throws Error (exit 2) if a part names an unknown particle.
+/// The names of a side's particles; of a chain, "bob1", "bob2" …
+std::vector<std::string> particle_names(const SideSpec& spec);
+/// The particles of a side or of its chain, its constraints, forces and gravity.
 Assembly<Quad> assembly_of(const SideSpec& spec);
 
 /// A side with the smallest suitable model, all numbers exact. Throws Error (exit 2) if the system is invalid.

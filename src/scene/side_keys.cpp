@@ -83,20 +83,14 @@ template <class Scalar>
 struct System {
     std::optional<Pendulum<Scalar>> chain;
     std::optional<PhysicalPendulum<Scalar>> physical;
-    std::optional<Assembly<Scalar>> parts;
-    std::vector<Scalar> start;  // of particles that are links of a chain
+    std::optional<Assembly<Scalar>> parts;  // in place of the chain, if its links are particles
 
     explicit System(const MotionSpec& motion) {
-        if (motion.parts) {
-            parts = motion.parts->cast<Scalar>();
-            return;
-        }
         if (motion.chain) chain = motion.chain->cast<Scalar>();
         if (motion.physical) physical = motion.physical->cast<Scalar>();
-        if (motion.model == Model::angles || !chain) return;
-        const auto released = released_as_particles<Scalar, Eigen::Dynamic>(*chain);
-        start.assign(released.begin(), released.end());
-        for (auto* of : {&*chain, physical ? &physical->chain : &*chain}) of->angle = of->rate = {};
+        if (motion.model == Model::constraints) parts = parts_of(*chain);
+        if (motion.parts) parts = motion.parts->cast<Scalar>();
+        if (parts) chain.reset();
     }
     friend bool operator==(const System&, const System&) = default;
 };
@@ -119,6 +113,10 @@ void check_systems(const Scene& scene, const std::vector<KeyPair>& differences) 
 }
 
 }  // namespace
+
+bool are_equal(std::span<const Quad> numbers) {
+    return !numbers.empty() && std::ranges::all_of(numbers, [&](const Quad& x) { return x == numbers[0]; });
+}
 
 std::optional<std::span<Quad>> numbers_of(const KeyMember& member, bool is_put) {
     using Numbers = std::optional<std::span<Quad>>;
@@ -231,6 +229,17 @@ std::vector<KeyPair> differing_keys(const SideSpec& a, const SideSpec& b) {
     auto all = paired(keys_of(a), keys_of(b));
     std::erase_if(all, [](const KeyPair& pair) { return !pair.differs(); });
     return all;
+}
+
+bool are_one(const Scene& scene) {
+    auto b = scene.preset.b;
+    b.model = scene.preset.a.model;  // compares the resulting scenes
+    return scene.a.motion.model == scene.b.motion.model && differing_keys(scene.preset.a, b).empty();
+}
+
+std::optional<std::string> no_difference(const Scene& scene) {
+    if (scene.is_single() || scene.a.replay || scene.b.replay || !are_one(scene)) return std::nullopt;
+    return "both sides are the same; give [b] a difference, or take layout = \"single\"";
 }
 
 void check_difference(const Scene& scene) {

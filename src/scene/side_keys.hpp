@@ -39,6 +39,8 @@ struct KeyPair {
 
     const SideKey& any() const { return a ? *a : *b; }
     bool differs() const;
+    /// Whether both sides have it, with numbers.
+    bool has_numbers() const { return a && b && !a->numbers.empty() && !b->numbers.empty(); }
 };
 
 /// Keys of both sides, without those of an entry that only one side has: it is a pair itself.
@@ -46,9 +48,17 @@ std::vector<KeyPair> paired(std::vector<SideKey> a, std::vector<SideKey> b);
 /// The pairs that differ.
 std::vector<KeyPair> differing_keys(const SideSpec& a, const SideSpec& b);
 
+/// Whether both sides are the same system with the same release and integration: they move identically.
+bool are_one(const Scene& scene);
+/// A warning if this is so, and the scene is one of a pair.
+std::optional<std::string> no_difference(const Scene& scene);
+
 /// Throws Error (exit 2) if the difference of the sides is lost in their precision: a number of any key, the whole
 /// system, or the attraction of a droplet compared with gravity.
 void check_difference(const Scene& scene);
+
+/// Whether all are the same number; not if there is none.
+bool are_equal(std::span<const Quad> numbers);
 
 /// The numbers of a side's member, if it has such a type: none for an optional one that is not given, unless `is_put`
 /// creates it.

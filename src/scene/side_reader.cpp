@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -45,21 +46,15 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
     return true;
 }
 
-std::string supported_models(const MethodEntry& method) {
-    return fmt::format("{}", fmt::join(models_of(method), " and "));
-}
-
 /// Reads particles, constraints and forces. An entry with the name of an existing one changes it; others are added.
 /// read(entry, spec, is_new) returns whether the entry's kind is known, and so its allowed keys.
 template <class Spec, class Read>
 void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& entries, const Read& read) {
-    const auto tables = table.read_tables(key);
     std::set<std::string> given;
     std::map<std::string, std::size_t> indices;  // of named entries
     for (std::size_t i = 0; i < entries.size(); ++i)
         if (!entries[i].name.empty()) indices.emplace(entries[i].name, i);
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        auto entry = table.inner(tables[i], fmt::format("[[{}.{}]] {}", table.bare_name(), key, i + 1));
+    for (auto& entry : table.entries(key)) {
         std::string name;
         entry({.key = "name"}, name);
         if (!name.empty() && !given.insert(name).second)
@@ -95,10 +90,14 @@ bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const s
     if (const auto kind = value_named<PartKind>(name); kind != part.kind)
         part = {part.name, kind, part.particle, part.from, part.to, part.position_m};
     part_fields(entry, part);
-    if (part.kind == PartKind::attraction)
+    const auto is_fixed = [](const auto& end) { return end && std::holds_alternative<QuadPair>(*end); };
+    if (part.kind == PartKind::attraction) {
         for (const auto& [key, end] : {std::pair("from", part.from), {"to", part.to}})
-            if (end && !std::holds_alternative<std::string>(*end))
+            if (is_fixed(end))
                 entry.refuse(entry.error(key, "must name a particle; for a fixed body use a \"droplet\""));
+    } else if (is_fixed(part.from) && is_fixed(part.to)) {
+        entry.refuse(entry.error("to", "must name a particle, because from is a fixed place"));
+    }
     return true;
 }
 
@@ -177,13 +176,13 @@ void check_choices(TomlReader& table, const SideSpec& side) {
         throw table.error("stabilise", "is for constraints; with angles as coordinates rods have constant length");
     if (side.accuracy) return;
     const auto& method = *find_method(side.integrator);
+    const auto models = models_of(method);
     if (side.is_mechanism() && !method.mechanism)
         throw table.error("integrator", "\"{}\" supports {}, not a mechanism", side.integrator,
-                          supported_models(method));
-    const auto models = models_of(method);
+                          fmt::join(models, " and "));
     if (side.model != ModelChoice::automatic && std::ranges::find(models, name_of(side.model)) == models.end())
         throw table.error(table.has("integrator") ? "integrator" : "model", "\"{}\" supports {}, not model = \"{}\"",
-                          side.integrator, supported_models(method), name_of(side.model));
+                          side.integrator, fmt::join(models, " and "), name_of(side.model));
     if (side.stabilise == Stabilise::baumgarte && method.name == "taylor")
         throw table.error("stabilise",
                           "\"baumgarte\" adds terms without a Taylor series; use \"projection\" or another "
@@ -207,7 +206,7 @@ void read_file(TrackSpec& spec, const std::string& preset_path, bool from_comman
 }
 
 /// Reads the file of a side's track, if it has one. Throws Error or records it, as the reader of its table does.
-void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& side) {
+void load_track(TomlReader& side_table, SideSpec& side) {
     if (side.track.is_none()) return;
     auto table = side_table.inner("track");
     const bool is_read = table.guarded("file", [&] {
@@ -216,30 +215,56 @@ void load_track(const TomlDocument& document, TomlReader& side_table, SideSpec& 
                             side.particles.empty()
                                 ? fmt::format("{} link{}", side.links(), side.links() == 1 ? "" : "s")
                                 : "particles");
-        read_file(side.track, document.path, table.from_command_line("file"));
+        read_file(side.track, table.path(), table.from_command_line("file"));
     });
     if (is_read) table.guarded("start_s", [&] { replay_of(side.track); });
 }
 
 /// Samples are compared particle by particle, so that a particle of one side must exist on the other.
 void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& table) {
-    std::vector<std::string_view> names, others;
-    for (const auto& particle : side.particles) names.push_back(particle.name);
-    for (const auto& particle : other.particles) others.push_back(particle.name);
-    if (names.empty() || names == others) return;
-    if (others.empty())
+    const auto names = particle_names(side), others = particle_names(other);
+    if (side.particles.empty() || names == others) return;
+    if (other.particles.empty())
         throw table.error("particle", "must be on both sides, so that they can be compared; the other is a chain");
-    const auto tables = table.read_tables("particle");
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        auto entry = table.inner(tables[i], fmt::format("[[{}.particle]] {}", table.bare_name(), i + 1));
+    for (auto& entry : table.entries("particle")) {
         std::string name;
         entry({.key = "name"}, name);
         if (std::find(others.begin(), others.end(), name) != others.end()) continue;
         throw entry.error("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
-                          did_you_mean("; ", name, others));
+                          did_you_mean("; ", name, {others.begin(), others.end()}));
     }
     if (names.size() == others.size())
         throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
+}
+
+/// Throws if a constraint or force of a table names a particle that the side does not have.
+void check_ends(const SideSpec& side, TomlReader& table) {
+    std::vector<TomlReader> parts = table.entries("constraint"), forces = table.entries("force");
+    std::ranges::move(forces, std::back_inserter(parts));
+    if (parts.empty()) return;
+    const auto all = particle_names(side);
+    const std::set<std::string_view> names(all.begin(), all.end());
+    for (auto& part : parts)
+        for (const auto* key : {"particle", "from", "to"}) {
+            std::optional<EndSpec> end;
+            part({.key = key}, end);
+            const auto* name = end ? std::get_if<std::string>(&*end) : nullptr;
+            if (name && !names.contains(*name))
+                throw part.error(key, "must name a particle; there is no \"{}\"{}", *name,
+                                 did_you_mean("; ", *name, {all.begin(), all.end()}));
+        }
+}
+
+/// Refuses keys of a pivot that has no effect without an amplitude.
+void check_pivots(TomlReader& system, TomlReader& a, TomlReader& b) {
+    constexpr std::string_view amplitude = "amplitude_m";
+    auto of_both = system.inner("pivot"), of_a = a.inner("pivot"), of_b = b.inner("pivot");
+    const bool moves = of_both.has(amplitude), moves_a = moves || of_a.has(amplitude),
+               moves_b = moves || of_b.has(amplitude);
+    for (const auto& [pivot, has_effect] :
+         {std::pair(&of_both, moves_a || moves_b), {&of_a, moves_a}, {&of_b, moves_b}})
+        for (const auto* key : {"direction_deg", "frequency_hz", "phase_deg"})
+            if (!has_effect && pivot->has(key)) throw pivot->error(key, "has no effect without {}", amplitude);
 }
 
 /// Refuses particles of one side that would replace the chain of [system] without a word.
@@ -252,6 +277,22 @@ void check_chain_is_kept(TomlReader& side, TomlReader& system) {
                                           "them, or give that key in the other side",
                                           key)
                                    .with(std::string(key)));
+}
+
+/// Reads [system], [a] or [b]; `has_text` = including side_text_fields().
+void read_side(TomlReader& table, SideSpec& side, bool has_text) {
+    if (has_text) side_text_fields(table, side);
+    read_physical_chain(table, side);
+    read_mechanism(table, side);
+    gravity_field(table, side);
+    table(model_field, side.model);
+    if (!read_accuracy(table, side)) {
+        if (table.has("integrator")) side.integrator_from_command_line = table.from_command_line("integrator");
+        method_fields(table, side);
+    }
+    precision_fields(table, side);
+    table.finish();
+    table.check_together([&] { check_choices(table, side); });
 }
 
 }  // namespace
@@ -303,36 +344,26 @@ void read_release(TomlReader& table, SideSpec& side, bool is_physical) {
     if (is_physical) table.check_together([&] { check_masses(table, side); });
 }
 
-void read_side(TomlReader& table, SideSpec& side, bool has_text) {
-    if (has_text) side_text_fields(table, side);
-    read_physical_chain(table, side);
-    read_mechanism(table, side);
-    gravity_field(table, side);
-    table(model_field, side.model);
-    if (!read_accuracy(table, side)) {
-        if (table.has("integrator")) side.integrator_from_command_line = table.from_command_line("integrator");
-        method_fields(table, side);
-    }
-    precision_fields(table, side);
-    table.finish();
-    table.check_together([&] { check_choices(table, side); });
-}
-
-void read_sides(const TomlDocument& document, const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
+void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
     std::vector<TomlReader> systems;
-    for (auto* level : levels) read_side(systems.emplace_back(document.table(*level, "system")), preset.a);
+    for (auto* level : levels) read_side(systems.emplace_back(level->inner("system")), preset.a, false);
     preset.b = preset.a;
     for (auto* level : levels) {
-        auto a = document.table(*level, "a"), b = document.table(*level, "b");
+        auto a = level->inner("a"), b = level->inner("b");
         for (auto& system : systems) {
             check_chain_is_kept(a, system);
             check_chain_is_kept(b, system);
         }
         read_side(a, preset.a, is_film);
         read_side(b, preset.b, is_film);
-        load_track(document, a, preset.a);
-        load_track(document, b, preset.b);
+        load_track(a, preset.a);
+        load_track(b, preset.b);
         b.check_together([&] {
+            for (auto& system : systems)
+                for (const auto* side : {&preset.a, &preset.b}) check_ends(*side, system);
+            check_ends(preset.a, a);
+            check_ends(preset.b, b);
+            if (is_film) check_pivots(systems.front(), a, b);
             if (!is_film && preset.a.links() != preset.b.links())
                 throw b.error("links",
                               "must be that of the other side, so that the two can be compared; they are {} and {}",

@@ -11,8 +11,6 @@
 namespace doppel {
 namespace {
 
-constexpr std::string_view command_line = "--";
-
 /// Why a text cannot be drawn; nothing if its fonts contain all letters.
 std::optional<std::string> not_drawable(std::string_view text, const Typeface& typeface) {
     std::vector<std::string> letters;
@@ -54,12 +52,13 @@ bool meet(std::string_view group, std::string_view other) {
     return group == other || group.empty() || other.empty();
 }
 
-/// Whether one wrong key may cause both: the same message, or two keys that conflict with the same third key.
-bool may_have_one_cause(const KeyError& error, const KeyError& other) {
+/// Whether the other error says enough: it has the same message, is about the key beside this one, or conflicts with the
+/// same third key.
+bool says_enough(const KeyError& other, const KeyError& error) {
     if (error.what() == std::string_view(other.what())) return true;
-    if (!error.beside || !other.beside || !meet(error.group, other.group)) return false;
-    const auto &key = *error.beside, &third = *other.beside;
-    return key == third || key.empty() || third.empty();
+    if (!error.beside || !meet(error.group, other.group)) return false;
+    const auto &key = *error.beside, &wrong = other.beside ? *other.beside : other.key;
+    return key == wrong || key.empty() || wrong.empty();
 }
 
 }  // namespace
@@ -74,28 +73,18 @@ TomlReader::TomlReader(const toml::table* table, std::string name, std::string p
       typeface_(typeface),
       errors_(errors) {}
 
-/// The source of the key's name, with the command line option that gave it; nothing if the key is absent.
-std::optional<toml::source_region> TomlReader::source_of(std::string_view key) const {
-    if (!table_) return std::nullopt;
+std::pair<std::string, ErrorPlace> TomlReader::place_of(std::string_view key) const {
+    if (!table_) return {path_, {}};
     const auto entry = table_->find(key);
-    if (entry == table_->end()) return std::nullopt;
-    return is_typed(entry->second) ? entry->second.source() : entry->first.source();
-}
-
-std::string TomlReader::place(std::string_view key) const {
-    const auto source = source_of(key);
-    if (!source) return path_;
-    if (source->path && source->path->starts_with(command_line)) return *source->path;
-    return fmt::format("{}:{}:{}", path_, source->begin.line, source->begin.column);
-}
-
-ErrorPlace TomlReader::error_place(std::string_view key) const {
-    const auto source = source_of(key);
-    if (source && source->path && source->path->starts_with(command_line))
-        return errors_ ? errors_->of_option(*source->path) : ErrorPlace{};
-    if (!table_ || (!source && name_.empty())) return {};
-    const auto& at = (source ? *source : table_->source()).begin;
-    return at.line > 0 ? ErrorPlace{at.line, at.column} : ErrorPlace{};
+    const bool is_given = entry != table_->end();
+    if (is_given && is_typed(entry->second)) {
+        const auto& option = *entry->second.source().path;
+        return {option, errors_ ? errors_->of_option(option) : ErrorPlace{}};
+    }
+    const auto& at = (is_given ? entry->first.source() : table_->source()).begin;
+    const bool is_known = at.line > 0 && (is_given || !name_.empty());
+    return {is_given ? fmt::format("{}:{}:{}", path_, at.line, at.column) : path_,
+            is_known ? ErrorPlace{at.line, at.column} : ErrorPlace{}};
 }
 
 void TomlReader::refuse(const KeyError& error) const {
@@ -139,24 +128,24 @@ void TomlReader::require_title(const std::string& name) {
         refuse(error_at("title", fmt::format("title is missing, and the preset's name {}", *error)).with(""));
 }
 
-const toml::table* TomlReader::read_table(std::string_view key) {
+TomlReader TomlReader::inner(std::string_view key) {
     const auto* node = find(key);
     if (node && !node->is_table()) refuse(error(key, "must be a table; {}", found(*node)));
-    return node ? node->as_table() : nullptr;
+    return inner(node ? node->as_table() : nullptr, fmt::format("[{}]", inner_name(key)));
 }
 
-std::vector<const toml::table*> TomlReader::read_tables(std::string_view key) {
-    std::vector<const toml::table*> tables;
+std::vector<TomlReader> TomlReader::entries(std::string_view key) {
+    std::vector<TomlReader> all;
     const auto* node = find(key);
-    if (!node) return tables;
+    if (!node) return all;
     const auto* array = node->as_array();
     if (!array || !array->is_array_of_tables()) {
-        refuse(error(key, "must be written as [[{}{}{}]] tables; {}", bare_name(), name_.empty() ? "" : ".", key,
-                     found(*node)));
-        return tables;
+        refuse(error(key, "must be written as [[{}]] tables; {}", inner_name(key), found(*node)));
+        return all;
     }
-    for (const auto& element : *array) tables.push_back(element.as_table());
-    return tables;
+    for (const auto& element : *array)
+        all.push_back(inner(element.as_table(), fmt::format("[[{}]] {}", inner_name(key), all.size() + 1)));
+    return all;
 }
 
 void TomlReader::finish() const {
@@ -210,17 +199,12 @@ bool KeyErrors::concern(std::string_view group) const {
 }
 
 void KeyErrors::throw_if_any() const {
-    const auto may_be_caused = [&](const KeyError& error) {
-        return error.beside && std::ranges::any_of(errors_, [&](const KeyError& other) {
-                   return !other.beside && meet(other.group, error.group) &&
-                          (error.beside->empty() || other.key == *error.beside);
-               });
-    };
+    auto errors = errors_;
+    std::ranges::stable_partition(errors, [](const KeyError& error) { return !error.beside; });
     std::vector<KeyError> counting;
-    for (const auto& error : errors_) {
-        const auto has_its_cause = [&](const KeyError& other) { return may_have_one_cause(error, other); };
-        if (std::ranges::none_of(counting, has_its_cause) && !may_be_caused(error)) counting.push_back(error);
-    }
+    for (const auto& error : errors)
+        if (std::ranges::none_of(counting, [&](const KeyError& other) { return says_enough(other, error); }))
+            counting.push_back(error);
     if (counting.empty()) return;
     std::ranges::stable_sort(counting, {}, &KeyError::place);
     std::vector<std::string> lines;

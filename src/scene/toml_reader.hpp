@@ -56,6 +56,8 @@ std::string kind_of(const toml::node& node);  // "a whole number"
 std::string written(const toml::node& node);  // the value as TOML
 std::string shown(const toml::node& node);    // the same on one line, shortened
 std::string found(const toml::node& node);    // "it is a whole number (3)"
+/// What a number must be, "> 0" or "from 1 to 10000 kg"; nothing if it is in range.
+std::optional<std::string> missed_range(const Bounds& bounds, const Quad& number, std::string_view unit = "");
 /// Whether it was given on the command line, where one number or text counts as a list of one.
 bool is_typed(const toml::node& node);
 
@@ -126,6 +128,10 @@ public:
 
     /// Runs a check of several keys, which throws KeyError. Skipped if these tables already have errors.
     void check_together(const std::function<void()>& check) const;
+    /// Throws all errors of the preset if these tables have one.
+    void throw_if_any() const {
+        if (errors_ && errors_->concern(group_)) errors_->throw_if_any();
+    }
     /// Records the error, or throws it.
     void refuse(const KeyError& error) const;
     /// Calls read(), whose errors in the input are errors of the key. Returns whether there was none.
@@ -150,16 +156,16 @@ public:
     void require_title(const std::string& name);
     /// Throws if `text`, the value of `key`, is too long or contains a letter that no font has.
     void require_drawable(std::string_view key, std::string_view text) const;
-    const toml::table* read_table(std::string_view key);
-    /// The tables of [[key]]; none if it is absent.
-    std::vector<const toml::table*> read_tables(std::string_view key);
+    /// Readers of the tables of [[NAME.key]]; none if it is absent.
+    std::vector<TomlReader> entries(std::string_view key);
 
-    /// The name without brackets, "system".
-    std::string_view bare_name() const {
-        return name_.empty() ? name_ : std::string_view(name_).substr(1, name_.size() - 2);
+    /// The name of an inner table, "system.pivot"; outside of tables and in an entry, the key itself.
+    std::string inner_name(std::string_view key) const {
+        const bool is_inside = !name_.empty() && !name_.starts_with("[[");
+        return is_inside ? fmt::format("{}.{}", name_.substr(1, name_.size() - 2), key) : std::string(key);
     }
-    /// A reader of the table [NAME.key].
-    TomlReader inner(std::string_view key) { return inner(read_table(key), fmt::format("[{}.{}]", bare_name(), key)); }
+    /// A reader of the table [NAME.key]; it may be absent.
+    TomlReader inner(std::string_view key);
     /// A reader of an inner table, called `name` in errors.
     TomlReader inner(const toml::table* table, std::string name) const {
         return {table, std::move(name), path_, *texts_, typeface_, errors_};
@@ -175,19 +181,20 @@ public:
     }
     /// The error "PATH:LINE:COLUMN: MESSAGE" of a key.
     [[nodiscard]] KeyError error_at(std::string_view key, const std::string& message) const {
-        return {fmt::format("{}: {}", place(key), message), error_place(key), group_, key};
+        const auto [place, order] = place_of(key);
+        return {fmt::format("{}: {}", place, message), order, group_, key};
     }
-    /// "path:line:column" of a key, the command line option that gave it, or the path if it is absent.
-    [[nodiscard]] std::string place(std::string_view key) const;
+    /// "path:line:column" of a key, the command line option that gave it, or the path if it is absent; and its place
+    /// among other errors.
+    std::pair<std::string, ErrorPlace> place_of(std::string_view key) const;
     std::string subject(std::string_view key) const {
         return name_.empty() ? std::string(key) : fmt::format("{} {}", name_, key);
     }
+    const std::string& path() const { return path_; }
     const TomlTexts& texts() const { return *texts_; }
 
 private:
     const toml::node* find(std::string_view key);
-    std::optional<toml::source_region> source_of(std::string_view key) const;
-    ErrorPlace error_place(std::string_view key) const;
     bool counts(const Field& field);
     void require(const Field& field, bool given) const;
 
@@ -208,10 +215,6 @@ struct TomlDocument {
     /// A reader of the keys outside of tables.
     TomlReader top(KeyErrors* errors = nullptr, const Typeface* typeface = &built_in_typeface) const {
         return {&root, "", path, texts, typeface, errors};
-    }
-    /// A reader of the table [key]; it may be absent.
-    TomlReader table(TomlReader& above, std::string_view key) const {
-        return above.inner(above.read_table(key), fmt::format("[{}]", key));
     }
 };
 

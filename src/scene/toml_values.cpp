@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 namespace doppel {
 namespace {
@@ -18,19 +17,12 @@ std::string listed(std::span<const std::string_view> choices) {
     return text;
 }
 
-/// {1} for key[1]; converted to text only for errors.
-using Element = std::initializer_list<std::size_t>;
-
-std::string index_text(Element element) {
-    std::string text;
-    for (const auto index : element) text += fmt::format("[{}]", index);
-    return text;
-}
-
-/// Reads the value of a key into a member, by the member's type.
+/// Reads the value of a key, or one of its elements, into a member, by the member's type.
 class ValueReader {
 public:
-    ValueReader(const TomlReader& table, const Field& field) : table_(table), field_(field) {}
+    /// `at` = the place of an element, "[1]".
+    ValueReader(const TomlReader& table, const Field& field, std::string at = "")
+        : table_(table), field_(field), at_(std::move(at)) {}
 
     void read(const toml::node& node, std::string& into) const {
         if (!node.is_string()) throw error("must be a string; {}", found(node));
@@ -54,10 +46,12 @@ public:
         into = node.as_boolean()->get();
     }
 
-    template <class Number>
-    requires std::is_same_v<Number, double> || std::is_same_v<Number, Quad>
-    void read(const toml::node& node, Number& into) const {
-        into = number(node, {}, into);
+    void read(const toml::node& node, double& into) const {
+        into = rounded(node);
+        check(into);
+    }
+    void read(const toml::node& node, Quad& into) const {
+        into = exact(node);
         check(into);
     }
 
@@ -71,12 +65,12 @@ public:
             value = reduced(whole->get(), 1);
         } else {
             // with all written digits
-            const Quad decimal = number(node, {}, Quad());
+            const Quad decimal = exact(node);
             value = rational_from_decimal(static_cast<double>(decimal));
             const Quad rounding = parse_quad("1e-32") * abs(decimal);
             if (value && abs(Quad(value->as<Quad>() - decimal)) > rounding) value.reset();
         }
-        if (!value) throw error("has too many digits; it is {}", shown(node));
+        if (!value) throw error("is no fraction of whole numbers up to 9.2e18; it is {}", shown(node));
         const bool is_open = field_.bounds.is_open;
         if (value->numerator < (is_open ? 1 : 0))
             throw error("must be {} 0; it is {}", is_open ? ">" : "≥", shown(node));
@@ -91,22 +85,21 @@ public:
             return read(node, into[0]);
         }
         into.resize(some_of(node, "numbers").size());
-        read_array(node, std::span(into));
+        read_array(node, into, "numbers");
     }
 
-    /// One number for all, or as many as the member already has: other keys give the count.
+    /// One number for all, or as many as the member already has: other keys give the count. If the field has a
+    /// `maximum`, 1 to so many.
     void read(const toml::node& node, std::vector<Quad>& into) const {
-        if (node.is_array()) return read_array(node, std::span(into), "links");
-        if (!node.is_number())
-            throw error("must be a number, or an array of {} numbers, {}; {}", into.size(), field_.each, found(node));
-        std::fill(into.begin(), into.end(), number(node, {}, Quad()));
-        check(into[0], {0});
+        if (field_.maximum > 0) into.resize(node.is_array() ? some_of(node, "numbers").size() : 1);
+        const auto count = fmt::format("{} number{}, {}", into.size(), into.size() == 1 ? "" : "s", field_.each);
+        if (node.is_array()) return read_array(node, into, count, "links");
+        if (!node.is_number()) throw error("must be a number, or an array of {}; {}", count, found(node));
+        at(0).read(node, into[0]);
+        std::fill(into.begin(), into.end(), into[0]);
     }
 
-    void read(const toml::node& node, QuadPair& into) const {
-        if (!node.is_array()) throw error("must be two numbers, [x, y]; {}", found(node));
-        ValueReader(table_, {.key = field_.key, .each = "x and y"}).read_array(node, std::span<Quad>(into));
-    }
+    void read(const toml::node& node, QuadPair& into) const { read_array(node, into, "2 numbers, x and y"); }
 
     void read(const toml::node& node, EndSpec& into) const {
         if (node.is_string())
@@ -116,31 +109,34 @@ public:
     }
 
     void read(const toml::node& node, std::array<int, 2>& into) const {
-        read_whole_pair(node, "two whole numbers", into[0], into[1]);
+        read_array(node, into, fmt::format("2 whole numbers, {}", field_.each));
     }
     void read(const toml::node& node, Size& into) const {
-        read_whole_pair(node, "whole numbers", into.width, into.height);
+        std::array<int, 2> size{};
+        read(node, size);
+        into = {size[0], size[1]};
     }
 
     /// For bounds > 0, a logarithmic axis.
     void read(const toml::node& node, Range& into) const {
-        const auto [low, high] = two_numbers(node);
+        std::array<double, 2> range{};
+        read_array(node, range, fmt::format("2 numbers, {}", field_.each));
+        const auto [low, high] = range;
         if (field_.bounds.is_open && (!(high >= 10 * low) || high / low > 1e60))
             throw error("must increase by 1 to 60 powers of ten; it is [{}, {}]", low, high);
         if (!(high > low) || !std::isfinite(high - low)) throw error("must increase; it is [{}, {}]", low, high);
         into = {low, high};
     }
 
-    /// Each must be one of `names`, if there are any.
     void read(const toml::node& node, std::vector<std::string>& into) const {
-        auto texts = texts_in(node);
-        for (const auto& text : texts) {
-            if (field_.is_drawn) table_.require_drawable(field_.key, text);
-            if (!field_.names.empty() &&
-                std::find(field_.names.begin(), field_.names.end(), text) == field_.names.end())
-                throw error("must be of {}; \"{}\" is not", fmt::join(field_.names, ", "), text);
-        }
-        into = std::move(texts);
+        into.clear();
+        if (node.is_string() && is_typed(node)) return read(node, into.emplace_back());
+        const auto* array = node.as_array();
+        if (!array) throw error("must be an array of strings; {}", found(node));
+        if (field_.is_drawn && array->size() > max_texts)
+            throw error("must be at most {} texts; they are {}", max_texts, array->size());
+        into.resize(array->size());
+        read_array(node, into, "strings");
     }
 
     void read(const toml::node& node, ChosenText& into) const {
@@ -170,8 +166,7 @@ public:
             into.texts[element] = text_in(node);
         } else if constexpr (std::is_same_v<T, Size>) {
             check_size(2);
-            const Field number{.key = field_.key, .bounds = field_.bounds};  // the unit is not shown
-            ValueReader(table_, number).read(node, element == 0 ? into.width : into.height);
+            read(node, element == 0 ? into.width : into.height);
         } else if constexpr (is_optional<T>) {
             check_size(into ? element + 1 : 0);
             read_element(node, element, *into);
@@ -197,39 +192,12 @@ public:
             auto& member = into.releases.emplace_back();
             if (const auto* table = release.as_table())
                 read_release(*table, k, member);
-            else if (const auto* list = release.as_array();
-                     (list && !list->empty()) || (release.is_number() && is_typed(node)))
-                read_numbers(release, {"angle_deg"}, k, member.angle_deg);
+            else if (release.is_array() || (release.is_number() && is_typed(node)))
+                ValueReader(table_, numbers_of_release(field_.key, angle_bounds), fmt::format("[{}]", k))
+                    .read(release, member.angle_deg);
             else
                 refuse(fmt::format("{} is {}", shown(release), kind_of(release)));
         }
-    }
-
-    /// Reads the keys of member number `k` of an ensemble, from 0.
-    void read_release(const toml::table& table, std::size_t k, Release& member) const {
-        for (const auto& [key, value] : table) {
-            const auto list = std::ranges::find(Release::lists, key.str(), &Release::List::key);
-            if (list != Release::lists.end())
-                read_numbers(value, list->key, k, member.*list->member);
-            else if (key.str() == "color")
-                read(value, member.color.emplace());
-            else
-                throw error("[{}] may have angle_deg, mass_kg, length_m and color; \"{}\" is none of them", k,
-                            key.str());
-        }
-    }
-    void read_numbers(const toml::node& node, std::string_view key, std::size_t k, std::vector<Quad>& into) const {
-        const Field field{.key = field_.key, .bounds = key == "angle_deg" ? angle_bounds : positive};
-        const auto add = [&](const toml::node& element) {
-            const Element place{k, into.size()};
-            into.push_back(number(element, place, Quad()));
-            ValueReader(table_, field).check(into.back(), place);
-        };
-        if (const auto* list = node.as_array())
-            for (const auto& element : *list) add(element);
-        else
-            add(node);
-        if (into.empty()) throw error("[{}] {} must have numbers, one a link; it is []", k, key);
     }
 
     void read(const toml::node& node, Speed& into) const {
@@ -254,123 +222,86 @@ public:
         if (!color) throw error("must be a colour such as \"#ff9f40\"; {}", found(node));
         into = *color;
     }
-
     void read(const toml::node& node, std::array<Color, 2>& into) const {
-        const auto colors = texts_in(node);
-        if (colors.size() != 2) throw error("must have 2 colours, a and b; it has {}", colors.size());
-        for (std::size_t i = 0; i < 2; ++i) {
-            const auto color = parse_color(colors[i]);
-            if (!color) throw error("must be colours such as \"#ff9f40\"; [{}] is \"{}\"", i, colors[i]);
-            into[i] = *color;
-        }
+        read_array(node, into, "2 colours, a and b");
     }
 
     /// "pendulums" and the strips, in order.
     void read(const toml::node& node, Panels& into) const {
-        const auto panels = texts_in(node);
+        std::vector<std::string> panels;
+        read(node, panels);
+        if (panels.empty()) throw error("must contain at least one of {}", listed(field_.names));
         into = {false, {}};
         for (const auto& panel : panels) {
-            if (std::ranges::find(field_.names, panel) == field_.names.end())
-                throw error("may contain \"{}\"; \"{}\" is none of them", fmt::join(field_.names, "\", \""), panel);
             const auto kind = value_named<StripKind>(panel);
             if (panel == "pendulums")
                 into.pendulums = true;
             else if (std::ranges::find(into.strips, kind) == into.strips.end())
                 into.strips.push_back(kind);
         }
-        if (panels.empty()) throw error("must contain at least one of \"{}\"", fmt::join(field_.names, "\", \""));
     }
 
 private:
+    /// A reader of an element of the array.
+    ValueReader at(std::size_t i) const { return {table_, field_, fmt::format("{}[{}]", at_, i)}; }
+
     template <class... Args>
     KeyError error(fmt::format_string<Args...> format, Args&&... args) const {
-        return table_.error(field_.key, format, std::forward<Args>(args)...);
-    }
-    /// An error of an element of the key's array.
-    template <class... Args>
-    KeyError error_of(Element element, fmt::format_string<Args...> format, Args&&... args) const {
-        return table_.error_at(field_.key, fmt::format("{}{} {}", table_.subject(field_.key), index_text(element),
+        return table_.error_at(field_.key, fmt::format("{}{} {}", table_.subject(field_.key), at_,
                                                        fmt::format(format, std::forward<Args>(args)...)));
     }
 
     std::string text_in(const toml::node& value) const {
-        return value.is_number() ? text_of(number(value, {}, Quad())) : written(value);
+        return value.is_number() ? text_of(exact(value)) : written(value);
     }
 
     template <class Number>
-    void check(const Number& value, Element element = {}) const {
-        const auto& bounds = field_.bounds;
-        const auto& [low, high, is_open, zero, why, is_positive] = bounds;
-        if ((is_open ? value > low : value >= low) && value <= high) return;
+    void check(const Number& value) const {
         // keys usually contain the unit
-        const auto unit =
-            field_.unit.empty() || field_.key.ends_with(field_.unit) ? "" : fmt::format(" {}", field_.unit);
-        const auto right = is_positive && !(value > 0) ? "> 0"
-                           : is_open && !(value > low) ? fmt::format("> {}", low)
-                           : is_open                   ? fmt::format("at most {}{}", high, unit)
-                           : !bounds.has_high()
-                               ? fmt::format("{} {}", is_positive ? "at least" : "≥", low)
-                               : fmt::format("from {}{} to {}{}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero),
-                                             high, unit, why.empty() ? "" : fmt::format(": {}", why));
-        const auto error = error_of(why.empty() ? element : Element{}, "must be {}; {} is {}", right,
-                                    why.empty() ? "it" : "one", toml_value(value));
+        const auto range = missed_range(field_.bounds, value, field_.key.ends_with(field_.unit) ? "" : field_.unit);
+        if (!range) return;
+        const auto wrong = error("must be {}; it is {}", *range, toml_value(value));
         // together with other keys, if the key would accept the number without them
         const auto& widest = field_.otherwise;
-        throw widest && value >= widest->low && value <= widest->high ? error.with(table_.beside(field_.only.beside))
-                                                                      : error;
+        throw widest && value >= widest->low && value <= widest->high ? wrong.with(table_.beside(field_.only.beside))
+                                                                      : wrong;
     }
 
-    double number(const toml::node& node, Element element, double) const {
-        if (!node.is_number()) throw error_of(element, "must be a number; {}", found(node));
+    double rounded(const toml::node& node) const {
+        if (!node.is_number()) throw error("must be a number; {}", found(node));
         const double value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : *node.value<double>();
-        if (!std::isfinite(value)) throw error_of(element, "must be finite; it is {}", value);
+        if (!std::isfinite(value)) throw error("must be finite; it is {}", value);
         return value + 0.0;  // turns −0 into 0
     }
     /// A number with all written digits.
-    Quad number(const toml::node& node, Element element, const Quad&) const {
-        const double rounded = number(node, element, 0.0);
+    Quad exact(const toml::node& node) const {
+        const double nearest = rounded(node);
         if (const auto* whole = node.as_integer()) return Quad(whole->get());
         const auto literal = literal_of(node, table_.texts());
-        if (!literal) return Quad(rounded);
+        if (!literal) return Quad(nearest);
         const Quad value = parse_quad(*literal) + 0;
         // the literal must equal the number that was read; otherwise its place is wrong
         constexpr double rounding = 1e-15, minimum = 1e-322;
-        if (!(std::abs(static_cast<double>(value) - rounded) <= rounding * std::abs(rounded) + minimum))
-            throw error_of(element, "has digits that cannot be found in the text; it is {}", rounded);
+        if (!(std::abs(static_cast<double>(value) - nearest) <= rounding * std::abs(nearest) + minimum))
+            throw error("has digits that cannot be found in the text; it is {}", nearest);
         constexpr std::size_t always_held = 33;
         if (literal->size() <= always_held) return value;
         const auto digits = significant_digits(*literal);
         if (digits.size() > always_held && digits != significant_digits(text_of(value)))
-            throw error_of(element, "must have at most 34 digits, the precision of quad; it has {}", digits.size());
+            throw error("must have at most 34 digits, the precision of quad; it has {}", digits.size());
         return value;
     }
 
-    /// `other` = the key that gives the count.
-    template <class Number>
-    void read_array(const toml::node& node, std::span<Number> into, std::string_view other = "") const {
-        const auto& array = *node.as_array();
-        if (array.size() != into.size()) {
-            const auto length = error("must have {} number{}, {}; it has {}: {}", into.size(),
-                                      into.size() == 1 ? "" : "s", field_.each, array.size(), shown(node));
+    /// `what` = number and meaning of the elements; `other` = the key that gives their number
+    template <class Array>
+    void read_array(const toml::node& node, Array& into, std::string_view what, std::string_view other = "") const {
+        const auto* array = node.as_array();
+        if (!array) throw error("must be an array of {}; {}", what, found(node));
+        if (array->size() != into.size()) {
+            const auto length = error("must have {}; it has {}: {}", what, array->size(), shown(node));
             throw other.empty() ? length : length.with(table_.beside(other));
         }
-        for (std::size_t i = 0; i < into.size(); ++i) into[i] = number(*array.get(i), {i}, into[i]);
-        for (std::size_t i = 0; i < into.size(); ++i) check(into[i], {i});
-    }
-    std::array<double, 2> two_numbers(const toml::node& node) const {
-        if (!node.is_array()) throw error("must be an array of 2 numbers, {}; {}", field_.each, found(node));
-        std::array<double, 2> pair{};
-        read_array(node, std::span<double>(pair));
-        return pair;
-    }
-    void read_whole_pair(const toml::node& node, std::string_view what, int& first, int& second) const {
-        const auto pair = ValueReader(table_, {.key = field_.key, .each = field_.each}).two_numbers(node);
-        const auto& [low, high] = std::pair(field_.bounds.low, field_.bounds.high);
-        for (const double number : pair)
-            if (number != std::floor(number) || number < low || number > high)
-                throw error("must be {} from {} to {}; it is [{}, {}]", what, low, high, pair[0], pair[1]);
-        first = static_cast<int>(pair[0]);
-        second = static_cast<int>(pair[1]);
+        for (std::size_t i = 0; i < into.size(); ++i) at(i).read(*array->get(i), into[i]);
     }
     const toml::array& some_of(const toml::node& node, std::string_view what) const {
         const auto* array = node.as_array();
@@ -378,23 +309,23 @@ private:
             throw error("must be an array of 1 to {} {}; {}", field_.maximum, what, found(node));
         return *array;
     }
-    std::vector<std::string> texts_in(const toml::node& node) const {
-        if (const auto* text = node.as_string(); text && is_typed(node)) return {text->get()};
-        const auto* array = node.as_array();
-        if (!array) throw error("must be an array of strings; {}", found(node));
-        std::vector<std::string> texts;
-        for (const auto& element : *array) {
-            if (!element.is_string())
-                throw error("must be an array of strings; {} is {}", shown(element), kind_of(element));
-            texts.push_back(element.as_string()->get());
-        }
-        if (field_.is_drawn && texts.size() > max_texts)
-            throw error("must be at most {} texts; they are {}", max_texts, texts.size());
-        return texts;
+
+    static Field numbers_of_release(std::string_view key, const Bounds& bounds) {
+        constexpr std::size_t max_links = 10'000;
+        return {.key = key, .bounds = bounds, .maximum = max_links};
+    }
+    /// Reads the table of a member of an ensemble.
+    void read_release(const toml::table& table, std::size_t k, Release& member) const {
+        auto keys = table_.inner(&table, fmt::format("{}[{}]", table_.subject(field_.key), k));
+        for (const auto& list : Release::lists)
+            keys(numbers_of_release(list.key, list.key == "angle_deg" ? angle_bounds : positive), member.*list.member);
+        keys({.key = "color"}, member.color);
+        keys.finish();
     }
 
     const TomlReader& table_;
     const Field& field_;
+    std::string at_;
 };
 
 }  // namespace
@@ -402,6 +333,18 @@ private:
 bool is_typed(const toml::node& node) {
     const auto& origin = node.source().path;
     return origin && origin->starts_with("--");
+}
+
+std::optional<std::string> missed_range(const Bounds& bounds, const Quad& number, std::string_view unit) {
+    const auto& [low, high, is_open, zero, why, is_positive] = bounds;
+    if ((is_open ? number > low : number >= low) && number <= high) return std::nullopt;
+    if (is_positive && !(number > 0)) return "> 0";
+    if (is_open && !(number > low)) return fmt::format("> {}", low);
+    const auto highest = fmt::format("{}{}{}", high, unit.empty() ? "" : " ", unit);
+    if (is_open) return "at most " + highest;
+    if (!bounds.has_high()) return fmt::format("{} {}", is_positive ? "at least" : "≥", low);
+    return fmt::format("from {}{} to {}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero), highest,
+                       why.empty() ? "" : fmt::format(": {}", why));
 }
 
 std::string significant_digits(std::string_view decimal) {

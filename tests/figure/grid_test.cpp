@@ -120,6 +120,13 @@ TEST(Grid, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
     // convergence of order 4
     const double slope = std::log(table.rows[8][1] / table.rows[5][1]) / std::log(table.rows[8][0] / table.rows[5][0]);
     EXPECT_NEAR(slope, 4, 0.1);  // measured 3.98
+    const auto listed =
+        table_of(figure_from("[scene]\nkind = \"grid\"\nduration_s = 1\n[system]\nintegrator = "
+                             "\"rk4\"\n[grid]\nquantity = \"energy_error\"\n"
+                             "[grid.x]\nkey = \"system.step_s\"\nvalues = [\"1/30000\", 0.001, \"1/120\"]\n"));
+    ASSERT_EQ(listed.rows.size(), 3u);
+    EXPECT_EQ(listed.rows[0][0], 1.0 / 30000);
+    EXPECT_EQ(listed.rows[2][0], 1.0 / 120);
 }
 
 TEST(Grid, NamesTheMethodInItsSubtitle) {

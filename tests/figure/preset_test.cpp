@@ -202,7 +202,7 @@ TEST(FigureErrors, OfTheTopAreNamed) {
     const std::string scene = "\n[scene]\nkind = \"series\"\n[series]\nquantity = \"exponents\"";
     for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
              {"captions = \"x\"", "presets/x.toml:1:1: captions must be an array of strings; it is a string (\"x\")"},
-             {"captions = [3]", "presets/x.toml:1:1: captions must be an array of strings"},
+             {"captions = [3]", "presets/x.toml:1:1: captions[0] must be a string; it is a whole number (3)"},
              {"erratum = 3", "presets/x.toml:1:1: erratum must be a string; it is a whole number (3)"},
              {"subtitel = \"x\"", "presets/x.toml:1:1: a preset has no \"subtitel\"; did you mean \"subtitle\"?"}}) {
         const auto [code, message] = error_of([&] { figure_from(text + scene); });

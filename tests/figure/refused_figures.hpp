@@ -59,7 +59,7 @@ inline const std::vector<RefusedFigure> refused_figures_values{
     RefusedFigure{"section", "[system]\nangle_deg = [3, 3]", ":4:1: [system]", {"angle_deg"}}};
 
 inline const std::vector<RefusedFigure> refused_figures_chart{
-    RefusedFigure{"grid", "[chart]\nsize = [0, 3]", ":4:1: [chart] size", {"it is [0, 3]"}},
+    RefusedFigure{"grid", "[chart]\nsize = [0, 3]", ":4:1: [chart] size[0]", {"it is 0"}},
     RefusedFigure{"grid", "[chart]\nscale = 9", ":4:1: [chart] scale", {"at most 8; it is 9"}},
     RefusedFigure{"grid", "[chart]\nscale = 0", ":4:1: [chart] scale", {"must be > 0; it is 0"}},
     RefusedFigure{"grid",

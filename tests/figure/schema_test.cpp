@@ -41,7 +41,7 @@ std::string refusal_of(const std::string& text) {
 /// Whether the error concerns one key, whatever the others are: then a schema can also reject its value.
 bool is_of_one_key(const std::string& message) {
     static const std::regex one_key(
-        R"( has no "|must be (a |an |true|whole numbers|two |from |at most |> |≥ |"|colours|written as|names of)|may hold|must hold at least|must have 2 colours| is missing; )"
+        R"( has no "|must be (a |an |true|from |at most |> |≥ |"|written as|names of)|may hold|must hold at least|must have 2 colours| is missing; )"
         R"(|of 1 to \d+ numbers)");
     // errors that depend on more than the key: other values, the font, the length of a number
     static const std::regex of_more(

@@ -124,9 +124,9 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
         {rod + "from = \"bead\"\nto = [0, 0]\nstiffness_N_per_m = 2",
          R"(presets/x.toml:11:1: [[system.constraint]] 1 has no "stiffness_N_per_m"; it has from, kind, length_m, name, to)"},
         {rod + "from = \"baed\"\nto = [0, 0]",
-         R"(x: side a: rod names the particle "baed", which does not exist; did you mean "bead"?)"},
+         R"(presets/x.toml:9:1: [[system.constraint]] 1 from must name a particle; there is no "baed"; did you mean "bead"?)"},
         {rod + "from = [1, 0]\nto = [0, 0]",
-         "x: side a: a rod joins two fixed places; at least one end must be a particle"},
+         "presets/x.toml:10:1: [[system.constraint]] 1 to must name a particle, because from is a fixed place"},
         {"[system]\nlinks = 2\n[[system.particle]]\nname = \"a\"",
          "presets/x.toml:2:1: [system] links describes a chain, but [[system.particle]] describes another system; "
          "remove one of them"},

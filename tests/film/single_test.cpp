@@ -72,7 +72,7 @@ TEST(Single, RefusesWhatIsOfAPair) {
             "[scene] member_columns is for the layout \"ensemble\"; it is \"side-by-side\"");
     const std::string ensemble = "[scene]\nduration_s = 1\n[video]\nlayout = \"ensemble\"\nmembers = ";
     refused(ensemble + "[{angle_deg = [1, 2]}, {weight = 3}]",
-            "[1] may have angle_deg, mass_kg, length_m and color; \"weight\" is none of them");
+            "members[1] has no \"weight\"; it has angle_deg, color, length_m, mass_kg");
     refused(ensemble + "[{mass_kg = [1, 2]}, {mass_kg = [1, -2]}]", "must be > 0");
     refused(ensemble + "[{mass_kg = [1, 2]}, {mass_kg = [1, 2, 3]}]",
             "must have 2 numbers each, one a link; mass_kg of [1] has 3");

@@ -40,7 +40,7 @@ struct Found {
         preset = read_preset({"x", "x.toml", reads_springs ? springs : text});
         const auto document = parse_document(source, {});
         TomlReader top(&document.root, "", document.path, document.texts);
-        auto table = document.table(top, "sweep");
+        auto table = top.inner("sweep");
         try {
             key.emplace(table, "parameter", path, preset);
         } catch (const Error& error) {

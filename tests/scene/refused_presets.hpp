@@ -42,9 +42,10 @@ inline const std::vector<RefusedPreset> refused_system{
         "string (\"90\")"},
     RefusedPreset{"[system]\nangle_deg = [90, \"90\"]",
                   "presets/x.toml:2:1: [system] angle_deg[1] must be a number; it is a string (\"90\")"},
-    RefusedPreset{"[system]\nangle_deg = [9223372036854775807, 1]",
-                  "presets/x.toml:2:1: [system] angle_deg must be from -1000000 to 1000000: beyond, rounding hides the "
-                  "motion; one is 9223372036854775807"},
+    RefusedPreset{
+        "[system]\nangle_deg = [9223372036854775807, 1]",
+        "presets/x.toml:2:1: [system] angle_deg[0] must be from -1000000 to 1000000: beyond, rounding hides the "
+        "motion; it is 9223372036854775807"},
     RefusedPreset{"[system]\ngravity_m_per_s2 = 0",
                   "presets/x.toml:2:1: [system] gravity_m_per_s2 must be > 0; it is 0"},
     RefusedPreset{"[system]\ngravity_m_per_s2 = true",
@@ -106,20 +107,25 @@ inline const std::vector<RefusedPreset> refused_system{
         "[system]\nstep_s = \"fast\"",
         "presets/x.toml:2:1: [system] step_s must be a number or a fraction such as \"1/30000\"; it is \"fast\""},
     RefusedPreset{"[system]\nstep_s = -0.1", "presets/x.toml:2:1: [system] step_s must be > 0; it is -0.1"},
-    RefusedPreset{"[a.track]\nfile = \"data/double-pendulum-track/piece-00.csv\"\noffset_deg = [1e300, 0]",
-                  "presets/x.toml:3:1: [a.track] offset_deg must be from -1000000 to 1000000: beyond, rounding hides "
-                  "the motion; one is 1e+300"},
+    RefusedPreset{
+        "[a.track]\nfile = \"data/double-pendulum-track/piece-00.csv\"\noffset_deg = [1e300, 0]",
+        "presets/x.toml:3:1: [a.track] offset_deg[0] must be from -1000000 to 1000000: beyond, rounding hides "
+        "the motion; it is 1e+300"},
     RefusedPreset{"[system.pivot]\nphase_deg = -1e7",
                   "presets/x.toml:2:1: [system.pivot] phase_deg must be from -1000000 to 1000000: beyond, rounding "
-                  "hides the motion; one is -10000000"},
+                  "hides the motion; it is -10000000"},
     RefusedPreset{"[system.pivot]\ndirection_deg = 1e7",
                   "presets/x.toml:2:1: [system.pivot] direction_deg must be from -1000000 to 1000000: beyond, rounding "
-                  "hides the motion; one is 10000000"},
+                  "hides the motion; it is 10000000"},
+    RefusedPreset{"[system.pivot]\nfrequency_hz = 2",
+                  "presets/x.toml:2:1: [system.pivot] frequency_hz has no effect without amplitude_m"},
+    RefusedPreset{"[a.pivot]\namplitude_m = 1\n[b.pivot]\nphase_deg = 90",
+                  "presets/x.toml:4:1: [b.pivot] phase_deg has no effect without amplitude_m"},
     RefusedPreset{"[[system.torque]]\nphase_deg = 1e7",
                   "presets/x.toml:2:1: [[system.torque]] 1 phase_deg must be from -1000000 to 1000000: beyond, "
-                  "rounding hides the motion; one is 10000000"},
+                  "rounding hides the motion; it is 10000000"},
     RefusedPreset{"[system]\nstep_s = 1e-300",
-                  "presets/x.toml:2:1: [system] step_s has too many digits; it is 1e-300"}};
+                  "presets/x.toml:2:1: [system] step_s is no fraction of whole numbers up to 9.2e18; it is 1e-300"}};
 
 inline const std::vector<RefusedPreset> refused_rates{
     RefusedPreset{
@@ -145,7 +151,7 @@ inline const std::vector<RefusedPreset> refused_video{
                   "presets/x.toml:2:1: [video] size must be even for H.264 in yuv420p; it is [641, 360]; [642, "
                   "360] is possible"},
     RefusedPreset{"[video]\nsize = [0, 100]",
-                  "presets/x.toml:2:1: [video] size must be whole numbers from 64 to 16384; it is [0, 100]"},
+                  "presets/x.toml:2:1: [video] size[0] must be from 64 to 16384 px; it is 0"},
     RefusedPreset{
         "[video]\nformat = \"avi\"",
         R"(presets/x.toml:2:1: [video] format must be "mp4", "webm", "gif", "apng", "png", "html", "y4m" or "rgb"; it is "avi")"},
@@ -156,22 +162,26 @@ inline const std::vector<RefusedPreset> refused_video{
     RefusedPreset{
         "[video]\npreset = \"quick\"",
         R"(presets/x.toml:2:1: [video] preset must be "doppel", "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower" or "veryslow"; it is "quick")"},
-    RefusedPreset{"[video]\nside_colors = [\"red\", \"#0000ff\"]",
-                  R"(presets/x.toml:2:1: [video] side_colors must be colours such as "#ff9f40"; [0] is "red")"},
+    RefusedPreset{
+        "[video]\nside_colors = [\"red\", \"#0000ff\"]",
+        R"(presets/x.toml:2:1: [video] side_colors[0] must be a colour such as "#ff9f40"; it is a string ("red"))"},
     RefusedPreset{"[video]\nside_colors = [\"#0000ff\"]",
-                  "presets/x.toml:2:1: [video] side_colors must have 2 colours, a and b; it has 1"},
-    RefusedPreset{"[video]\nside_colors = [1, 2]",
-                  "presets/x.toml:2:1: [video] side_colors must be an array of strings; 1 is a whole number"},
+                  "presets/x.toml:2:1: [video] side_colors must have 2 colours, a and b; it has 1: [\"#0000ff\"]"},
+    RefusedPreset{
+        "[video]\nside_colors = [1, 2]",
+        "presets/x.toml:2:1: [video] side_colors[0] must be a colour such as \"#ff9f40\"; it is a whole number (1)"},
     RefusedPreset{
         "[video]\npanels = []",
-        R"(presets/x.toml:2:1: [video] panels must contain at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy")"},
+        R"(presets/x.toml:2:1: [video] panels must contain at least one of "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates" or "total-energy")"},
     RefusedPreset{
         "[video]\npanels = [\"phase\"]",
-        R"(presets/x.toml:2:1: [video] panels may contain "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "phase" is none of them)"},
+        R"(presets/x.toml:2:1: [video] panels[0] must be "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates" or "total-energy"; it is "phase")"},
     RefusedPreset{"[video]\npanels = \"energy\"",
                   "presets/x.toml:2:1: [video] panels must be an array of strings; it is a string (\"energy\")"},
     RefusedPreset{"[video]\ntrail_s = -1",
                   "presets/x.toml:2:1: [video] trail_s must be from 0 (none) to 3600; it is -1"},
+    RefusedPreset{"[video]\npanels = [\"distance\"]\nenergy_range = [1, 10]",
+                  "presets/x.toml:3:1: [video] energy_range is for \"energy\", which panels does not contain"},
     RefusedPreset{"[video]\ndistance_range = [1, 2]",
                   "presets/x.toml:2:1: [video] distance_range must increase by 1 to 60 powers of ten; it is [1, 2]"}};
 
@@ -189,10 +199,11 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   "[video] phase_link must be from 1 to 2, as there are links; it is 3"},
     RefusedPreset{
         "panels = [\"distnce\"]",
-        R"([video] panels may contain "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates", "total-energy"; "distnce" is none of them)"},
+        R"([video] panels[0] must be "pendulums", "distance", "exponent", "energy", "rod-error", "rod-force", "energies-a", "energies-b", "angles", "rates" or "total-energy"; it is "distnce"; did you mean "distance"?)"},
     RefusedPreset{"panels = [\"distance\"]\nlayout = \"overlay\"",
                   R"([video] panels must contain "pendulums" for the layout "overlay")"},
-    RefusedPreset{"exponent_range = [1, 1]", "[video] exponent_range must increase; it is [1, 1]"},
+    RefusedPreset{"exponent_range = [1, 1]\npanels = [\"exponent\"]",
+                  "[video] exponent_range must increase; it is [1, 1]"},
     RefusedPreset{"size = [1280, 720]\nlayout = \"portrait\"",
                   R"([video] size must be higher than wide for the layout "portrait"; it is [1280, 720])"},
     RefusedPreset{"size = [301, 200]",
@@ -218,10 +229,8 @@ inline const std::vector<RefusedPreset> refused_video_keys{
         "transparent = true",
         R"([video] transparent needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); the format is "mp4")"},
     RefusedPreset{"poster_s = 30.001", "[video] poster_s must be up to 30 s; it is 30.001"},
-    RefusedPreset{"contact_sheet = [0, 4]",
-                  "[video] contact_sheet must be two whole numbers from 1 to 32; it is [0, 4]"},
-    RefusedPreset{"contact_sheet = [4, 33]",
-                  "[video] contact_sheet must be two whole numbers from 1 to 32; it is [4, 33]"},
+    RefusedPreset{"contact_sheet = [0, 4]", "[video] contact_sheet[0] must be from 1 to 32; it is 0"},
+    RefusedPreset{"contact_sheet = [4, 33]", "[video] contact_sheet[1] must be from 1 to 32; it is 33"},
     RefusedPreset{"hold_end_s = -1", "[video] hold_end_s must be ≥ 0; it is -1"},
     RefusedPreset{"title_card_s = 4000", "[video] title_card_s must be from 0 (none) to 3600; it is 4000"},
     RefusedPreset{
@@ -247,7 +256,7 @@ inline const std::vector<RefusedPreset> refused_video_keys{
                   "[video.colors] background must be a colour such as \"#ff9f40\"; it is a whole number (3)"},
     RefusedPreset{
         "show = [\"titel\"]",
-        R"([video] show must be of title, subtitle, clock, labels, credit, rods, bobs, circle, twin; "titel" is not)"},
+        R"([video] show[0] must be "title", "subtitle", "clock", "labels", "credit", "rods", "bobs", "circle" or "twin"; it is "titel"; did you mean "title"?)"},
     RefusedPreset{"fps = 1001",
                   "[video] fps must be at most 1000 and a fraction of whole numbers up to 1000000; it is 1001"},
     RefusedPreset{

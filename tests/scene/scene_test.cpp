@@ -188,7 +188,8 @@ TEST(Numbers, OfAnyKeyEqualInDoubleNeedQuad) {
         EXPECT_EQ(error_of_sides(system, sides[0], sides[1], "quad").first, ExitCode::done) << name;
     }
     // equal sides are accepted if the difference has no effect in quad either
-    EXPECT_EQ(error_of_sides("", "[a.pivot]\nphase_deg = 1", "[b.pivot]\nphase_deg = 2").first, ExitCode::done);
+    EXPECT_EQ(error_of_sides("", "[a.pivot]\namplitude_m = 0\nphase_deg = 1", "[b.pivot]\namplitude_m = 0").first,
+              ExitCode::done);
 }
 
 TEST(Numbers, EqualInQuadAreRefused) {
@@ -201,7 +202,8 @@ TEST(Numbers, EqualInQuadAreRefused) {
     EXPECT_EQ(long_one.second,
               "x.toml:7:1: [b] angle_deg[0] must have at most 34 digits, the precision of quad; it has 40");
     const auto step = error_of_sides("", "step_s = 0.001", "step_s = 0.00100000000000000000001");
-    EXPECT_NE(step.second.find("[b] step_s has too many digits"), std::string::npos) << step.second;
+    EXPECT_NE(step.second.find("[b] step_s is no fraction of whole numbers up to 9.2e18"), std::string::npos)
+        << step.second;
     // trailing zeros do not count
     EXPECT_EQ(error_of_sides("", "", "angle_deg = [91.00000000000000000000000000000000000000, 90]").first,
               ExitCode::done);
@@ -390,7 +392,7 @@ stiffness_N_per_m = 1e300
     run.next(never);
     const auto [code, message] = error_of([&] { run.next(never); });
     EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_NE(message.find("the velocity of mass 1 is -inf"), std::string::npos) << message;
+    EXPECT_NE(message.find("the velocity in x of mass 1 is -inf"), std::string::npos) << message;
 }
 
 TEST(Mechanism, OfAChainStartsAsTheChainDoes) {

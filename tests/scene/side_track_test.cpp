@@ -159,8 +159,8 @@ TEST(Ensemble, GoesFromFrictionToFriction) {
         error_of([] { preset_from("[a]\ncenter_m = 0.5\n[video]\nlayout = \"ensemble\"\nmembers = 5"); });
     EXPECT_EQ(code, ExitCode::bad_input);
     EXPECT_EQ(message,
-              "nowhere/x.toml:4:1: [video] layout \"ensemble\" needs sides with the same kinds of torques, and "
-              "center_m on both or on neither");
+              "nowhere/x.toml:4:1: [video] layout \"ensemble\" needs sides that differ only in numbers of the "
+              "system, not in center_m");
 }
 
 }  // namespace doppel::side_track_test

@@ -25,8 +25,8 @@ TEST(VideoErrors, LayoutsSayWhichSystemsTheyTake) {
     EXPECT_EQ(message("springs", {"video.layout=\"phase\""}),
               "--set video.layout: [video] layout \"phase\" is for chains; the sides are mechanisms");
     EXPECT_EQ(message("two-methods", {"video.layout=\"ensemble\""}),
-              "--set video.layout: [video] layout \"ensemble\" needs sides that differ only in numbers, not in model "
-              "or method");
+              "--set video.layout: [video] layout \"ensemble\" needs sides that differ only in numbers of the "
+              "system, not in model");
 }
 
 TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
