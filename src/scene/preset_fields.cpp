@@ -99,6 +99,7 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     visit({"phase", "of the layout \"phase\": rates over angles, or a Poincaré section", "", {}, "", of_phase},
           video.phase);
     visit({"phase_link", "of the layout \"phase\": the link that it shows", "", link, "", of_phase}, video.phase_link);
+    if (video.layout == Arrangement::single && video.strips == Panels().strips) video.strips = {StripKind::energies_a};
     visit({.key = "panels", .help = "\"pendulums\" and strips, in their order", .names = panel_names},
           static_cast<Panels&>(video));
     visit({.key = "show",
@@ -124,8 +125,14 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
           video.model_limit_s);
     constexpr std::string_view help = "axis of the strip, [lowest, highest]", fitted = "fitted to the motion";
     for (std::size_t i = 0; i < strip_kinds; ++i) {
-        const auto bounds = is_logarithmic(static_cast<StripKind>(i)) ? positive : Bounds{};
-        visit({range_keys[i], help, "", bounds, fitted, {}, "lowest and highest"}, video.ranges[i]);
+        const auto kind = static_cast<StripKind>(i);
+        const auto shown = [&](StripKind strip) { return std::ranges::count(video.strips, strip) > 0; };
+        // "energy" may become total_energy
+        const Condition of_shown{shown(kind) || (kind == StripKind::total_energy && shown(StripKind::energy)),
+                                 fmt::format("is for \"{}\", which panels does not contain", name_of(kind)),
+                                 visit.from_command_line("panels"), "panels"};
+        const auto bounds = is_logarithmic(kind) ? positive : Bounds{};
+        visit({range_keys[i], help, "", bounds, fitted, of_shown, "lowest and highest"}, video.ranges[i]);
     }
 }
 

@@ -63,9 +63,30 @@ TEST(Init, EachKeyCanBeUncommented) {
     const auto refused = refused_keys(bytes_of(folder / "mine.toml"), read, keys);
     EXPECT_GT(keys, 50u);
     // keys that require other values of other keys
-    EXPECT_EQ(refused, (std::set<std::string>{"codec", "integrator", "members", "phase", "phase_link", "position_bits",
-                                              "speed_ease_s", "stabilise_rate_per_s", "step_s", "tolerance",
-                                              "track.offset_deg", "track.start_s"}));
+    EXPECT_EQ(refused, (std::set<std::string>{"angles_range",
+                                              "codec",
+                                              "energies_a_range",
+                                              "energies_b_range",
+                                              "energy_range",
+                                              "exponent_range",
+                                              "integrator",
+                                              "members",
+                                              "phase",
+                                              "phase_link",
+                                              "pivot.direction_deg",
+                                              "pivot.frequency_hz",
+                                              "pivot.phase_deg",
+                                              "position_bits",
+                                              "rates_range",
+                                              "rod_error_range",
+                                              "rod_force_range",
+                                              "speed_ease_s",
+                                              "stabilise_rate_per_s",
+                                              "step_s",
+                                              "tolerance",
+                                              "total_energy_range",
+                                              "track.offset_deg",
+                                              "track.start_s"}));
 }
 
 TEST(Init, WritesAPresetOfEveryKindOfFigure) {

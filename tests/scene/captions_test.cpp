@@ -185,10 +185,12 @@ TEST(Resolved, HasARateOfStabilisingWhereThereIsOne) {
 }
 
 TEST(Resolved, KeepsTheRangeOfEveryStripAndTheColoursOfTheSides) {
+    const std::string panels =
+        "panels = [\"pendulums\", \"distance\", \"exponent\", \"energy\", \"rod-error\", \"rod-force\"]\n";
     for (const std::string range : {"distance_range = [0.001, 0.01]", "exponent_range = [-1, 2]",
                                     "energy_range = [1e-05, 1]", "rod_error_range = [1e-09, 1e-08]",
                                     "rod_force_range = [-3, 30]", "side_colors = [\"#102030\", \"#a0b0c0\"]"}) {
-        const auto preset = read_preset({"x", "x.toml", "[video]\n" + range, "x.toml"});
+        const auto preset = read_preset({"x", "x.toml", "[video]\n" + panels + range, "x.toml"});
         EXPECT_NE(resolved_toml(preset).find("\n" + range + "\n"), std::string::npos) << resolved_toml(preset);
     }
 }
