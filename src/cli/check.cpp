@@ -10,6 +10,7 @@
 #include "scene/certificate.hpp"
 #include "scene/forecast.hpp"
 #include "scene/method_choice.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/format.h>
 
@@ -231,6 +232,7 @@ void print(const SceneCheck& check) {
         if (forecast) print_forecast(scene, side, *forecast);
         for (const auto& alternative : alternatives) print_line("         {}", alternative);
     }
+    if (const auto words = no_difference(scene)) print_line("  pair   {}", *words);
     if (scene.certificate)
         for (const auto& sentence : certificate_words(scene, *scene.certificate)) print_line("  proof  {}", sentence);
     const bool adaptive = scene.a.method.adaptive || scene.b.method.adaptive;
@@ -301,6 +303,7 @@ Json json_of(const PresetText& preset, const SceneCheck& check, Json warnings) {
     const bool is_exact = !scene.a.method.adaptive && !scene.b.method.adaptive;
     auto json = heading_json(preset, scene.preset.title);
     for (const char letter : scene.letters()) json[std::string(1, letter)] = side_json(check, letter, warnings);
+    if (const auto words = no_difference(scene)) warnings.push_back(*words);
     json["duration_s"] = scene.preset.duration_s.value();
     json["sample_hz"] = scene.preset.sample_hz.value();
     json["samples"] = scene.samples + 1;

@@ -4,6 +4,7 @@
 #include "scene/certificate.hpp"
 #include "scene/forecast.hpp"
 #include "scene/resolved.hpp"
+#include "scene/side_keys.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -88,6 +89,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
                 "= 1e-3",
                 name, 100 * error, side.method.title, step_control_text(side), scene.time(record.last_sample)));
     }
+    if (const auto words = no_difference(scene)) record.warnings.push_back(*words);
     if (const auto& proof = scene.certificate; proof && proof->last() < scene.samples)
         record.warnings.push_back(
             fmt::format("{}; nothing is proved after that", certificate_words(scene, *proof).front()));

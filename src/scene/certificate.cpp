@@ -27,13 +27,25 @@ std::vector<Ball<Wide>> decimals(const std::vector<Quad>& numbers, const Ball<Wi
     return all;
 }
 
+/// The first key that a proof excludes, with its value; empty if there is none.
+std::string obstacle(SideSpec spec) {
+    if (!spec.track.is_none()) return fmt::format("track.file = {}", toml_text(spec.track.file));
+    for (const auto& entry : entries_of(spec))
+        if (entry.kind != "droplet")
+            return fmt::format("a {}{}", entry.kind, entry.name.empty() ? "" : " " + toml_text(entry.name));
+    if (spec.links() != 2) return fmt::format("links = {}", spec.links());
+    const auto& physical = spec.physical;
+    for (const auto& property : PhysicalSpec::properties)
+        if (physical.has(property)) return fmt::format("{} = {}", property.key, toml_value(physical.*property.member));
+    return physical.is_none() ? "" : fmt::format("pivot.amplitude_m = {}", toml_value(physical.pivot.amplitude_m));
+}
+
 EnclosedSystem system_of(const SideSpec& spec) {
-    const auto is_droplet = [](const PartSpec& force) { return force.kind == PartKind::droplet; };
-    if (!spec.particles.empty() || spec.links() != 2 || !spec.physical.is_none() || !spec.track.is_none() ||
-        !spec.constraints.empty() || !std::all_of(spec.forces.begin(), spec.forces.end(), is_droplet))
+    if (const auto found = obstacle(spec); !found.empty())
         throw bad_input(
             "a proof needs two ideal links: no friction, drive, track or further constraint, and no force but gravity "
-            "and droplets");
+            "and droplets; the side has {}",
+            found);
     const auto degree = pi_ball<Ball<Wide>>() / Ball<Wide>(180);
     EnclosedSystem all{{decimals(spec.mass_kg), decimals(spec.length_m), decimals(spec.angle_deg, degree),
                         decimals(spec.omega_deg_per_s, degree), decimal(spec.gravity_m_per_s2)}};

@@ -9,6 +9,8 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <sstream>
 #include <tuple>
@@ -120,8 +122,11 @@ toml::table given_by(const Override& change, TomlTexts& texts) {
         const auto list = fmt::format("[{}]", change.value);
         const bool lacks_brackets = change.value.find(',') != std::string::npos && is_toml(list);
         const bool has_quotes = change.value.find_first_of("\"'") != std::string::npos;
+        char* end = nullptr;
+        const bool is_beyond = std::abs(std::strtod(change.value.c_str(), &end)) > 9.2e18 && *end == '\0';
         throw bad_input("{}: \"{}\" is not a TOML value ({}); {}", change.origin, change.value, error.description(),
-                        lacks_brackets ? fmt::format("a list needs brackets: '{}={}'", change.key, list)
+                        is_beyond        ? "a whole number can be up to 9.2e18, another number up to 1.7e308"
+                        : lacks_brackets ? fmt::format("a list needs brackets: '{}={}'", change.key, list)
                         : change.value.starts_with('[') ? "a list is like [1, 2] or [\"a\", \"b\"]"
                         : has_quotes                    ? "a string needs quotes around it, and \\\" for a quote inside"
                                      : fmt::format("a string needs quotes: '{}=\"{}\"'", change.key, change.value));

@@ -35,6 +35,13 @@ TEST(Manifest, WarnsWhereEnergyIsNotKept) {
     EXPECT_TRUE(manifest_of(scene_of("springs", {"scene.duration_s=2"}))["warnings"].empty());
 }
 
+TEST(Manifest, WarnsOfSidesWithoutADifference) {
+    const auto warnings =
+        manifest_of(scene_of("butterfly", {"scene.duration_s=1", "b.angle_deg=[90, 90]"}))["warnings"];
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], "both sides are the same; give [b] a difference, or take layout = \"single\"");
+}
+
 TEST(Manifest, ContainsThePredictabilityLimit) {
     EXPECT_TRUE(manifest_of(scene_of("butterfly", {"scene.duration_s=1"}))["horizon_s"]
                     .is_null());  // its steps are set by the user

@@ -89,6 +89,8 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
         {"scene.duration_s=long",
          "[scene] duration_s must be a number or a fraction such as \"1/30000\"; it is \"long\""},
         {"scene.duration_s=9s", "\"9s\" is not a TOML value"},
+        {"system.angle_deg=1e400", "; a whole number can be up to 9.2e18, another number up to 1.7e308"},
+        {"system.angle_deg=99999999999999999999999", "; a whole number can be up to 9.2e18"},
         {"title=a \"b", "a string needs quotes"},
         {"system.mass_kg[2]=1", "[system] mass_kg[2] is beyond the list, whose last element is [1]"},
         {"system.mass_kg[x]=1", "is written like system.mass_kg[1], the second"},
@@ -98,7 +100,7 @@ TEST(Set, ErrorsNameWhatWouldBeRight) {
          "[system] center_m[0] is an element of a list that the preset does not have; give the whole list"},
         {"video.contact_sheet[1]=1",
          "[video] contact_sheet[1] is an element of a list that the preset does not have; give the whole list"},
-        {"video.size[0]=1", "[video] size[0] must be from 64 to 16384; it is 1"},
+        {"video.size[0]=1", "[video] size[0] must be from 64 to 16384 px; it is 1"},
         {"system.model[0]=1", "[system] model[0] is not an element of a list of numbers"},
         {"system.gravity_m_per_s2[0]=1", "[system] gravity_m_per_s2[0] is not an element of a list of numbers"},
     };
