@@ -11,50 +11,47 @@ namespace doppel::queue_test {
 
 using namespace std::chrono_literals;
 
-TEST(Queue, KeepsOrderAndBound) {
-    Queue<int> queue(4);
-    std::atomic<int> pushed = 0, popped = 0, maximum = 0;
-    std::jthread giver([&] {
-        for (int k = 0; k < 20'000; ++k) {
-            queue.push(k);
-            // pushed - popped is at least the queue's length and at most one more, for a pop not yet counted
-            maximum = std::max(maximum.load(), ++pushed - popped.load());
-        }
-        queue.close();
-    });
+TEST(Workers, KeepOrderAndBound) {
+    std::atomic<int> given = 0, taken = 0, maximum = 0;
     int expected = 0;
-    while (const auto k = queue.pop()) {
-        ASSERT_EQ(*k, expected++);
-        ++popped;
+    {
+        Workers<int> workers(1, 4, [&](int k) {
+            ++taken;
+            EXPECT_EQ(k, expected++);
+        });
+        for (int k = 0; k < 20'000; ++k) {
+            workers.give(k);
+            // given - taken is at least the queue's length and at most one more, for one that is not yet counted
+            maximum = std::max(maximum.load(), ++given - taken.load());
+        }
+        workers.finish();
     }
     EXPECT_EQ(expected, 20'000);
     EXPECT_LE(maximum, 5);
     EXPECT_GE(maximum, 1);
 }
 
-TEST(Queue, CloseWakesProducersAndConsumers) {
-    Queue<int> full(1), empty(1);
-    full.push(1);
-    std::atomic<bool> refused = false, ended = false;
+TEST(Workers, AnErrorWakesWhoeverWaitsForRoom) {
+    std::atomic<bool> fails = false, refused = false;
+    Workers<int> workers(1, 1, [&](int) {
+        while (!fails) std::this_thread::sleep_for(1ms);
+        throw std::runtime_error("failed");
+    });
+    workers.give(1);
     {
-        std::jthread giver([&] { refused = !full.push(2); });
-        std::jthread taker([&] { ended = !empty.pop(); });
+        std::jthread giver([&] {
+            workers.give(2);
+            try {
+                workers.give(3);
+            } catch (const std::runtime_error&) {
+                refused = true;
+            }
+        });
         std::this_thread::sleep_for(20ms);
-        EXPECT_FALSE(refused || ended);  // both wait
-        full.close();
-        empty.close();
+        EXPECT_FALSE(refused);  // waits
+        fails = true;
     }
-    EXPECT_TRUE(refused && ended);
-    EXPECT_EQ(full.pop(), 1);  // remaining items can still be popped
-    EXPECT_EQ(full.pop(), std::nullopt);
-}
-
-TEST(Queue, AbandonDiscardsElements) {
-    Queue<int> queue(2);
-    queue.push(1);
-    queue.abandon();
-    EXPECT_EQ(queue.pop(), std::nullopt);
-    EXPECT_FALSE(queue.push(2));
+    EXPECT_TRUE(refused);
 }
 
 TEST(Workers, DoAllThatWasGiven) {
