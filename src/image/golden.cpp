@@ -90,13 +90,8 @@ Picture amplified_difference(const Picture& expected, const Picture& actual) {
 }
 
 Picture difference_picture(const Picture& expected, const Picture& actual) {
-    const Picture difference = amplified_difference(expected, actual);
-    const int width = expected.size.width;
-    Picture all({3 * width, expected.size.height});
-    const auto place = [&](const Picture& part, int left) {
-        for (int y = 0; y < all.size.height; ++y) std::copy_n(part.at(0, y), std::size_t{4} * width, all.at(left, y));
-    };
-    place(expected, 0), place(actual, width), place(difference, 2 * width);
+    const std::array parts{expected, actual, amplified_difference(expected, actual)};
+    auto all = contact_sheet(parts, 3, 0, {});
     for (std::size_t i = 3; i < all.rgba.size(); i += 4) all.rgba[i] = 255;
     return all;
 }
