@@ -98,7 +98,7 @@ Picture nearest_golden(ComparedPicture& pair, const Picture& actual) {
 }
 
 void copy_picture(const fs::path& from, const fs::path& to) {
-    write_file(to, read_whole_file(from, {"a picture is a PNG", 100'000'000}));
+    write_file(to, read_whole_file(from, png_file));
 }
 
 /// Makes the drawn picture the golden NAME.png; variants stay. Throws Error (exit 4).

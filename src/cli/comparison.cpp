@@ -134,7 +134,7 @@ std::string figure(std::string_view kind, std::string_view caption, const Compar
 
 /// A data URL with the unchanged bytes of a file.
 std::string url_of(const std::filesystem::path& png) {
-    return data_url("image/png", read_whole_file(png, {"a picture is a PNG", max_bytes}));
+    return data_url("image/png", read_whole_file(png, png_file));
 }
 
 /// A picture that differs; its pixels are included if `shown`.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/read_file.hpp"
 #include "image/picture.hpp"
 #include "output/sink.hpp"
 
@@ -24,8 +25,9 @@ void write_png(const std::filesystem::path& place, const Picture& picture, const
 /// The bytes of the same file. Throws Error (exit 4).
 std::string png_bytes(const Picture& picture, const PngOptions& options = {});
 
-/// Reads an 8-bit PNG of any colour type as RGBA. Throws Error: exit 2 if the file is missing; exit 4 if it is no
-/// regular file, a checksum is wrong, it cannot be decoded, or its colours are not sRGB.
+inline constexpr WantedFile png_file{"a picture is a PNG", std::size_t{1} << 30};
+/// Reads an 8-bit PNG of any colour type as RGBA. Throws Error: as read_whole_file(); exit 4 if a checksum is wrong, it
+/// cannot be decoded, or its colours are not sRGB.
 Picture read_png(const std::filesystem::path& place);
 
 /// A numbered sequence: picture k = 0, 1, … is written to place_of(k), which take() calls. Compression runs on

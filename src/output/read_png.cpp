@@ -1,4 +1,5 @@
 #include "base/error.hpp"
+#include "base/owned.hpp"
 #include "output/png.hpp"
 
 #include <libdeflate.h>
@@ -7,7 +8,6 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -40,20 +40,6 @@ std::int64_t number(std::string_view text, std::size_t i) {
 
 Error undecodable(const std::filesystem::path& place, std::string_view why) {
     return io_failed("{}: cannot be decoded as PNG: {}", place.string(), why);
-}
-
-std::string whole_file(const std::filesystem::path& place) {
-    constexpr std::uintmax_t max_bytes = std::uintmax_t{1} << 30;
-    std::error_code ignored;
-    if (std::filesystem::status(place, ignored).type() == std::filesystem::file_type::not_found)
-        throw bad_input("{}: there is no such file", place.string());
-    const auto file = open_file(place);
-    const auto size = std::filesystem::file_size(place);
-    if (size > max_bytes) throw undecodable(place, fmt::format("it has more than {} MB", max_bytes >> 20));
-    std::string bytes(size, '\0');
-    bytes.resize(std::fread(bytes.data(), 1, size, file.get()));
-    if (std::ferror(file.get())) throw cannot(place, "read");
-    return bytes;
 }
 
 /// The chunks up to IEND. Throws Error (exit 4) if one is damaged.
@@ -111,7 +97,7 @@ std::string other_colors(const Chunks& chunks) {
 }  // namespace
 
 Picture read_png(const std::filesystem::path& place) {
-    const auto png = whole_file(place);
+    const auto png = read_whole_file(place, png_file);
     auto chunks = chunks_of(png, place);
     if (const auto header = chunks["IHDR"]; !has_room(header, std::ssize(png)))
         throw undecodable(

@@ -92,14 +92,14 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
     expect_error(ExitCode::bad_input, {"none.png", "no such file"}, [&] { read_png(folder / "none.png"); });
     write_bytes(folder / "garbage.png", "this is no picture");
     expect_error(ExitCode::io_failed, {"garbage.png", "decoded"}, [&] { read_png(folder / "garbage.png"); });
-    expect_error(ExitCode::io_failed, {"is not a regular file"}, [&] { read_png(folder); });
+    expect_error(ExitCode::bad_input, {"is a folder; a picture is a PNG"}, [&] { read_png(folder); });
     // neither a file that would block nor one without end
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     for (const auto& path : {folder / "pipe", std::filesystem::path("/dev/zero")})
-        expect_error(ExitCode::io_failed, {path.string(), "is not a regular file"}, [&] { read_png(path); });
+        expect_error(ExitCode::bad_input, {path.string(), "is not a file; a picture is a PNG"}, [&] { read_png(path); });
     write_png(folder / "sparse.png", Picture({8, 8}));
     std::filesystem::resize_file(folder / "sparse.png", std::uintmax_t{1} << 31);
-    expect_error(ExitCode::io_failed, {"more than 1024 MB"}, [&] { read_png(folder / "sparse.png"); });
+    expect_error(ExitCode::bad_input, {"more than 1024 MB"}, [&] { read_png(folder / "sparse.png"); });
     write_png(folder / "whole.png", noise({64, 64}, 6));
     const std::string whole_file = test::bytes_of(folder / "whole.png");
     write_bytes(folder / "half.png", whole_file.substr(0, whole_file.size() / 2));
