@@ -96,7 +96,8 @@ TEST(Png, ErrorsNameThePathAndTheReason) {
     // neither a file that would block nor one without end
     ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
     for (const auto& path : {folder / "pipe", std::filesystem::path("/dev/zero")})
-        expect_error(ExitCode::bad_input, {path.string(), "is not a file; a picture is a PNG"}, [&] { read_png(path); });
+        expect_error(ExitCode::bad_input, {path.string(), "is not a file; a picture is a PNG"},
+                     [&] { read_png(path); });
     write_png(folder / "sparse.png", Picture({8, 8}));
     std::filesystem::resize_file(folder / "sparse.png", std::uintmax_t{1} << 31);
     expect_error(ExitCode::bad_input, {"more than 1024 MB"}, [&] { read_png(folder / "sparse.png"); });
