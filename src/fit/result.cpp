@@ -206,6 +206,8 @@ FitRun run_fit(const std::vector<std::filesystem::path>& files, const FitOptions
     const double start = seconds_of(CLOCK_MONOTONIC);
     require_different(files);
     auto track = read_tracks(files, stop);
+    if (options.every_s && track.pieces.size() == 1)
+        throw bad_input("--every is the time from a piece to the next, and {} is one piece", files.front().string());
     Transaction parts(options.out / name, name, "fit", {files, options.force});
     parts.require(name + ".fit.json");
     const auto place = [&](const char* ending) { return parts.file(name + ending); };

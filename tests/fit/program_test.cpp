@@ -174,6 +174,8 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
     EXPECT_EQ(twice.err,
               "doppel: swing.csv and ./swing.csv are the same file; samples counted twice would make the "
               "errors too small\n");
+    EXPECT_EQ(fit(folder, {"swing.csv"}, {"--every", "30"}).err,
+              "doppel: --every is the time from a piece to the next, and swing.csv is one piece\n");
     for (const auto& [option, value] :
          {std::pair("--every", "1"), std::pair("--name", "../lab"), std::pair("--model", "rope")})
         EXPECT_EQ(fit(folder, lab, {option, value}).code, 2) << option;
