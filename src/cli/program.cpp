@@ -101,19 +101,10 @@ int run_program(int argc, char** argv) {
         app.get_formatter()->column_width(26);
 
         int exit_code = 0;
-        add_render(app);
-        add_simulate(app);
-        add_still(app);
-        add_figure(app);
-        add_fit(app);
+        for (const auto add : {add_render, add_simulate, add_still, add_figure, add_fit}) add(app);
         add_compare(app, exit_code);
-        add_list(app);
-        add_show(app);
-        add_check(app);
-        add_certify(app);
-        add_init(app);
-        add_schema(app);
-        add_completion(app);
+        for (const auto add : {add_list, add_show, add_check, add_certify, add_init, add_schema, add_completion})
+            add(app);
         if (completes) {
             write_out(completions(app, {words.begin() + 2, words.end()}));
             return 0;
