@@ -138,7 +138,7 @@ public:
         counting_.finish();
         written_.finish();
         encode();
-        encoder_.finish(comment_and_end(options_.metadata), 1);
+        encoder_.finish(comment_and_end(options_.metadata));
     }
 
 private:

@@ -369,14 +369,14 @@ void Encoder::write_chapters() {
     }
 }
 
-void Encoder::finish(std::string_view ending, int replaced) {
+void Encoder::finish(std::string_view ending) {
     if (codec_) end_segment();
     if (part_) return part_->finish();
     if (!stream_) throw std::logic_error("a video without frames");
     if (!encoding_.options.is_stream) write_chapters();
     check(av_write_trailer(format_.get()), "the end cannot be written");
     if (!ending.empty()) {
-        check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -replaced, SEEK_CUR), 0)), "cannot seek");
+        check(static_cast<int>(std::min<std::int64_t>(avio_seek(format_->pb, -1, SEEK_CUR), 0)), "cannot seek");
         avio_write(format_->pb, reinterpret_cast<const unsigned char*>(ending.data()), static_cast<int>(ending.size()));
     }
     check(avio_closep(&format_->pb), "cannot be written");

@@ -84,9 +84,8 @@ public:
     void add_chapter(std::int64_t time, const std::string& title) { chapters_.emplace_back(time, title); }
     /// Sets an option of the container; it takes effect at the next write.
     void set_option(const char* name, const std::string& value);
-    /// Completes the file after the last frame; at least one frame is required. Then overwrites its last `replaced`
-    /// bytes with `ending`.
-    void finish(std::string_view ending = {}, int replaced = 0);
+    /// Completes the file after the last frame; at least one frame is required. `ending` replaces its last byte.
+    void finish(std::string_view ending = {});
 
 private:
     void open_without_frames();

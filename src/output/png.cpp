@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -101,11 +102,10 @@ std::string chunk(std::string_view type, std::string_view content) {
            big_endian(libdeflate_crc32(0, checked.data(), checked.size()));
 }
 
-std::string keyword(const std::string& key) {
+std::string keyword(std::string key) {
     if (key == "encoder") return "Software";
-    std::string word = key;
-    if (!word.empty() && word[0] >= 'a' && word[0] <= 'z') word[0] = static_cast<char>(word[0] - 'a' + 'A');
-    return word;
+    key[0] = static_cast<char>(std::toupper(key[0]));
+    return key;
 }
 
 /// The UTF-8 text as Latin-1; nothing if a character is not in Latin-1.
