@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -51,11 +50,6 @@ std::string bar(double share) {
 template <class... Args>
 void print_to(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
     std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), to);
-}
-
-std::string duration(double seconds) {
-    const auto whole = std::lround(seconds);
-    return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
 /// "PATH (size)", or "FOLDER/"; sanitised for a terminal.
@@ -162,11 +156,11 @@ void ProgressReport::operator()(const Progress& progress) {
                      {"seconds_left", left}});
     } else if (style_ == ProgressStyle::bar) {
         print_to(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
-                 progress.done, progress.total, unit_, rate, unit_, duration(left));
+                 progress.done, progress.total, unit_, rate, unit_, duration_text(left));
         on_screen_ = true;
     } else {
         print_to(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
-                 100 * share, rate, unit_, duration(left));
+                 100 * share, rate, unit_, duration_text(left));
     }
 }
 
