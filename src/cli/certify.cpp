@@ -87,8 +87,8 @@ void certify_all(const CertifyOptions& options) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, certified_files(scene.preset.name));
         return;
     }
-    work_on_all(scenes, options.progress, "samples", to.streamed(),
-                [&](const Scene& scene, ProgressReport& report) { certify(scene, options, to.folder(), report); });
+    work_on_all(scenes, options.progress, "samples", to.streamed,
+                [&](const Scene& scene, ProgressReport& report) { certify(scene, options, to.folder, report); });
 }
 
 }  // namespace

@@ -106,9 +106,9 @@ void update_golden(ComparedPicture& pair, const fs::path& golden) {
     const bool is_new = type_of(golden) == fs::file_type::not_found;
     if (!is_new && !made_by(golden))
         throw io_failed("{} is no PNG of Doppel; move it, or give another place for the golden", golden.string());
-    const SingleFile file(golden, "\x89PNG\r\n\x1a\n");
-    copy_picture(pair.actual, file.place());
-    file.publish();
+    SingleFile file(golden, "");
+    copy_picture(pair.actual, file.place);
+    file.parts.publish();
     pair.match = Match::passes;
     pair.message = fmt::format("{}: {}", golden.string(), is_new ? "new" : "updated");
     for (const auto& variant : pair.goldens)
@@ -322,8 +322,8 @@ bool compare(const CompareOptions& options) {
             if (!report.empty()) print_line("{}", report);
         return true;
     }
-    const auto junit = place_of_report(options.junit, junit_start);
-    const auto html = place_of_report(options.html, page_start("compare"));
+    auto junit = place_of_report(options.junit, junit_start);
+    auto html = place_of_report(options.html, page_start("compare"));
     Comparison comparison{options.expected, options.render + options.actual, {}};
     Task task{fs::path(options.out) / "compare", !options.render.empty(), options.update,
               options.render.empty() ? never_stopped : watch_interrupts()};
@@ -345,10 +345,10 @@ bool compare(const CompareOptions& options) {
             if (variant.filename() != name && !fs::equivalent(variant, actual)) pair.goldens.push_back(variant);
     }
     const auto first_fault = compare_all(comparison, task, are_folders);
-    if (junit) write_junit(junit->place(), comparison);
-    if (html) write_compare_page(html->place(), comparison);
-    for (const auto* report : {&junit, &html})
-        if (*report) (*report)->publish();
+    if (junit) write_junit(junit->place, comparison);
+    if (html) write_compare_page(html->place, comparison);
+    for (auto* report : {&junit, &html})
+        if (*report) (*report)->parts.publish();
     if (!first_fault) return comparison.count(Match::passes) == std::ssize(comparison.pictures);
     if (!are_folders) throw Error(*first_fault);
     throw Error(first_fault->code(),

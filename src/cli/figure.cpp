@@ -79,7 +79,7 @@ void make_figures(const FigureCommandOptions& options) {
         for (const auto& figure : figures) list_outputs(options, figure.name, figure_files(figure, run));
         return;
     }
-    run.out = to.folder();
+    run.out = to.folder;
     // the computation of one figure may overlap with the drawing of another
     std::mutex mutex;
     std::vector<std::optional<ProgressReport>> reports(figures.size());
@@ -87,7 +87,7 @@ void make_figures(const FigureCommandOptions& options) {
         const std::lock_guard lock(mutex);
         if (!reports[k])
             reports[k].emplace(progress_style(options.progress), figures[k].name, figures[k].experiment->unit(),
-                               to.streamed());
+                               to.streamed);
         what(*reports[k]);
     };
     ignore_sigpipe();

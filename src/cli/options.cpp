@@ -47,37 +47,32 @@ void add_out_options(CLI::App& command, OutOptions& options) {
     command.add_flag("--force", options.force, "Replace files that were changed, or that another kind of run wrote");
 }
 
-Destination::Destination(const OutOptions& options, std::size_t runs, const std::string& ending)
-    : folder_(options.out) {
+Destination::Destination(const OutOptions& options, std::size_t runs, const std::string& ending) : folder(options.out) {
     if (options.out != "-") return;
     if (runs != 1) throw bad_input("-o -: standard output takes one file; give one preset, not {}", runs);
     if (options.list_outputs) return;
     if (ending != ".csv" && isatty(STDOUT_FILENO))
         throw bad_input("-o -: standard output is a terminal, which cannot show {}; redirect it: -o - > FILE{}",
                         ending.substr(1), ending);
-    folder_ = own_.emplace().path();
-    streamed_ = ending;
+    folder = own.emplace().path();
+    streamed = ending;
 }
 
-SingleFile::SingleFile(std::filesystem::path path, std::string_view start) : path_(std::move(path)) {
-    using Type = std::filesystem::file_type;
-    const auto type = type_of(path_);
-    if (type != Type::not_found && type != Type::regular)
-        throw io_failed("{} is {}; give another file name", path_.string(),
-                        type == Type::symlink ? "a symbolic link" : "no regular file");
-    if (type == Type::regular && (start.empty() || start_of_file(path_, start.size()) != start))
-        throw io_failed("{} was not written by Doppel for this; give another file name", path_.string());
-    const auto folder = path_.parent_path();
-    std::error_code error;
-    if (!folder.empty()) std::filesystem::create_directories(folder, error);
-    if (error) throw cannot(folder, "made", error.value());
-    place_ = folder / fmt::format(".doppel-{}-{}", path_.filename().string(), getpid());
-    write_file(place_, "");  // so that an unwritable place is reported before the work starts
+namespace {
+
+/// The folder of the file; if it is a link, the folder that it leads to.
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    return type_of(folder) == std::filesystem::file_type::symlink ? std::filesystem::weakly_canonical(folder) : folder;
 }
 
-SingleFile::~SingleFile() {
-    std::error_code ignored;
-    std::filesystem::remove(place_, ignored);
+}  // namespace
+
+SingleFile::SingleFile(const std::filesystem::path& path, std::string_view start)
+    : parts(folder_of(path), path.filename(), "", {.reads_manifests = false}) {
+    if (type_of(path) == std::filesystem::file_type::regular && start_of_file(path, start.size()) != start)
+        throw io_failed("{} was not written by Doppel for this; give another file name", path.string());
+    place = parts.file(path.filename());
 }
 
 void list_outputs(const OutOptions& options, const std::string& name, const std::vector<std::string>& files) {

@@ -2,7 +2,7 @@
 
 #include "cli/terminal.hpp"
 #include "film/run.hpp"
-#include "output/files.hpp"
+#include "output/transaction.hpp"
 #include "scene/preset.hpp"
 #include "scene/resolved.hpp"
 
@@ -90,38 +90,24 @@ void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, 
 std::vector<Override> overrides_of(const PresetOptions& options, const std::vector<Override>& more = {});
 
 /// The output folder: that of --out; or for "-" a temporary folder, from which one file goes to standard output.
-class Destination {
-public:
+struct Destination {
     /// `ending` = extension of that file, ".csv". Throws Error: exit 2 for several runs, or if a picture would go to a
     /// terminal; exit 4. With --list-outputs there is no folder.
     Destination(const OutOptions& options, std::size_t runs, const std::string& ending);
 
-    const std::filesystem::path& folder() const { return folder_; }
-    /// As for ProgressReport.
-    const std::string& streamed() const { return streamed_; }
-
-private:
-    std::optional<TemporaryFolder> own_;
-    std::filesystem::path folder_;
-    std::string streamed_;
+    std::optional<TemporaryFolder> own;
+    std::filesystem::path folder;
+    std::string streamed;  // as for ProgressReport
 };
 
-/// A single output file in any folder, which is made if it is missing. It is written under a hidden name and moved to
-/// its place when complete. If it is destroyed before that, nothing stays.
-class SingleFile {
-public:
-    /// Throws Error (exit 4) if the file cannot be written, or exists and does not begin with `start`.
-    SingleFile(std::filesystem::path path, std::string_view start);
-    ~SingleFile();
-    SingleFile(const SingleFile&) = delete;
-    SingleFile& operator=(const SingleFile&) = delete;
+/// A transaction of one file in any folder, whose manifests are not read.
+struct SingleFile {
+    /// Throws Error (exit 4) if the file cannot be written, or exists and is not Doppel's or does not begin with
+    /// `start`.
+    SingleFile(const std::filesystem::path& path, std::string_view start);
 
-    /// The path to write to.
-    const std::filesystem::path& place() const { return place_; }
-    void publish() const { rename_file(place_, path_); }
-
-private:
-    std::filesystem::path path_, place_;
+    Transaction parts;
+    std::filesystem::path place;  // to write to, until parts.publish()
 };
 
 /// --list-outputs: prints the files of the run NAME, one per line; folders end in "/".

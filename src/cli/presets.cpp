@@ -152,9 +152,9 @@ void write_preset(const fs::path& path, std::string_view kind) {
     ignore_sigpipe();
     const auto folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, ignored)) throw cannot(folder, "opened", ENOENT);
-    const SingleFile file(path, "");
-    write_file(file.place(), preset.text);
-    file.publish();
+    SingleFile file(path, "");
+    write_file(file.place, preset.text);
+    file.parts.publish();
     report_files(on_one_line(fmt::format("{0}: edit it, then: doppel check {0}", path.string())) + "\n");
 }
 

@@ -79,11 +79,11 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
         if (!run_options.pictures && !options.recording.empty()) print_line("{}", options.recording);
         return;
     }
-    run_options.out = to.folder();
+    run_options.out = to.folder;
     run_options.to_stream =
         options.out == "-" && run_options.pictures && !run_options.merge && video.format_row().is_streamed();
     const bool counts_frames = run_options.pictures && video.format != FilmFormat::html;
-    work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed(),
+    work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed,
                 [&](const Scene& scene, ProgressReport& report) {
                     note_gap(scene, report);
                     report.done(run(scene, run_options, stop, std::ref(report)));
@@ -273,11 +273,11 @@ void add_still(CLI::App& app) {
             if (const auto name = still_name(scene, at, format); options->list_outputs)
                 list_outputs(*options, scene.preset.name, {name});
         if (options->list_outputs) return;
-        const RunOptions run{.out = to.folder(),
+        const RunOptions run{.out = to.folder,
                              .gl = value_named<Gl>(options->gl),
                              .replacing = {inputs_of(options->presets, scenes), options->force, options->out == "-"}};
         const auto& stop = watch_interrupts();
-        work_on_all(scenes, options->progress, "samples", to.streamed(), [&](const Scene& scene, auto& report) {
+        work_on_all(scenes, options->progress, "samples", to.streamed, [&](const Scene& scene, auto& report) {
             report.done(draw_still(scene, at, format, run, stop, std::ref(report)));
         });
     });
@@ -300,10 +300,10 @@ void add_simulate(CLI::App& app) {
         const auto scenes = read_scenes(*options);
         std::optional<SingleFile> file;
         if (!options->recording.empty() && !options->list_outputs)
-            run.record_to = file.emplace(options->recording, recording_file.start).place();
+            run.record_to = file.emplace(options->recording, recording_file.start).place;
         run_all(scenes, *options, run);
         if (!file) return;
-        file->publish();
+        file->parts.publish();
         if (options->progress != "json" && options->out != "-") report_files(options->recording + "\n");
     });
 }

@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 using Type = fs::file_type;
 
-constexpr const char* lock_name =
-    ".lock";  // contains the process, and after commit() a line "publish INODE …" with the new folders
-constexpr const char* backup_name =
-    ".old";  // suffix of a replaced folder, if the file system cannot exchange two names
+/// Contains the process and, once all files are on the disk, a line "publish INODE …" with the new folders.
+constexpr const char* lock_name = ".lock";
+/// A replaced folder, if the file system cannot exchange two names.
+constexpr const char* backup_name = ".old";
 
 Error not_ours(const fs::path& path) {
     return io_failed("{} was not written by Doppel; move it, or give another folder with --out", path.string());
@@ -71,7 +71,7 @@ Transaction::Transaction(fs::path folder, const std::string& run, std::string ki
     // from here on the destructor undoes the steps if one throws
     make_folders();
     while (!lock()) continue;
-    written_ = written_files(folder_);
+    if (replacing_.reads_manifests) written_ = written_files(folder_);
     recover();
     begin();
 }
@@ -291,14 +291,25 @@ std::map<std::string, WrittenFile> Transaction::earlier_files() const {
 
 std::vector<fs::path> Transaction::publish() {
     std::vector<fs::path> files;
+    std::string record = "publish";
     for (Part& part : parts_) {
         const auto path = hidden(part.name);
         if (type_of(path) == Type::not_found) throw cannot(path, "published", ENOENT);
-        require(fs::is_directory(path) ? part.name + "/" : part.name);
+        const bool is_folder = fs::is_directory(path);
+        require(is_folder ? part.name + "/" : part.name);
+        if (is_folder) {
+            sync_folder(path, true);
+            record += fmt::format(" {}", inode_of(path));
+        } else {
+            sync(fileno(open_file(path).get()), path);
+        }
         part.finished = true;
         files.push_back(folder_ / part.name);
     }
-    commit();
+    sync_folder(hidden_);
+    append(lock_, record + "\n", hidden(lock_name));
+    keeps_hidden_ = true;  // from here on the files are published, by this run or the next
+    sync(fileno(lock_.get()), hidden(lock_name));
     for (; !parts_.empty(); parts_.erase(parts_.begin())) move_in(parts_.front().name);
     sync_folder(folder_);
     std::error_code ignored;
@@ -310,24 +321,6 @@ std::vector<fs::path> Transaction::publish() {
     }
     made_.clear();  // the paths "new/../there" are valid only while "new" exists
     return files;
-}
-
-/// Flushes all files to the disk and records that they are to be published, by this run or the next.
-void Transaction::commit() {
-    std::string line = "publish";
-    for (const Part& part : parts_) {
-        const auto path = hidden(part.name);
-        if (fs::is_directory(path)) {
-            sync_folder(path, true);
-            line += fmt::format(" {}", inode_of(path));
-        } else {
-            sync(fileno(open_file(path).get()), path);
-        }
-    }
-    sync_folder(hidden_);
-    append(lock_, line + "\n", hidden(lock_name));
-    keeps_hidden_ = true;
-    sync(fileno(lock_.get()), hidden(lock_name));
 }
 
 /// Moves the file to its place; an older folder moves into the hidden folder in exchange.

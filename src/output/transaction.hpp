@@ -16,6 +16,7 @@ struct Replacing {
     std::vector<std::filesystem::path> inputs = {};  // files that the run reads: never replaced
     bool force = false;         // also replace Doppel's files that were changed since, or belong to another kind of run
     bool is_temporary = false;  // the folder is removed after the run: nothing in it is kept or named
+    bool reads_manifests = true;  // false: Doppel's files are known by their contents alone
 };
 
 /// The files of one run in one folder, which appear complete and together, or not at all. They are written to a hidden
@@ -81,7 +82,6 @@ private:
     void clear() const;
     void begin();
     void refuse_foreign_file(const std::string& name) const;
-    void commit();
     void move_in(const std::string& name) const;
 
     std::filesystem::path folder_, hidden_;

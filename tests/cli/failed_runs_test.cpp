@@ -127,6 +127,24 @@ TEST(FailedRuns, AfterKill9TheNextRunIsComplete) {
         }
 }
 
+TEST(FailedRuns, AfterKill9TheNextRecordingLeavesNothingElse) {
+    const auto folder = fresh_folder();
+    const std::vector<std::string> recorded{"simulate", "butterfly", "--recording", "b.motion"};
+    const auto hidden = [&] {
+        return std::ranges::count_if(fs::directory_iterator(folder), [](const auto& entry) {
+            return entry.path().filename().string().starts_with(".doppel-b.motion");
+        });
+    };
+    const auto child = start(folder, with(recorded, {"--set", "scene.duration_s=100000"}));
+    EXPECT_TRUE(wait_until([&] { return hidden() > 0; }));
+    kill(child, SIGKILL);
+    wait_for(child);
+    EXPECT_EQ(hidden(), 1);
+    EXPECT_EQ(doppel(folder, with(recorded, quick)).code, 0);
+    EXPECT_TRUE(fs::exists(folder / "b.motion"));
+    EXPECT_EQ(hidden(), 0);
+}
+
 TEST(FailedRuns, StopsSoonAndCleanly) {
     for (const auto& [signal, format] :
          {std::pair(SIGINT, "mp4"), {SIGTERM, "png"}, {SIGHUP, "mp4"}, {SIGINT, "png"}}) {
