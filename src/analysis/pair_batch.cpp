@@ -1,7 +1,6 @@
 #include "analysis/pair_batch.hpp"
 
 #include "base/error.hpp"
-#include "integrate/widths.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -38,10 +37,6 @@ struct SideBatch {
 };
 
 }  // namespace
-
-std::size_t pendulums_per_block() {
-    return 2 * static_cast<std::size_t>(register_widths().back());
-}
 
 void step_pairs(std::span<const PendulumPair> pairs, const PairBatchSpec& run, const PairObserver& watch,
                 const std::atomic<bool>& stop) {

@@ -19,8 +19,9 @@ struct PairBatchSpec {
     long samples = 0;  // without the one at time 0
 };
 
-/// The best number of pendulums to integrate at once.
-std::size_t pendulums_per_block();
+/// A good number of pendulums to integrate at once: two of the widest registers. It is the same on all machines, so that
+/// the trials of a figure are.
+inline constexpr std::size_t pendulums_together = 16;
 
 /// Integrates all pairs side by side; `watch` is called for every trial at every sample 0 … N, in the order of samples.
 /// Each trial gives the same bits whatever it is integrated with, because each lane does what a single double would.

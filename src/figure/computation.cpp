@@ -168,12 +168,12 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header, s
       report_(std::move(report)),
       number_(number),
       known_(header.trials) {
-    total_units_ = units_of({header_.first(), header_.last()});
+    for (auto trial = header_.first(); trial < header_.last(); ++trial) total_units_ += figure_.experiment->units(trial);
     if (folder_) {
         record_ = *folder_ / resume_name(header_);
         if (header_.of == 1 || !take(shard(), false)) take(record_, true);
     }
-    find_groups();
+    find_unknown();
 }
 
 /// Reads the trials of the file, if it exists and belongs to this figure.
@@ -196,52 +196,37 @@ bool Computation::take(const fs::path& path, bool must_be) {
 }
 
 fs::path Computation::publish_shard() {
-    if (groups_.empty() && type_of(record_) == fs::file_type::not_found && is_whole_) return shard();
+    if (unknown_.empty() && type_of(record_) == fs::file_type::not_found && is_whole_) return shard();
     if (!writer_) writer_.emplace(record_, header_, known_);
     writer_->finish();
     rename_file(record_, shard());
     return shard();
 }
 
-/// Groups of unknown trials that are best computed together. Those that others require come first. The others are in an
-/// order in which any first ones are spread evenly, so that the time of the rest can be estimated.
-void Computation::find_groups() {
-    const std::size_t maximum = figure_.experiment->together();
-    for (std::size_t trial = header_.first(); trial < header_.last(); ++trial) {
-        if (!known_[trial].empty()) continue;
-        if (!groups_.empty() && groups_.back().second == trial && trial - groups_.back().first < maximum)
-            ++groups_.back().second;
-        else
-            groups_.emplace_back(trial, trial + 1);
-    }
-    std::ranges::stable_sort(groups_, {}, [&](const Group& group) {
+/// Trials that others require come first. The others are in an order in which any first ones are spread evenly, so that
+/// the time of the rest can be estimated.
+void Computation::find_unknown() {
+    for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
+        if (known_[trial].empty()) unknown_.push_back(trial);
+    std::ranges::stable_sort(unknown_, {}, [&](std::size_t trial) {
         constexpr double golden = 0.6180339887498949;
-        const double place = golden * static_cast<double>(group.first);
-        return units_of(group) == 0 ? -1 : place - std::floor(place);
+        const double place = golden * static_cast<double>(trial);
+        return figure_.experiment->units(trial) == 0 ? -1 : place - std::floor(place);
     });
 }
 
-double Computation::units_of(const Group& group) const {
-    double units = 0;
-    for (std::size_t trial = group.first; trial < group.second; ++trial) units += figure_.experiment->units(trial);
-    return units;
-}
-
-bool Computation::compute(std::size_t group, const std::atomic<bool>& stop) {
+bool Computation::compute(std::size_t trial, const std::atomic<bool>& stop) {
     try {
         throw_if_set(stop);
         {
             const std::lock_guard lock(mutex_);
             if (start_s_ == 0) start_s_ = flushed_s_ = now();
         }
-        const auto [first, last] = groups_[group];
         const double cpu_start = cpu_now();
-        std::vector<TrialNumbers> numbers(last - first);
-        figure_.experiment->compute(first, numbers, stop);
-        for (std::size_t i = 0; i < numbers.size(); ++i)
-            if (!figure_.experiment->fits(first + i, numbers[i]))
-                throw method_failed("{}: the result of trial {} is infinite or NaN", figure_.name, first + i);
-        return keep(groups_[group], std::move(numbers), cpu_now() - cpu_start);
+        auto numbers = figure_.experiment->compute(trial, stop);
+        if (!figure_.experiment->fits(trial, numbers))
+            throw method_failed("{}: the result of trial {} is infinite or NaN", figure_.name, trial);
+        return keep(trial, std::move(numbers), cpu_now() - cpu_start);
     } catch (const Error& error) {
         throw with_record(error);
     }
@@ -256,20 +241,20 @@ Error Computation::with_record(const Error& error) {
                         percent(writer_ ? done_units_ : done_units_ - computed_units_), record_.string())};
 }
 
-bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s) {
+bool Computation::keep(std::size_t trial, TrialNumbers numbers, double cpu_s) {
     const std::lock_guard lock(mutex_);
-    std::ranges::move(numbers, known_.begin() + static_cast<std::ptrdiff_t>(group.first));
-    const double units = units_of(group);
+    known_[trial] = std::move(numbers);
+    const double units = figure_.experiment->units(trial);
     cpu_s_ += cpu_s;
-    ++groups_done_;
+    ++computed_;
     const double time = now();
-    const bool is_last = groups_done_ == groups_.size();
+    const bool is_last = computed_ == unknown_.size();
     const bool pays = time - start_s_ > record_after_s && !is_last;
     if (!writer_ && pays && folder_) {
         writer_.emplace(record_, header_, known_);
         has_record_ = true;
     } else if (writer_) {
-        for (std::size_t trial = group.first; trial < group.second; ++trial) writer_->add(trial, known_[trial]);
+        writer_->add(trial, known_[trial]);
         if (is_last || time - flushed_s_ > flush_every_s) {
             writer_->flush();
             flushed_s_ = time;
@@ -284,26 +269,28 @@ bool Computation::keep(const Group& group, std::vector<TrialNumbers> numbers, do
 Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
     constexpr double allowed_s = 1;
     Computation computation(figure, header_of(figure), std::nullopt, {});
-    std::size_t group = 0;
-    for (; group < computation.groups() && computation.units(group) == 0; ++group) computation.compute(group, stop);
+    const auto& trials = computation.unknown();
+    const auto units = [&](std::size_t trial) { return figure.experiment->units(trial); };
+    auto trial = trials.begin();
+    for (; trial != trials.end() && units(*trial) == 0; ++trial) computation.compute(*trial, stop);
     const double needed_s = computation.cpu_s();
-    const auto parallel = static_cast<double>(computation.groups() - group);
+    const auto parallel = static_cast<double>(trials.end() - trial);
     const TimeLimit limit(allowed_s, stop);
     Needs estimate;
     double from = 0, cut_s = 0;
     try {
-        for (; group < computation.groups() && !limit.reached(); ++group) {
+        for (; trial != trials.end() && !limit.reached(); ++trial) {
             from = cpu_now();
-            computation.compute(group, limit.reached());
+            computation.compute(*trial, limit.reached());
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
         cut_s = cpu_now() - from;
     }
     double seconds = computation.cpu_s() - needed_s, done = computation.computed_units();
-    // a group that takes longer than all others before counts as done
+    // a trial that takes longer than all others before counts as done
     estimate.at_least = cut_s > seconds;
-    if (estimate.at_least) seconds += cut_s, done += computation.units(group);
+    if (estimate.at_least) seconds += cut_s, done += units(*trial);
     estimate.cpu_s = needed_s + (done > 0 ? seconds * computation.total_units() / done : 0);
     estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), parallel);
     double trials_done = 0, numbers_done = 0;
@@ -322,7 +309,7 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     estimate.memory_bytes =
         peak_memory() + sizeof(TrialNumbers) * rows + sizeof(double) * numbers + drawn_bytes * pixels;
     estimate.disk_bytes = row_bytes * rows + text_bytes * numbers + png_bytes * pixels;
-    estimate.most_shards = static_cast<long>(std::min<std::size_t>(computation.groups(), max_parts));
+    estimate.most_shards = static_cast<long>(std::min<std::size_t>(trials.size(), max_parts));
     return estimate;
 }
 

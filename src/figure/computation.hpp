@@ -92,8 +92,8 @@ struct FigureReport {
     std::function<void(std::size_t figure, const RunResult&)> done = [](auto, const auto&) {};
 };
 
-/// Computes the unknown trials of a part of a figure, in groups that threads take. After some seconds it records
-/// results in a file (resume_name). If it is destroyed before it is complete, the file stays.
+/// Computes the unknown trials of a part of a figure, which threads take. After some seconds it records results in a
+/// file (resume_name). If it is destroyed before it is complete, the file stays.
 class Computation {
 public:
     /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to a damaged
@@ -102,13 +102,13 @@ public:
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
                 FigureReport report, std::size_t number = 0);
 
-    std::size_t groups() const { return groups_.size(); }
-    double units(std::size_t group) const { return units_of(groups_[group]); }
+    /// The unknown trials, in the order in which they are best computed.
+    const std::vector<std::size_t>& unknown() const { return unknown_; }
     double total_units() const { return total_units_; }
-    /// Computes a group on the calling thread; each group must be computed once. Returns true for the last one: then
-    /// all trials are known. Throws Error: that of a trial, with the path of the record; exit 3 if its numbers are
+    /// Computes an unknown trial on the calling thread; each must be computed once. Returns true for the last one: then
+    /// all trials are known. Throws Error: that of the trial, with the path of the record; exit 3 if its numbers are
     /// invalid.
-    bool compute(std::size_t group, const std::atomic<bool>& stop);
+    bool compute(std::size_t trial, const std::atomic<bool>& stop);
     KnownTrials take_all() { return std::move(known_); }
     /// The same error, with the share of results kept in the record and its path.
     Error with_record(const Error& error);
@@ -118,16 +118,13 @@ public:
     const std::filesystem::path& record() const { return record_; }
     double computed_units() const { return computed_units_; }  // without those read from files
     double cpu_s() const { return cpu_s_; }                    // of the threads during computation
-    double start_s() const { return start_s_; }                // start of the first group, by CLOCK_MONOTONIC
+    double start_s() const { return start_s_; }                // start of the first trial, by CLOCK_MONOTONIC
 
 private:
-    using Group = std::pair<std::size_t, std::size_t>;  // trials first … last − 1
-
     bool take(const std::filesystem::path& path, bool must_be);
     std::filesystem::path shard() const { return *folder_ / shard_name(header_); }
-    void find_groups();
-    double units_of(const Group& group) const;
-    bool keep(const Group& group, std::vector<TrialNumbers> numbers, double cpu_s);
+    void find_unknown();
+    bool keep(std::size_t trial, TrialNumbers numbers, double cpu_s);
     double percent(double units) const { return total_units_ > 0 ? 100 * units / total_units_ : 100; }
 
     const FigurePreset& figure_;
@@ -136,12 +133,12 @@ private:
     std::filesystem::path record_;
     FigureReport report_;
     std::size_t number_;
-    std::vector<Group> groups_;
+    std::vector<std::size_t> unknown_;
     std::mutex mutex_;  // guards all members below
     KnownTrials known_;
     std::optional<PartWriter> writer_;
     bool has_record_ = false, is_whole_ = false;  // results in a file, and that file is not damaged
-    std::size_t groups_done_ = 0;
+    std::size_t computed_ = 0;  // trials
     double start_s_ = 0, flushed_s_ = 0, cpu_s_ = 0;
     double done_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };

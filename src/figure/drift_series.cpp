@@ -1,6 +1,5 @@
-#include "figure/drift_series.hpp"
-
 #include "analysis/drift.hpp"
+#include "figure/series.hpp"
 #include "scene/captions.hpp"
 
 #include <fmt/ranges.h>
@@ -129,7 +128,7 @@ private:
     }
     bool has_rods(std::size_t run) const { return runs_[run].motion.model == Model::constraints; }
 
-    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+    TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto run = drift(runs_[trial].motion, evaluations_per_s_, times_s_, stop);
         TrialNumbers numbers;
         append<DriftCost>(numbers, run);

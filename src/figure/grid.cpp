@@ -79,6 +79,8 @@ Grid::Grid(FigureReader& reader) : Grid() {
     if (range_ && words().logarithmic && !(range_->low > 0))
         throw table.error("range", "must be > 0 on the logarithmic scale of \"{}\"; it is [{}, {}]", name_of(quantity_),
                           range_->low, range_->high);
+    const bool is_shared = difference_ == x_.step && !x_.points && !x_.values;
+    piece_ = measurements().front().together(is_shared);
     if (is_map()) make_map();
     std::size_t first = 0;
     for (auto& group : groups_) group.first = std::exchange(first, first + trials_of(group));
@@ -198,7 +200,7 @@ void Grid::make_map() {
     are_columns_ = x_.is_setting();
     constexpr std::size_t max_in_line = 256;  // trials
     const auto cells = line_cells(groups_.front());
-    piece_ = std::max(measurements().front().together(false), (cells + max_in_line - 1) / max_in_line);
+    piece_ = std::max(piece_, (cells + max_in_line - 1) / max_in_line);
     if (range_) map_style_.low = range_->low, map_style_.high = range_->high;
 }
 
@@ -236,11 +238,6 @@ bool Grid::compares_methods() const {
            });
 }
 
-std::size_t Grid::together() const {
-    const bool is_shared = difference_ == x_.step && !x_.points && !x_.values;
-    return is_map() ? 1 : measurements().front().together(is_shared);
-}
-
 double Grid::units(std::size_t trial) const {
     const auto row = place_of(trial).row;
     return static_cast<double>(cells_of(trial) * (is_mirrored_ && row != y_.count - 1 - row ? 2 : 1));
@@ -260,17 +257,21 @@ std::optional<Experiment::Releases> Grid::releases() const {
     return releases;
 }
 
-void Grid::compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
-    for (std::size_t done = 1; !numbers.empty(); first += done, numbers = numbers.subspan(done)) {
-        const auto place = place_of(first);
-        if (!is_map()) done = std::min(numbers.size(), groups_[place.group].x.count - place.column);
-        std::vector<TrialNumbers> cells(is_map() ? cells_of(first) : done);
-        find_cells(place, cells, stop);
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            auto& trial = numbers[is_map() ? 0 : i];
-            trial.insert(trial.end(), cells[i].begin(), cells[i].end());
-        }
-    }
+TrialNumbers Grid::compute(std::size_t trial, const std::atomic<bool>& stop) const {
+    const auto first = place_of(trial);
+    const auto& group = groups_[first.group];
+    auto pair = group.pair;
+    const auto pair_of = [&](std::size_t i) -> const Preset& {
+        pair.a = group.pair.a;
+        if (right_ || is_of_distance(quantity_)) pair.b = group.pair.b;  // otherwise side b is not used
+        put({first.group, first.row + (are_columns_ ? i : 0), first.column + (are_columns_ ? 0 : i)}, pair);
+        return pair;
+    };
+    std::vector<TrialNumbers> cells(cells_of(trial));
+    for (const auto& measurement : group.measurements) measurement.append(pair_of, cells, stop);
+    TrialNumbers numbers;
+    for (const auto& cell : cells) numbers.insert(numbers.end(), cell.begin(), cell.end());
+    return numbers;
 }
 
 bool Grid::fits(std::size_t trial, std::span<const double> numbers) const {
@@ -406,24 +407,6 @@ Grid::Cell Grid::place_of(std::size_t trial) const {
 std::size_t Grid::cells_of(std::size_t trial) const {
     const auto place = place_of(trial);
     return std::min(piece_, line_cells(groups_[place.group]) - (are_columns_ ? place.row : place.column));
-}
-
-/// Computes adjacent cells.
-void Grid::find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const {
-    const auto& group = groups_[first.group];
-    const std::size_t maximum = std::max(together(), group.measurements.front().together(false));
-    auto pair = group.pair;
-    auto& along = are_columns_ ? first.row : first.column;
-    for (; !cells.empty(); cells = cells.subspan(std::min(maximum, cells.size())), along += maximum) {
-        const auto at = [&](std::size_t i) -> const Preset& {
-            pair.a = group.pair.a;
-            if (right_ || is_of_distance(quantity_)) pair.b = group.pair.b;  // otherwise side b is not used
-            put({first.group, first.row + (are_columns_ ? i : 0), first.column + (are_columns_ ? 0 : i)}, pair);
-            return pair;
-        };
-        for (const auto& measurement : group.measurements)
-            measurement.append(at, cells.first(std::min(maximum, cells.size())), stop);
-    }
 }
 
 std::span<const double> Grid::at(std::span<const TrialNumbers> numbers, const Cell& cell) const {

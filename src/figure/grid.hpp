@@ -18,8 +18,8 @@ inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none
                                                                            "linear-limit"});
 
 /// A quantity of pairs over the values of one to four keys: curves over x, in several colours; maps over x and y;
-/// panels of either. A trial is a value of x of one curve, or some adjacent cells of a map. If the map has a mirror
-/// symmetry, only its lower half is computed.
+/// panels of either. A trial is some adjacent points of a curve, or cells of a map, that are best computed together. If
+/// the map has a mirror symmetry, only its lower half is computed.
 class Grid final : public Experiment {
 public:
     static constexpr std::string_view table_key = "grid";
@@ -29,10 +29,9 @@ public:
     void fields(KeyVisitor& visit);
 
     std::size_t trials() const override { return groups_.back().first + trials_of(groups_.back()); }
-    std::size_t together() const override;
     double units(std::size_t trial) const override;
     std::optional<Releases> releases() const override;
-    void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const override;
+    TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override;
     bool fits(std::size_t trial, std::span<const double> numbers) const override;
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override;
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override;
@@ -76,7 +75,6 @@ private:
     std::size_t trials_of(const Group& group) const { return lines_computed(group) * trials_of_line(group); }
     Cell place_of(std::size_t trial) const;
     std::size_t cells_of(std::size_t trial) const;
-    void find_cells(Cell first, std::span<TrialNumbers> cells, const std::atomic<bool>& stop) const;
     /// The numbers of a cell, from the cell or from its mirror image.
     std::span<const double> at(std::span<const TrialNumbers> numbers, const Cell& cell) const;
     /// The drawn number of a cell.

@@ -102,19 +102,15 @@ public:
     virtual ~Experiment() = default;
 
     virtual std::size_t trials() const = 0;
-    /// The number of consecutive trials that one call of compute() computes best. It does not change results.
-    virtual std::size_t together() const { return 1; }
     /// Whether trials measure time. They are then computed one after the other, without other work.
     virtual bool measures_time() const { return false; }
     /// The unit of progress, "pairs", and how many of them a trial counts; 0 for trials that others require first.
     const std::string& unit() const { return unit_; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 
-    /// Computes trials first, first + 1 …, one for each of `numbers`. Throws Error: exit 3 if a method fails and
-    /// nothing can be shown, exit 130 soon after `stop` is set.
-    virtual void compute(std::size_t first, std::span<TrialNumbers> numbers, const std::atomic<bool>& stop) const {
-        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = compute_trial(first + i, stop);
-    }
+    /// Computes a trial. Throws Error: exit 3 if a method fails and nothing can be shown, exit 130 soon after `stop` is
+    /// set.
+    virtual TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const = 0;
 
     /// Whether the numbers are valid for the trial: their count, and infinity or NaN only where allowed. It checks
     /// numbers that were read and those that were computed.
@@ -156,9 +152,6 @@ protected:
     std::string unit_ = "trials", subtitle_, settings_, chart_settings_;
     std::vector<std::string> columns_;
     std::optional<MapCells> map_;
-
-    /// Computes one trial, for kinds that do not compute several together.
-    virtual TrialNumbers compute_trial(std::size_t /*trial*/, const std::atomic<bool>& /*stop*/) const { return {}; }
 };
 
 /// The kind's own table with all its keys, TOML.

@@ -335,7 +335,7 @@ std::size_t Measurement::together(bool shared) const {
     if (!run_) return 1;
     // neighbours share a pendulum, which is integrated once
     const bool is_shared = shared || !is_of_distance(quantity_);
-    return pendulums_per_block() / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
+    return pendulums_together / (is_shared ? 1 : 2) - (shared && is_of_distance(quantity_) ? 1 : 0);
 }
 
 void Measurement::append(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const {

@@ -112,7 +112,7 @@ public:
     const QuantityWords& words() const { return words_; }
     Quantity quantity() const { return quantity_; }
     std::size_t numbers() const { return words_.columns.size() * words_.rows + (words_.last_column.empty() ? 0 : 1); }
-    /// The best number of pairs per call. `shared`: consecutive pairs have one pendulum in common.
+    /// The best number of pairs per call, the same on all machines. `shared`: consecutive pairs have one pendulum in common.
     std::size_t together(bool shared) const;
     /// Appends numbers() results for each pair. Throws Error (exit 130) soon after `stop` is set.
     void append(const PairAt& pair, std::span<TrialNumbers> into, const std::atomic<bool>& stop) const;

@@ -184,10 +184,10 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         }
         return;
     }
-    using Group = std::pair<std::size_t, std::size_t>;  // number of the figure, and of its group
+    using Trial = std::pair<std::size_t, std::size_t>;  // number of the figure, and of its trial
     std::vector<std::unique_ptr<Transaction>> files;    // opened first, so that errors are reported early
     std::vector<std::unique_ptr<Computation>> computations;
-    std::vector<Group> groups, timed_groups;
+    std::vector<Trial> trials, timed_trials;
     const auto run = options.shard ? fmt::format("shard-{}-of-{}", options.shard->number, options.shard->of) : "run";
     for (const auto& figure : figures) {
         files.push_back(std::make_unique<Transaction>(options.out / figure.name, run, kind, options.replacing));
@@ -205,8 +205,8 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
                                        others.size() > 1 ? fmt::format(" and {} more", others.size() - 1) : ""));
         const auto kept = files[k]->is_temporary() ? std::nullopt : std::optional(folder);
         computations.push_back(std::make_unique<Computation>(figure, header, kept, report, k));
-        auto& of_its_sort = figure.experiment->measures_time() ? timed_groups : groups;
-        for (std::size_t group = 0; group < computations[k]->groups(); ++group) of_its_sort.emplace_back(k, group);
+        auto& of_its_sort = figure.experiment->measures_time() ? timed_trials : trials;
+        for (const auto trial : computations[k]->unknown()) of_its_sort.emplace_back(k, trial);
     }
     std::mutex writing;  // fonts are for one thread at a time
     const auto write = [&](std::size_t k) {
@@ -234,13 +234,13 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
         result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
         report.done(k, result);
     };
-    const auto compute = [&](const Group& group) {
-        if (computations[group.first]->compute(group.second, stop)) write(group.first);
+    const auto compute = [&](const Trial& trial) {
+        if (computations[trial.first]->compute(trial.second, stop)) write(trial.first);
     };
     for (std::size_t k = 0; k < figures.size(); ++k)
-        if (computations[k]->groups() == 0) write(k);
-    parallel_for(groups.size(), jobs, [&](std::size_t i) { compute(groups[i]); });
-    std::ranges::for_each(timed_groups, compute);
+        if (computations[k]->unknown().empty()) write(k);
+    parallel_for(trials.size(), jobs, [&](std::size_t i) { compute(trials[i]); });
+    std::ranges::for_each(timed_trials, compute);
 }
 
 }  // namespace doppel

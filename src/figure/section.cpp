@@ -113,7 +113,7 @@ public:
     }
 
 private:
-    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+    TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto& release = releases_[trial / orbits()][trial % orbits()];
         const auto points = poincare_section(release, spec_, stop);
         const auto exponent = largest_exponent(release, {.duration_s = exponent_duration_s_}, stop);

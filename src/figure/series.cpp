@@ -1,7 +1,6 @@
 #include "figure/series.hpp"
 
 #include "base/error.hpp"
-#include "figure/drift_series.hpp"
 #include "film/pair_table.hpp"
 #include "scene/captions.hpp"
 #include "scene/certificate.hpp"
@@ -171,7 +170,7 @@ private:
     }
 
     /// First the curves, then the same pairs at the finer tolerance.
-    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+    TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto& curve = curves_[trial % curves_.size()];
         auto pair = curve.pair;
         if (trial >= curves_.size()) pair.a.tolerance = pair.b.tolerance = check_tolerance_;
@@ -282,7 +281,7 @@ private:
         return fmt::format("After {} s: {} 1/s. {}", spec_.duration_s, words, of_them);
     }
 
-    TrialNumbers compute_trial(std::size_t, const std::atomic<bool>& stop) const override {
+    TrialNumbers compute(std::size_t, const std::atomic<bool>& stop) const override {
         const auto samples = lyapunov_spectrum(physical_of(release_).cast<double>(), spec_, stop);
         TrialNumbers numbers;
         for (std::size_t i = 0; i < labels_.size(); ++i)

@@ -132,4 +132,8 @@ protected:
     std::string none_words_;           // why a logarithmic axis shows nothing
 };
 
+/// Long-term errors of energy and rod lengths, every method at the same cost: the series of `errors`. Throws Error
+/// (exit 2).
+std::shared_ptr<const Experiment> drift_series(FigureReader& reader, const TomlReader& table, SeriesKeys& keys);
+
 }  // namespace doppel

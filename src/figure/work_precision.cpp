@@ -414,7 +414,7 @@ private:
     std::size_t rounds() const { return cost == Cost::time ? static_cast<std::size_t>(repeats) : 1; }
     bool has_angles() const { return problems.front().has_angles(); }
 
-    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
+    TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const std::size_t first = problems.size();
         if (trial < first) {
             const auto& known = reference(trial, stop);

@@ -256,7 +256,7 @@ Found droplet_90() {
 
 Found three_links() {
     std::vector<SidePair> twins;
-    for (std::size_t i = 0; i < pendulums_per_block() / 2; ++i) {
+    for (std::size_t i = 0; i < pendulums_together / 2; ++i) {
         const int angle = static_cast<int>(20 * i);
         twins.emplace_back(side({angle, 0, 0}), side({angle + parse_quad("0.003"), 0, 0}));
     }

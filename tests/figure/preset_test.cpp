@@ -22,7 +22,6 @@ TEST(FigurePreset, EveryBuiltInOneReadsAndHasATitle) {
         EXPECT_EQ(figure.name, preset.name);
         EXPECT_NE(figure.title, preset.name) << preset.path;
         EXPECT_GT(figure.experiment->trials(), 0u);
-        EXPECT_GE(figure.experiment->together(), 1u);
         names.insert(preset.name);
     }
     for (const char* name : {"fig2-left", "fig2-right", "fig3-left", "fig3-right", "fig4-left", "fig4-right",

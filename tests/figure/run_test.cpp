@@ -43,7 +43,7 @@ TEST(FigureRun, ManifestTellsWhatTheFigureIs) {
     EXPECT_EQ(manifest["trials"], 10);
     EXPECT_EQ(manifest["threads"], 2);
     EXPECT_EQ(manifest["resolved_preset"]["grid"]["x"]["to"], 9);
-    EXPECT_EQ(manifest["resolved_preset"]["a"]["integrator"], "euler");
+    EXPECT_EQ(manifest["resolved_preset"]["a"]["integrator"], "dop853");
     EXPECT_FALSE(manifest["doppel"]["version"].get<std::string>().empty());
     EXPECT_FALSE(manifest["libraries"]["drawing"].get<std::string>().empty());
 

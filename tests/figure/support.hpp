@@ -28,8 +28,16 @@ inline FigurePreset figure_from(const std::string& text, const std::vector<std::
 inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
     const std::atomic<bool> never = false;
     Computation computation(figure, header_of(figure), std::nullopt, {});
-    parallel_for(computation.groups(), jobs, [&](std::size_t group) { computation.compute(group, never); });
+    const auto& trials = computation.unknown();
+    parallel_for(trials.size(), jobs, [&](std::size_t i) { computation.compute(trials[i], never); });
     return computation.take_all();
+}
+
+/// The number of its pairs, orbits …
+inline double units_of(const FigurePreset& figure) {
+    double all = 0;
+    for (std::size_t i = 0; i < figure.experiment->trials(); ++i) all += figure.experiment->units(i);
+    return all;
 }
 
 /// The text of the table's file.
@@ -95,9 +103,11 @@ inline std::string header_line(const FigurePreset& figure) {
     return line;
 }
 
-/// Ten trials of half a second.
+/// Ten pairs for half a second.
 inline const std::vector<std::string> small_chart{"grid.x.to=9", "scene.duration_s=0.5", "chart.size=[320, 180]"};
+/// Each a trial of its own, because this method is not computed in lanes.
 inline FigurePreset small_sweep(std::vector<std::string> more = {}) {
+    more.insert(more.begin(), "system.integrator=\"dop853\"");
     more.insert(more.end(), small_chart.begin(), small_chart.end());
     return figure_of("fig2-right", more);
 }

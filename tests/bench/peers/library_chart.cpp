@@ -123,13 +123,9 @@ private:
     std::size_t rounds() const { return measures_time() ? static_cast<std::size_t>(compared_.repeats) : 1; }
     std::size_t own_studies() const { return (own_->trials() - problems_.size()) / rounds(); }
 
-    TrialNumbers compute_trial(std::size_t trial, const std::atomic<bool>& stop) const override {
-        TrialNumbers numbers;
+    TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto [is_own, number] = place_of(trial);
-        if (is_own) {
-            own_->compute(number, {&numbers, 1}, stop);
-            return numbers;
-        }
+        if (is_own) return own_->compute(number, stop);
         const auto& [p, m] = studies_[number];
         const auto& problem = problems_[p];
         const auto& method = methods_[m];
@@ -144,6 +140,7 @@ private:
             run_settings(problem, compared_.reference(p, stop), settings,
                          {compared_.max_evaluations, compared_.min_error, measures_time(), false}, stop, make);
         if (outcomes.empty()) outcomes.emplace_back();
+        TrialNumbers numbers;
         for (const auto& outcome : outcomes) append(numbers, outcome);
         return numbers;
     }
