@@ -77,13 +77,15 @@ std::pair<std::string, ErrorPlace> TomlReader::place_of(std::string_view key) co
     if (!table_) return {path_, {}};
     const auto entry = table_->find(key);
     const bool is_given = entry != table_->end();
-    if (is_given && is_typed(entry->second)) {
-        const auto& option = *entry->second.source().path;
+    const toml::node& holder = is_given ? entry->second : *table_;
+    const bool is_placed = is_given || name_.starts_with("[[");  // one of several entries
+    if (is_placed && is_typed(holder)) {
+        const auto& option = *holder.source().path;
         return {option, errors_ ? errors_->of_option(option) : ErrorPlace{}};
     }
     const auto& at = (is_given ? entry->first.source() : table_->source()).begin;
     const bool is_known = at.line > 0 && (is_given || !name_.empty());
-    return {is_given ? fmt::format("{}:{}:{}", path_, at.line, at.column) : path_,
+    return {is_placed ? fmt::format("{}:{}:{}", path_, at.line, at.column) : path_,
             is_known ? ErrorPlace{at.line, at.column} : ErrorPlace{}};
 }
 

@@ -71,7 +71,7 @@ inline const std::vector<RefusedFigure> refused_figures_chart{
 inline const std::vector<RefusedFigure> refused_figures_series{
     RefusedFigure{
         "series", "[series]\nquantity = \"dist\"", ":4:1: [series] quantity", {"\"exponents\" or \"errors\""}},
-    RefusedFigure{"series", "[[curve]]\nlabel = \"x\"", "", {"[[curve]] 1 column is missing"}},
+    RefusedFigure{"series", "[[curve]]\nlabel = \"x\"", ":3:1: [[curve]] 1 column is missing", {}},
     RefusedFigure{"series", "[[curve]]\ncolumn = \"x\"\ncolour = 3", ":5:1: [[curve]] 1 has no \"colour\"", {}},
     RefusedFigure{"series", "[[curve]]\ncolumn = \"x\"\nsystem.angle = [3, 3]", ":5:8: ", {"has no \"angle\""}},
     RefusedFigure{"series", "[series]\ncheck_tolerance = 1e-9", ":4:1: [series] check_tolerance", {"adaptive methods"}},
