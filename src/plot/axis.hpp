@@ -29,7 +29,9 @@ struct Axis {
     /// logarithm.
     double share(double value) const;
 
-    /// Position in px, clamped to the ends, so that a curve stays in its panel.
+    /// Position in px, where share() is.
+    double pixel(double value) const { return from + (static_cast<double>(to) - from) * share(value); }
+    /// The same, clamped to the ends, so that a curve stays in its panel.
     float at(double value) const;
 };
 

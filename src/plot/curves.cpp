@@ -48,16 +48,11 @@ void add_clipped(const std::vector<Place>& piece, const Area& area, std::vector<
     }
 }
 
-double pixel(const Axis& axis, double value) {
-    if (axis.logarithmic && value <= 0) return std::nan("");
-    return axis.from + (static_cast<double>(axis.to) - axis.from) * axis.share(value);
-}
-
 /// The points of a curve, px, in pieces between values that cannot be drawn.
 std::vector<std::vector<Place>> pieces_of(const Curve& curve, const Axis& x, const Axis& y) {
     std::vector<std::vector<Place>> pieces(1);
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        const Place at{pixel(x, curve.x[i]), pixel(y, curve.y[i])};
+        const Place at{x.pixel(curve.x[i]), y.pixel(curve.y[i])};
         if (std::isfinite(at.x) && std::isfinite(at.y))
             pieces.back().push_back(at);
         else if (!pieces.back().empty())
@@ -143,7 +138,7 @@ void draw_band(const Curve& curve, const Panel& panel) {
         double low = curve.y[i] - wide;
         // on a logarithmic axis, a band that reaches zero extends to the end of the axis
         if (y.logarithmic && low <= 0 && curve.y[i] > 0) low = std::min(y.low, y.high);
-        const double at = pixel(x, curve.x[i]), lower = pixel(y, low), upper = pixel(y, curve.y[i] + wide);
+        const double at = x.pixel(curve.x[i]), lower = y.pixel(low), upper = y.pixel(curve.y[i] + wide);
         if (!std::isfinite(at + lower + upper)) {
             end();
             continue;

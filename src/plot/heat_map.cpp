@@ -96,10 +96,8 @@ Picture cell_picture(const HeatMap& map, const Theme& theme) {
 }
 
 CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
-    const auto place = [](const Axis& axis, const std::optional<double>& edge) {
-        return static_cast<float>(axis.from + (axis.to - axis.from) * axis.share(edge.value()));
-    };
-    return {{place(x, plot.x.low), place(y, plot.y.high), place(x, plot.x.high), place(y, plot.y.low)},
+    const auto at = [](const Axis& axis, double edge) { return static_cast<float>(axis.pixel(edge)); };
+    return {{at(x, *plot.x.low), at(y, *plot.y.high), at(x, *plot.x.high), at(y, *plot.y.low)},
             area,
             std::make_shared<Picture>(cell_picture(*plot.map, theme))};
 }

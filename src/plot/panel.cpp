@@ -190,14 +190,12 @@ Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float h
     made.labels = axis_labels_height(plot, width, words, style);
     made.bottom = words.x ? 1.75f * em + (plot.x.label.empty() ? 0 : 1.45f * style.axis) : 0.34f * em;
     const float tall = std::max(height - made.top(style) - made.bottom, 1.0f);
-    made.left = 0.34f * em;
-    if (words.y)
-        made.left =
-            0.55f * em + widest(spaced_ticks(placed(ranges.y, tall, 0), false, em, plot.y.every, plot.y.ticks), em);
-    if (ranges.right)
-        made.right =
-            0.55f * em +
-            widest(spaced_ticks(placed(*ranges.right, tall, 0), false, em, plot.right->every, plot.right->ticks), em);
+    const auto beside = [&](const Axis& axis, const PlotAxis& requested) {
+        const auto ticks = spaced_ticks(placed(axis, tall, 0), false, em, requested.every, requested.ticks);
+        return 0.55f * em + widest(ticks, em);
+    };
+    made.left = words.y ? beside(ranges.y, plot.y) : 0.34f * em;
+    if (ranges.right) made.right = beside(*ranges.right, *plot.right);
     if (plot.map && !plot.map->shares_bar) made.right += bar_gutter(*plot.map, tall, style);
     if (!words.x) return made;
     // the first and last label below the axis extend beyond it by half their width

@@ -31,9 +31,11 @@ public:
         double low = low_, high = high_;
         if (!(low <= high)) low = logarithmic_ ? 1 : 0, high = logarithmic_ ? 10 : 1;
         // if the given end is on the wrong side of the values, the other is chosen beyond it
-        if (axis.low && !axis.high) high = above(*axis.low, high), low = std::min(*axis.low, low);
-        if (axis.high && !axis.low) low = below(*axis.high, low), high = std::max(*axis.high, high);
-        if (low == high) low = below(low, low), high = above(high, high);
+        if (axis.low && !axis.high)
+            high = high > *axis.low ? high : beyond(*axis.low, 1), low = std::min(*axis.low, low);
+        if (axis.high && !axis.low)
+            low = low < *axis.high ? low : beyond(*axis.high, -1), high = std::max(*axis.high, high);
+        if (low == high) low = beyond(low, -1), high = beyond(high, 1);
         if (logarithmic_) {
             const double part = std::pow(10.0, margin * (std::log10(high) - std::log10(low)));
             low = std::max(low / part, std::numeric_limits<double>::min());
@@ -44,21 +46,15 @@ public:
             high = std::min(high + part, largest);
         }
         Axis made{.low = axis.low.value_or(low), .high = axis.high.value_or(high), .logarithmic = logarithmic_};
-        if (made.low == made.high) made.low = below(made.low, made.low), made.high = above(made.high, made.high);
+        if (made.low == made.high) made.low = beyond(made.low, -1), made.high = beyond(made.high, 1);
         return made;
     }
 
 private:
-    /// `value`, or something a little larger than `limit`.
-    double above(double limit, double value) const {
-        if (value > limit) return value;
-        return logarithmic_ ? std::min(limit * 3, largest)
-               : limit == 0 ? 1
-                            : std::min(limit + 0.1 * std::abs(limit), largest);
-    }
-    double below(double limit, double value) const {
-        if (value < limit) return value;
-        return logarithmic_ ? limit / 3 : limit == 0 ? -1 : std::max(limit - 0.1 * std::abs(limit), -largest);
+    /// Something a little larger than `limit`, for `way` −1 smaller.
+    double beyond(double limit, int way) const {
+        const double linear = limit == 0 ? way : limit + way * 0.1 * std::abs(limit);
+        return std::clamp(!logarithmic_ ? linear : way > 0 ? limit * 3 : limit / 3, -largest, largest);
     }
 
     bool logarithmic_;
