@@ -307,6 +307,8 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
             "{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}.", x_.count, y_.count,
             is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "",
             has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance)));
+    else if (has_outline)
+        figure.captions.emplace_back("Inside the line no rod has the energy to flip.");
     if (broken > 0)
         figure.captions.push_back(
             fmt::format("{} of the releases failed (no step of 10⁻⁹ s met the tolerance): their cells are empty, as "

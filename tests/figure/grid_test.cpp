@@ -260,6 +260,14 @@ TEST(Grid, TablesOfKeysKeepTheirDecimals) {
     EXPECT_NE(text.find("120.1, 90"), std::string::npos) << text;
 }
 
+TEST(Grid, ExplainsTheEnergyBoundOfAnyQuantity) {
+    const auto figure = figure_of(
+        "flip-map", {"grid.quantity=\"energy_error\"", "grid.x.points=4", "grid.y.points=4", "scene.duration_s=1"});
+    Figure page;
+    figure.experiment->draw(computed(figure), page);
+    EXPECT_EQ(page.captions, std::vector<std::string>{"Inside the line no rod has the energy to flip."});
+}
+
 TEST(Grid, TakesAnyKeyForPanelsOfMaps) {
     const auto figure = figure_from(
         "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"energy_error\"\n[grid.x]\nkey = "
