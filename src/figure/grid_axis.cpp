@@ -97,10 +97,7 @@ void GridAxis::find(FigureReader& reader, const TomlReader& table, const Preset&
     if (!exists()) return;
     if (!labels.empty() && labels.size() != values->texts.size())
         throw table.error("labels", "must name the {} values; there are {}", values->texts.size(), labels.size());
-    if (values)
-        for (auto text = values->texts.begin(); text != values->texts.end(); ++text)
-            if (std::find(values->texts.begin(), text, *text) != text)
-                throw table.error("values", "must differ; {} is there twice", *text);
+    if (values) check_distinct(table, "values", values->texts);
     const bool takes_fractions = role == "x" || role == "y";  // curves and panels are named by them
     const auto is_number = [&](const std::string& text) {
         return number_in(text) && (takes_fractions || text.find('/') == std::string::npos);

@@ -26,7 +26,7 @@ SideSpec FigureReader::release(bool physical) {
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names) {
     for (const auto& name : names)
         if (std::count(names.begin(), names.end(), name) > 1)
-            throw table.error(key, "must differ; \"{}\" is named more than once", name);
+            throw table.error(key, "must differ; {} is there twice", name);
 }
 
 std::vector<std::string> methods_of(Model model, std::vector<std::string> names) {

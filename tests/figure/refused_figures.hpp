@@ -87,7 +87,7 @@ inline const std::vector<RefusedFigure> refused_figures_others{
     RefusedFigure{"series",
                   "[series]\nquantity = \"errors\"\nmethods = [\"rk4\", \"rk4\"]",
                   ":5:1: [series] methods",
-                  {"must differ; \"rk4\""}},
+                  {"must differ; rk4 is there twice"}},
     RefusedFigure{"series",
                   "[series]\nquantity = \"errors\"\nprojected = [\"rk4\", \"rk4\"]",
                   ":5:1: [series] projected",

@@ -273,7 +273,7 @@ TEST(WorkPrecision, RefusesWrongSettings) {
     expect_error_text({"chart.cost=\"money\""}, "cost");
     expect_error_text({"work_precision.problems=[\"P5\"]"}, "\"P5\" is not");
     expect_error_text({"work_precision.problems=[]"}, "at least one");
-    expect_error_text({"work_precision.problems=[\"P1\", \"P1\"]"}, "named more than once");
+    expect_error_text({"work_precision.problems=[\"P1\", \"P1\"]"}, "must differ; P1 is there twice");
     expect_error_text({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"},
                       "combined with \"scene\"");
     expect_error_text({"work_precision.scene=\"fig7\""}, "is a figure");
