@@ -6,15 +6,6 @@
 #include <cmath>
 
 namespace doppel {
-namespace {
-
-/// The frame of the whole film that first shows this time.
-long film_frame(const Scene& scene, const Schedule& schedule, double time_s) {
-    const long frame = scene.frames.first_from(moment_at(time_s * scene.preset.sample_hz.value()));
-    return schedule.at(std::min(frame, schedule.motion - 1));
-}
-
-}  // namespace
 
 void FlipFinder::add(const PairState& state) {
     constexpr std::size_t most_links = 3;
@@ -43,17 +34,20 @@ std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> fl
         if (at_s.numerator > 0)
             events.push_back({at_s.value(), "speed", "Speed " + speed.text(), {{"speed", speed.text()}}});
     std::ranges::stable_sort(events, {}, &FilmEvent::time_s);
+    const auto schedule = schedule_of(scene);
+    for (auto& event : events) {
+        const long frame = scene.frames.first_from(moment_at(event.time_s * scene.preset.sample_hz.value()));
+        event.frame = schedule.at(std::min(frame, schedule.motion - 1));
+    }
     return events;
 }
 
 Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std::optional<FrameRange>& shown) {
-    const auto schedule = schedule_of(scene);
     Json list = Json::array();
     for (const auto& event : events) {
         Json json{{"event", event.event}, {"time_s", event.time_s}};
-        const long frame = film_frame(scene, schedule, event.time_s);
-        if (shown && !shown->contains(frame)) continue;
-        if (shown) json["film_s"] = static_cast<double>(frame - shown->first) / scene.fps.value();
+        if (shown && !shown->contains(event.frame)) continue;
+        if (shown) json["film_s"] = static_cast<double>(event.frame - shown->first) / scene.fps.value();
         json.update(event.details);
         list.push_back(std::move(json));
     }
@@ -62,12 +56,11 @@ Json json_of(const Scene& scene, const std::vector<FilmEvent>& events, const std
 
 std::map<long, std::string> chapters_of(const Scene& scene, const std::vector<FilmEvent>& events,
                                         const FrameRange& shown) {
-    const auto schedule = schedule_of(scene);
     std::map<long, std::string> chapters;
-    if (schedule.title > 0 || shown.first > 0) chapters[0] = scene.preset.title;
+    if (schedule_of(scene).title > 0 || shown.first > 0) chapters[0] = scene.preset.title;
     for (const auto& event : events) {
-        const long frame = film_frame(scene, schedule, event.time_s) - shown.first;
-        if (!shown.contains(shown.first + frame)) continue;
+        if (!shown.contains(event.frame)) continue;
+        const long frame = event.frame - shown.first;
         const bool is_near =
             !chapters.empty() && static_cast<double>(frame - chapters.rbegin()->first) < scene.fps.value();
         if (event.event != "flip" || !is_near) chapters[frame] = event.chapter;

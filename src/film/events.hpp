@@ -18,6 +18,7 @@ struct FilmEvent {
     std::string event;              // "release", "flip", "divergence", "speed"
     std::string chapter;            // its title as a chapter
     Json details = Json::object();  // further keys of the manifest
+    long frame = 0;                 // of the whole film, the first that shows it
 };
 
 /// Finds the flips of a pair from its samples: a link of a side passes the upright position. Of chains of one to three
@@ -35,7 +36,7 @@ private:
     std::vector<FilmEvent> flips_;
 };
 
-/// Release, flips, divergence and changes of speed, in order of time.
+/// Release, flips, divergence and changes of speed, in order of time, with their frames.
 std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome);
 
 /// For the manifest. `shown` = the frames of the film, counted in the whole film: then only the events in them, with
