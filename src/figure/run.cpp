@@ -115,7 +115,7 @@ std::vector<std::string> write_picture(const FigurePreset& figure, const KnownTr
     } else {
         const auto drawn = compose_figure(figure, trials);
         const double width_pt = layout_of(figure.chart).width_pt;
-        const auto metadata = metadata_of(figure.title, figure.name, manifest_words(figure.name));
+        const auto metadata = metadata_of(figure.title, figure.name);
         if (format == PictureFormat::png)
             write_png(place, picture_of(drawn, stop), {.metadata = metadata, .dpi = 72 * drawn.size.width / width_pt},
                       stop);

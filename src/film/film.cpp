@@ -13,14 +13,6 @@
 
 namespace doppel {
 
-namespace {
-
-Metadata film_metadata(const Preset& preset) {
-    return metadata_of(preset.title, preset.name, manifest_words(preset.name));
-}
-
-}  // namespace
-
 Canvas::Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop) : stop_(stop) {
     const auto& video = scene.preset.video;
     if (video.transparent) {
@@ -113,7 +105,7 @@ void Film::begin_pictures() {
     folder_ = parts_.directory(film_name_);
     const auto place_of = [this](long k) { return folder_ / fmt::format("{:06}.png", drawn_.at(k)); };
     sink_ = make_png_sink(place_of, png_threads(options_.jobs, video.size),
-                          {.with_alpha = video.transparent, .metadata = film_metadata(scene_.preset)}, stop_);
+                          {.with_alpha = video.transparent, .metadata = metadata_}, stop_);
 }
 
 void Film::begin_video() {
@@ -125,7 +117,7 @@ void Film::begin_video() {
         video.first_frame = drawn_.first;
     }
     video.is_stream = options_.to_stream;
-    video.metadata = film_metadata(scene_.preset);
+    video.metadata = metadata_;
     if (options_.is_partial()) video.frames = 0;
     sink_ = make_video_sink(video.is_stream ? "-" : parts_.file(film_name_), video, stop_);
     record_.libav = libav_description();
@@ -204,9 +196,8 @@ void Film::pack_pictures() {
 }
 
 void Film::write(const std::string& ending, const Picture& picture) const {
-    const auto& preset = scene_.preset;
-    const auto name = preset.name + ending;
-    write_png(parts_.file(name), picture, {.with_alpha = preset.video.transparent, .metadata = film_metadata(preset)},
+    const auto name = scene_.preset.name + ending;
+    write_png(parts_.file(name), picture, {.with_alpha = scene_.preset.video.transparent, .metadata = metadata_},
               stop_);
     parts_.finished(name);
 }

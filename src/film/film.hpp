@@ -26,7 +26,7 @@ struct RunRecord : RunResult {
     std::string gl, libav;                                       // empty if no pictures were drawn
     double simulate_cpu_s = 0, draw_cpu_s = 0, write_cpu_s = 0;  // by the threads' clocks; write = convert and queue
     double encode_cpu_s = 0;                                     // other threads: encoder or compressor
-    double cpu_s = 0;
+    double cpu_s = 0;                                            // with the making of the scene
     MotionRecord motion;
     std::vector<FilmEvent> events;
     std::optional<FrameRange> shown = {};  // of a film: its frames, counted in the whole film
@@ -130,6 +130,7 @@ private:
     long frame_, last_;  // of the motion
     long poster_at_ = -1;
     Composer composer_;
+    const Metadata metadata_ = metadata_of(scene_.preset.title, scene_.preset.name);
     std::string film_name_;         // name of the video, or of the folder of pictures
     std::filesystem::path folder_;  // of the pictures
     std::unique_ptr<Sink> sink_;

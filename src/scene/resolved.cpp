@@ -191,15 +191,12 @@ Json program_json() {
     return {{"version", version()}, {"revision", revision()}};
 }
 
-Metadata metadata_of(const std::string& title, const std::string& name, const std::string& record) {
+Metadata metadata_of(const std::string& title, const std::string& name, std::string record) {
     const auto program = fmt::format("Doppel {} ({})", version(), revision());
+    if (record.empty()) record = fmt::format("how it was made is in {}.json, unless it was made by -o -", name);
     // MP4 stores the muxer's name as its encoder, so the comment contains all of it
     return {
         {"title", title}, {"comment", fmt::format("{}, preset {}; {}", program, name, record)}, {"encoder", program}};
-}
-
-std::string manifest_words(const std::string& name) {
-    return fmt::format("how it was made is in {}.json, unless it was made by -o -", name);
 }
 
 void write_manifest(Transaction& parts, const std::string& name, Json manifest) {

@@ -98,11 +98,9 @@ Json json_of_toml(const std::string& toml);
 /// Version and revision.
 Json program_json();
 
-/// Metadata that trace a picture or film to its source: its title, the preset's name, and the name of the manifest.
-Metadata metadata_of(const std::string& title, const std::string& name, const std::string& record);
-
-/// `record` of pictures and films, which are the same bytes in a stream.
-std::string manifest_words(const std::string& name);
+/// Metadata that trace a picture or film to its source: its title, the preset's name, and `record`: how it was made.
+/// Without a record, the name of the manifest; the bytes are the same in a stream, which has none.
+Metadata metadata_of(const std::string& title, const std::string& name, std::string record = {});
 
 /// Adds size and SHA-256 of the run's complete files, and of files of earlier runs that stay; then writes the manifest
 /// "NAME.json" as the last file. Throws Error (exit 4).
