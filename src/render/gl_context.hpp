@@ -40,14 +40,8 @@ struct Functions {
 /// The functions of this thread's current context; null if there is none.
 extern constinit thread_local const Functions* current;
 
-/// Calls one function of the current context.
-template <class Type, Type Functions::*function>
-struct Call;
-template <class Result, class... Arguments, Result (*Functions::*function)(Arguments...)>
-struct Call<Result (*)(Arguments...), function> {
-    Result operator()(Arguments... arguments) const { return (current->*function)(arguments...); }
-};
-#define X(name) inline constexpr Call<decltype(&::gl##name), &Functions::name> name;
+// Each calls the function of the current context.
+#define X(name) inline constexpr auto name = [](const auto&... arguments) { return current->name(arguments...); };
 DOPPEL_GL_FUNCTIONS(X)
 #undef X
 

@@ -10,6 +10,8 @@
 namespace doppel::gl {
 namespace {
 
+constexpr GLboolean on = GL_TRUE, off = GL_FALSE;
+
 /// The driver's log of a shader or program.
 template <class GetLog>
 std::string log(GetLog get, GLuint number) {
@@ -96,7 +98,7 @@ Painter::Painter(Size size)
     BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
     const auto input = [](GLuint location, GLint count, GLenum type, std::size_t offset) {
         EnableVertexAttribArray(location);
-        VertexAttribPointer(location, count, type, GL_TRUE, sizeof(Vertex), reinterpret_cast<const void*>(offset));
+        VertexAttribPointer(location, count, type, on, GLsizei{sizeof(Vertex)}, reinterpret_cast<const void*>(offset));
     };
     input(0, 2, GL_FLOAT, offsetof(Vertex, at));
     input(1, 4, GL_FLOAT, offsetof(Vertex, of) + offsetof(Primitive, origin));
@@ -234,10 +236,10 @@ void Painter::draw(const Batch& batch) {
     if (batch.kind == Kind::glyph) BindTexture(GL_TEXTURE_2D, atlas_);
     if (batch.kind == Kind::mask) {
         BlendEquation(GL_MIN);
-        ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+        ColorMask(off, off, off, on);
         draw_triangles(programs_[static_cast<std::size_t>(batch.kind)]);
         BlendEquation(GL_FUNC_ADD);
-        ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        ColorMask(on, on, on, on);
         BlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_DST_ALPHA, GL_ONE, GL_ZERO);
         draw_triangles(cover_);
     } else {

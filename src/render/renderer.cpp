@@ -44,7 +44,7 @@ Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::ato
     backdrop_ = Picture(size);
     gl::PixelStorei(GL_PACK_ROW_LENGTH, size.width);
 
-    gl::ClearColor(0, 0, 0, 1);
+    gl::ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
     gl::Clear(GL_COLOR_BUFFER_BIT);
     make_render_list(backdrop, size, *atlas_, now_);
     for (const auto& regions : bands({all_of(size)})) {
