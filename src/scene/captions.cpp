@@ -47,12 +47,25 @@ std::vector<KeyPair> shown_pairs(const Scene& scene) {
     return pairs;
 }
 
+/// A number with a true minus, and six digits, or one more than distinguish it from the other side's.
+std::string short_text(const Quad& number, const Quad& other) {
+    auto text = number_text(number);
+    for (int digits = 5; digits < 15; ++digits) {
+        const auto rounded = fmt::format("{:.{}g}", static_cast<double>(number), digits);
+        if (number != other && rounded == fmt::format("{:.{}g}", static_cast<double>(other), digits)) continue;
+        const auto brief = number_text(parse_quad(fmt::format("{:.{}g}", static_cast<double>(number), digits + 1)));
+        if (brief.size() < text.size()) text = brief;
+        break;
+    }
+    return text.starts_with('-') ? "−" + text.substr(1) : text;
+}
+
 /// What is said of a key with a symbol. Short chains: link by link. Long chains: the common number of the links, or the
 /// links in which the sides differ.
 Texts symbol_texts(const SideKey& key, const SideKey& other) {
     const auto &numbers = key.numbers, &others = other.numbers;
     const auto text = [&](const std::string& name, std::size_t i) {
-        return fmt::format("{} = {}", name, with_unit(number_text(numbers[i]), key.unit));
+        return fmt::format("{} = {}", name, with_unit(short_text(numbers[i], others[i]), key.unit));
     };
     const auto of_link = [&](std::size_t i) { return text(fmt::format("{}{}", key.symbol, subscript(i + 1)), i); };
     if (!key.is_of_links) return {text(std::string(key.symbol), 0)};

@@ -36,6 +36,14 @@ TEST(Captions, StateTheDifferenceOfASideAsFarAsItFits) {
                                                            "b.length_m=[0.5, 0.6]", "b.gravity_m_per_s2=9.7"}));
     EXPECT_EQ(many[1].heading, "θ₁ = 90.003°, ω₁ = 1°/s");
     EXPECT_EQ(many[1].note, "ω₂ = 2°/s, m₁ = 3 kg, m₂ = 4 kg, …");
+    // with as many digits as distinguish the sides
+    const auto fitted = side_captions(scene_of(
+        "butterfly", {"a.angle_deg=[-68.74868958, -314.1588569]", "b.angle_deg=[-68.75168958, -314.1588569]"}));
+    EXPECT_EQ(fitted[0].heading, "θ₁ = −68.7487°");
+    EXPECT_EQ(fitted[1].heading, "θ₁ = −68.7517°");
+    EXPECT_EQ(fitted[1].note, "θ₂ = −314.159°");
+    const auto near = side_captions(scene_of("butterfly", {"b.angle_deg=[90.0000000015, 90]"}));
+    EXPECT_EQ(near[1].heading, "θ₁ = 90.0000000015°");
 }
 
 TEST(Captions, AreThePresetsIfItSetsThem) {
