@@ -163,7 +163,8 @@ std::vector<std::string> run_files(const Scene& scene, const RunOptions& options
 }
 
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report) {
-    const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    const double wall_start = seconds_of(CLOCK_MONOTONIC) - scene.made_wall_s,
+                 cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - scene.made_cpu_s;
     const auto& name = scene.preset.name;
     const auto& shard = options.shard;
     const auto part = part_of(scene, options);
@@ -233,8 +234,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             record.simulate_cpu_s = recording.cpu_s();
             add_warnings(scene, record, stop);
             record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
-            record.encode_cpu_s =
-                std::max(0.0, record.cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
+            record.encode_cpu_s = std::max(
+                0.0, record.cpu_s - scene.made_cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);
             // files of an earlier run that failed
             for (const char* ending : {".csv", ".json"}) parts.remove(failed_name(name, ending));
             write_manifest(parts, name + ".json", scene, record);

@@ -121,6 +121,7 @@ std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char nam
 }  // namespace
 
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
+    const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const bool chooses = preset.a.is_chosen() || preset.b.is_chosen();
     const auto chooser = chooses ? std::make_shared<MethodChooser>(preset, stop) : nullptr;
     auto chosen = chooser ? chooser->choose(1, stop) : std::array<std::optional<Side>, 2>{};
@@ -159,6 +160,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
             preset.name);
     if (preset.certify)
         scene.certificate = std::make_shared<Certificate>(certificate_of(scene, usual_run_radius, cores(), stop));
+    scene.made_wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
+    scene.made_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
     return scene;
 }
 

@@ -143,6 +143,7 @@ struct Scene {
     FrameTimes frames = {};                  // the moments they show
     std::shared_ptr<MethodChooser> chooser;  // if a side requires an accuracy
     std::shared_ptr<const Certificate> certificate{};  // if the preset requires it (scene/certificate.hpp)
+    double made_wall_s = 0, made_cpu_s = 0;            // time to make it: choice of methods, certificate
 
     double time(const Moment& moment) const;  // s
     double time(long sample) const { return time(Moment{sample}); }

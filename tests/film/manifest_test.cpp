@@ -51,6 +51,10 @@ TEST(Manifest, ContainsThePredictabilityLimit) {
     EXPECT_EQ(chosen["a"]["accuracy"]["unit"], "rad");
     EXPECT_GT(chosen["horizon_s"], 25);  // measured 32.3, of 40
     EXPECT_LT(chosen["horizon_s"], 40);
+    const auto& time = chosen["time"];
+    EXPECT_GT(time["cpu_by_stage_s"]["choose"], 0.02);  // measured 0.7
+    EXPECT_GT(time["cpu_s"], time["cpu_by_stage_s"]["choose"]);
+    EXPECT_GT(time["wall_s"], 0.02);
 }
 
 }  // namespace doppel::manifest_test
