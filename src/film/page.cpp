@@ -27,10 +27,9 @@ struct PictureJson {
     Json list(const Parts&... parts) const {
         return Json::array({(*this)(parts)...});
     }
-    template <class Items>
-    Json all(const Items& items) const {
+    Json all(const DisplayList& items) const {
         Json json = Json::array();
-        for (const auto& item : items) json.push_back(std::visit(*this, Item(item)));
+        for (const auto& item : items) json.push_back(std::visit(*this, item));
         return json;
     }
     Json operator()(const char* text) const { return text; }
@@ -65,7 +64,7 @@ Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJ
               {"axis", axis_json(strip.value)}};
     const bool has_value =
         strip.kind == StripKind::distance || (strip.kind == StripKind::exponent && start_distance > 0);
-    if (has_value && words.back().color == curves[0].color) {
+    if (has_value && !words.empty() && words.back().color == curves[0].color) {
         json["value"] = json_of(words.back());
         words.pop_back();
     }
@@ -215,8 +214,7 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
     const auto& video = scene.preset.video;
     const auto style = make_style(video, 1, 1);
     const auto clock = clock_text(scene, 0);
-    auto preset = scene.preset;  // the film's own, as a video
-    preset.duration_s = *quotient({samples, 1}, preset.sample_hz);
+    auto preset = scene.preset;  // the whole film's own, as a video
     if (!video.transparent) preset.video.format = {};
     Json bodies = Json::array(), pictures = Json::array();
     for (const auto& pendulum : shown_pendulums(scene, style, !has_panel_for_each(video)))

@@ -230,6 +230,7 @@ TEST(Page, IsAWholeFilm) {
     const auto part = data_of(page_of(text, {.to_s = Rational{1, 1}}));
     EXPECT_EQ(part.at("samples"), 119);
     EXPECT_EQ(part.at("duration_s"), 119.0 / 120);
+    EXPECT_EQ(part.at("preset"), data_of(page_of(text)).at("preset")) << "what it is copied as";
     EXPECT_EQ(run_files(scene_of_text(text), {}), (std::vector<std::string>{"x.html", "x.csv", "x.json"}));
 }
 
