@@ -194,19 +194,30 @@ function dashedLine({ area: [, top, , bottom], time }, at) {
   for (let y = top; y < bottom; y += 10 * picture.text)
     verticalLine(along(time, at), y, Math.min(y + 5 * picture.text, bottom), theme.quiet_text);
 }
-// The texts of marks at the feet of their lines, one above the other: draws what is behind them, returns what draws them.
-function placeMarks({ area: [left, , right, bottom], time }, marks) {
+// The texts of marks beside their lines, in rows that fit, from the foot up: draws what is behind them, returns what draws
+// them. If they are too high, the first are left out, which are those of limits.
+function placeMarks({ area: [left, top, right, bottom], time }, marks) {
   const t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
   text("", [0, 0], ...style);
-  const places = marks.map(([at, words], i) => {
-    const x = along(time, at), foot = bottom - (0.45 + 1.2 * i) * size, { width } = g.measureText(words);
-    const isRight = right - x - 20 * t >= Math.min(width, x - left - 20 * t);
-    const from = Math.max(Math.min(isRight ? x + 10 * t : x - 10 * t - width, right - width - 2 * t), left + 2 * t);
-    if (!film.transparent)
-      box(from - 4 * t, foot - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
-    return [from, foot];
-  });
-  return () => marks.forEach(([, words], i) => text(words, places[i], ...style));
+  const widthOf = words => g.measureText(words).width;
+  let rows = [];
+  for (const [at, words] of [...marks].reverse()) {
+    const x = along(time, at), after = right - x - 20 * t, before = x - left - 20 * t, lines = [];
+    const isRight = after >= Math.min(widthOf(words), before), room = Math.max(isRight ? after : before, 5 * size);
+    for (const word of words.split(/ (?!s\b)/)) {  // a number keeps its unit
+      const longer = `${lines.at(-1)} ${word}`, fits = lines.length && widthOf(longer) <= room;
+      lines.splice(fits ? -1 : lines.length, 1, fits ? longer : word);
+    }
+    if ((rows.length + lines.length - 0.25) * 1.2 * size > bottom - 0.45 * size - top) break;
+    rows = [...lines.reverse().map(line => {
+      const width = widthOf(line), from = isRight ? x + 10 * t : x - 10 * t - width;
+      return [line, Math.max(Math.min(from, right - width - 2 * t), left + 2 * t), width];
+    }), ...rows];
+  }
+  const footOf = i => bottom - (0.45 + 1.2 * i) * size;
+  for (const [i, [, from, width]] of film.transparent ? [] : rows.entries())
+    box(from - 4 * t, footOf(i) - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
+  return () => rows.forEach(([line, from], i) => text(line, [from, footOf(i)], ...style));
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
