@@ -81,6 +81,24 @@ void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, 
     add(tail, left + head_width + note_gap * t, base, theme.quiet_text, Weight::regular, Align::left);
 }
 
+/// The size at which the text fits, but at least three quarters of `size` and legible, px.
+float fitted_size(const Layout& layout, const std::string& text, float size, Weight weight, float width) {
+    const float minimum = std::min(size, std::max(0.75f * size, layout.min_text));
+    return std::max(minimum, layout.style.type.fitting_size(text, size, weight, width));
+}
+
+/// Of headings that would be cut to the same words, "…" and what differs.
+void keep_difference(std::vector<Heading>& headings, const Layout& layout, float width) {
+    auto &one = headings.front().said.heading, &other = headings.back().said.heading;
+    const auto cut = [&](const std::string& text) {
+        return fitted_text(layout, text, px(layout.style.font.heading), Weight::bold, width).text;
+    };
+    const auto same = static_cast<std::size_t>(std::ranges::mismatch(one, other).in1 - one.begin());
+    const auto space = one.rfind(' ', same);
+    if (one == other || space == std::string::npos || cut(one) != cut(other)) return;
+    for (auto* text : {&one, &other}) text->replace(0, space, "…");
+}
+
 /// A colour bar for the members, between the captions of the first and the last one.
 void add_color_bar(Layout& layout, const std::array<SideCaptions, 2>& said, const Area& panel) {
     const float t = layout.text, base = panel.top - 14 * t, gap = 14 * t;
@@ -142,10 +160,10 @@ int add_legend(Layout& layout, const Scene& scene, float left, float width, floa
     std::vector<Point> places;  // from the left end of the first line
     Point pen{width_of(before) + after_word * size, 0};
     for (const auto& word : words) {
-        const float end = pen.x + after_dot * size + width_of(word);
-        if (end > width && pen.x > 0) pen = {0, pen.y + line};
+        const float room = after_dot * size + width_of(word);
+        if (pen.x + room > width && !places.empty() && pen.x > 0) pen = {0, pen.y + line};  // the first stays
         places.push_back(pen);
-        pen.x += after_dot * size + width_of(word) + after_word * size;
+        pen.x += room + after_word * size;
     }
     const float first = base - pen.y;
     layout.words.push_back(label(before, {left, first}, size, theme.quiet_text));
@@ -153,7 +171,8 @@ int add_legend(Layout& layout, const Scene& scene, float left, float width, floa
     for (std::size_t k = 0; k < words.size(); ++k) {
         const Point at{left + places[k].x + dot * size, first + places[k].y - 0.36f * size};
         layout.words.push_back(Capsule{at, at, dot * size, members[k].color});
-        const auto text = fitted_text(layout, words[k], size, Weight::regular, width - after_dot * size);
+        const float room = width - places[k].x - after_dot * size;
+        const auto text = fitted_text(layout, words[k], size, Weight::regular, room);
         layout.words.push_back(
             label(text.text, {left + places[k].x + after_dot * size, first + places[k].y}, text.size, theme.text));
     }
@@ -197,7 +216,7 @@ float place_header(Layout& layout, const Scene& scene) {
     const auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
     if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
         below += (below.empty() ? "" : " · ") + speed;
-    // long text is shrunk a little to fit beside the text at the right, then continues below
+    // long text is shrunk a little to fit beside the text at the right, then continues below; in a low picture it ends
     // the clock is beside the title, in tall pictures beside the subtitle
     const float clock_px = has_clock ? px(font.clock) : 0, below_px = std::max(px(font.subtitle), tall ? clock_px : 0);
     const float title_px = std::max(px(font.title), tall ? 0 : clock_px);
@@ -206,13 +225,13 @@ float place_header(Layout& layout, const Scene& scene) {
     const auto add = [&](const std::string& text, double size, Weight weight, Color color, float beside) {
         const float width = page.width() - (beside > 0 ? beside + gap : 0);
         const auto& type = layout.style.type;
-        const float minimum = std::max(0.75f * px(size), std::min(px(size), layout.min_text));
-        const float fits = std::max(minimum, type.fitting_size(text, px(size), weight, width));
+        const float fits = fitted_size(layout, text, px(size), weight, width), line = 1.24f * fits;
         std::vector<std::string> lines{text};
-        if (const float own = type.width(text, fits, weight); own > width + 1)
-            lines = wrapped(text, fits, weight, width * text_width(text, fits, weight) / own);
+        if (type.width(text, fits, weight) > width + 1) lines = wrapped(text, fits, weight, width, type);
+        if (static_cast<float>(lines.size() - 1) * line > 0.16f * page.height())
+            lines = {fitted_text(layout, text, fits, weight, width).text};
         for (std::size_t k = 0; k < lines.size(); ++k) {
-            if (k > 0) base += 1.24f * fits;
+            if (k > 0) base += line;
             layout.words.push_back(label(lines[k], {page.left, base}, fits, color, Align::left, weight));
         }
     };
@@ -236,24 +255,20 @@ float place_header(Layout& layout, const Scene& scene) {
 
 FittedText fitted_text(const Layout& layout, const std::string& text, float size, Weight weight, float width) {
     const auto& type = layout.style.type;
-    const float minimum = std::min(size, std::max(0.75f * size, layout.min_text));
-    FittedText fits{text, std::max(minimum, type.fitting_size(text, size, weight, width))};
-    const auto is_wide = [&] { return type.width(fits.text, fits.size, weight) > width; };
-    const auto equals = text.find(" = ");
-    if (is_wide() && equals < text.size() && equals == text.find(' ') && equals == text.rfind(" = "))
+    const float fits = fitted_size(layout, text, size, weight, width);
+    if (type.width(text, fits, weight) <= width) return {text, fits};
+    if (const auto equals = text.find(" = ");
+        equals < text.size() && equals == text.find(' ') && equals == text.rfind(" = "))
         return fitted_text(layout, text.substr(equals + 3), size, weight, width);  // the number of a single symbol
-    for (auto end = text.size(); end > 0 && is_wide();) {
-        end = text.find_last_of(' ', end - 1);
-        if (end == std::string::npos) break;
-        fits.text = text.substr(0, text.find_last_not_of(" ,", end) + 1) + " …";
-    }
-    return fits;
+    auto start = wrapped(text, fits, weight, width - type.width(" …", fits, weight), type).front();
+    if (!text.starts_with(start + ' ')) return {"…", fits};  // its first word is too wide
+    return {start.erase(start.find_last_not_of(" ,") + 1) + " …", fits};
 }
 
 Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs) {
     if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split(room, needs);
     const float t = layout.text;
-    const auto headings = headings_of(scene);
+    auto headings = headings_of(scene);
     needs.heading = std::max(46 * t, 12 * t + 0.99f * px(layout.style.font.heading));
     auto regions = split(room, needs);
     if (!scene.preset.video.members.releases.empty()) {
@@ -277,6 +292,7 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
     }
     const float share = headings.size() > 1 && headings[0].panel == headings[1].panel ? 0.48f : 1;
     const auto width = [&] { return share * regions.panels[0].width() - 14 * t; };  // separate from the text beside it
+    keep_difference(headings, layout, width());
     auto sizes = fitted(headings, layout, width());
     if (sizes.two_lines) {
         needs.heading = std::max(81 * t, 12 * t + 1.25f * sizes.note + sizes.heading);

@@ -68,13 +68,11 @@ Range padded(const Spread& seen) {
 /// The nearest 1, 2 or 5 times a power of ten, rounded up or down.
 double round_number(double value, bool up) {
     const double unit = std::pow(10, std::floor(std::log10(value)));
-    double best = up ? 10 * unit : unit;
-    for (const double step : {5.0, 2.0, 1.0})
-        if (up ? step * unit >= value : step * unit <= value) {
-            best = step * unit;
-            if (!up) break;
-        }
-    return best;
+    for (const double step : {1.0, 2.0, 5.0})
+        if (up && step * unit >= value) return step * unit;
+    for (const double step : {5.0, 2.0})
+        if (!up && step * unit <= value) return step * unit;
+    return up ? 10 * unit : unit;
 }
 
 /// The default axis of the distance: all values of the pair, at least one power of ten.
@@ -188,9 +186,7 @@ void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& c
 
 std::size_t panel_count(const VideoSpec& video) {
     if (!video.pendulums) return 0;
-    const bool is_one = video.layout == Arrangement::overlay || video.layout == Arrangement::ensemble ||
-                        video.layout == Arrangement::single;
-    return is_one ? 1 : 2;
+    return has_panel_for_each(video) || video.layout == Arrangement::phase ? 2 : 1;
 }
 
 /// Chooses the pendulums that each panel shows, and the axes of the phase portrait.
@@ -216,15 +212,17 @@ void place_panels(Layout& layout, const Scene& scene, const std::vector<Area>& a
 /// circle it can reach, a mechanism's by the area it visits.
 void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& seen) {
     const auto& style = layout.style;
-    const auto view = fitted_view(scene, seen);
+    auto view = fitted_view(scene, seen);
     const auto across = static_cast<float>(view.width), up = static_cast<float>(view.height);
     const auto& requested = scene.preset.video.view;
+    if (requested.follow > 0) view.x = view.y = 0;
+    if (const auto& center = requested.center_m)
+        view.x = static_cast<double>((*center)[0]), view.y = static_cast<double>((*center)[1]);
     for (auto& panel : layout.panels) {
         const Area& area = panel.area;
         panel.center = {(area.left + area.right) / 2, (area.top + area.bottom) / 2};
-        const auto& center = requested.center_m;
-        panel.center_x = center ? static_cast<double>((*center)[0]) : requested.follow > 0 ? 0 : view.x;
-        panel.center_y = center ? static_cast<double>((*center)[1]) : requested.follow > 0 ? 0 : view.y;
+        panel.center_x = view.x;
+        panel.center_y = view.y;
         const float edges = 80 * layout.unit;
         panel.px_per_m = view.is_circle ? std::min(area.width(), area.height()) / around_circle / across
                                         : std::min((area.width() - edges) / across, (area.height() - edges) / up);

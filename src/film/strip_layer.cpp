@@ -5,9 +5,10 @@
 #include "render/stroke.hpp"
 #include "scene/certificate.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 namespace doppel {
@@ -37,7 +38,7 @@ public:
         if (const auto& proof = state_.scene.certificate)  // a band along the axis
             list.push_back(Box{area.left, area.bottom - 0.25f * em, strip_.time.at(proof->run_until_s()), area.bottom,
                                0, theme_.trace.with_alpha(0.5f)});
-        for (const auto& mark : limits_of(state_.scene)) draw_line(mark, list);
+        for (const auto& mark : limits_) draw_line(mark, list);
     }
 
     void add() override {
@@ -50,7 +51,7 @@ public:
         const auto& area = strip_.area;
         for (auto& words : placed_caption(strip_, state_.scene, layout_, now, state_.outcome.start_distance == 0))
             list.push_back(std::move(words));
-        auto marks = is_of_pair() ? limits_of(state_.scene) : std::vector<TimeMark>();
+        auto marks = is_of_pair() ? limits_ : std::vector<TimeMark>();
         if (const auto since = state_.outcome.divergence.since(); since && is_of_pair()) {
             marks.push_back(
                 {*since, fmt::format("diverged at {:.1f} s{}", *since, true_divergence_words(state_.scene))});
@@ -59,25 +60,20 @@ public:
         const float x = strip_.time.at(state_.time());
         if (style_.width.mark > 0)
             list.push_back(vertical_line(x, area.top, area.bottom, px(style_.width.mark), theme_.cursor));
-        const float row = 1.2f * px(style_.font.strip);
-        float foot = area.bottom - 0.45f * px(style_.font.strip);
-        std::vector<MarkWords> words;
-        for (const auto& mark : marks) words.push_back(words_at(mark));
-        const auto are_too_high = [&] {
-            std::size_t rows = 0;
-            for (const auto& one : words) rows += one.rows.size();
-            return static_cast<float>(rows) * row > foot - area.top + 0.25f * row;
-        };
-        while (!words.empty() && are_too_high()) words.erase(words.begin());  // limits come first
-        DisplayList texts;
-        for (const auto& one : words) place_text(one, foot, list, texts);
+        const auto rows = rows_of(marks);
+        for (const auto& row : video_.transparent ? std::vector<Label>() : rows) {
+            // no grid line crosses the text; curves lie between it and its background
+            const float room = 4 * layout_.text, right = row.anchor.x + style_.type.width(row.text, row.size) + room;
+            list.push_back(Box{row.anchor.x - room, row.anchor.y - 0.9f * row.size, right,
+                               row.anchor.y + 0.28f * row.size, 0, theme_.background.with_alpha(0.85f)});
+        }
         for (std::size_t k = 0; style_.width.trace > 0 && k < now.size(); ++k) {
             auto curve = traces_[k];
             if (state_.is_between()) extend(curve, now[k]);
             for (const auto& trace : curve.pieces)
                 list.push_back(Stroke{.vertices = trace.vertices(), .width = px(now[k].width), .color = now[k].color});
         }
-        std::ranges::move(texts, std::back_inserter(list));
+        list.insert(list.end(), rows.begin(), rows.end());
         if (now.size() != 1 || !now[0].value || !is_inside(*now[0].value) || !(style_.width.trace > 0)) return;
         const Point head{x, strip_.value.at(*now[0].value)};
         list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
@@ -126,38 +122,42 @@ private:
                                          px(style_.width.mark), theme_.quiet_text));
     }
 
-    /// The text of a mark beside its line, in several rows if there is little space.
-    struct MarkWords {
-        float x, gap;
-        bool is_right;
-        std::vector<std::string> rows;
-    };
-    MarkWords words_at(const TimeMark& mark) const {
+    /// The text of a mark beside its line, in rows if there is little space; none if a row would break a word.
+    std::vector<Label> words_at(const TimeMark& mark) const {
         const auto& area = strip_.area;
-        const float size = px(style_.font.strip), x = strip_.time.at(mark.time_s), gap = 10 * layout_.text;
-        const float right = area.right - x - 2 * gap, left = x - area.left - 2 * gap;
-        const bool is_right = right >= std::min(text_width(mark.text, size), left);
-        const float width = std::clamp(is_right ? right : left, 5 * size, area.width());
-        return {x, gap, is_right, wrapped(mark.text, size, Weight::regular, width)};
-    }
-    /// At the foot of the line, above the texts before. Curves lie between the text and its background.
-    void place_text(const MarkWords& mark, float& foot, DisplayList& list, DisplayList& texts) const {
-        const auto& area = strip_.area;
-        const auto& [x, gap, is_right, rows] = mark;
-        const float t = layout_.text, size = px(style_.font.strip);
-        for (auto words = rows.rbegin(); words != rows.rend(); ++words, foot -= 1.2f * size) {
-            const float row = text_width(*words, size), first = area.left + 2 * t;
-            const float from =
-                std::clamp(is_right ? x + gap : x - gap - row, first, std::max(first, area.right - row - 2 * t));
-            // no grid line crosses the text
-            if (!video_.transparent)
-                list.push_back(Box{from - 4 * t, foot - 0.9f * size, from + row + 4 * t, foot + 0.28f * size, 0,
-                                   theme_.background.with_alpha(0.85f)});
-            texts.push_back(label(*words, {from, foot}, size, theme_.text));
+        const float t = layout_.text, size = px(style_.font.strip), x = strip_.time.at(mark.time_s), gap = 10 * t;
+        const float right = area.right - x - 2 * gap, left = x - area.left - 2 * gap, first = area.left + 2 * t;
+        const auto& type = style_.type;
+        const bool is_right = right >= std::min(type.width(mark.text, size), left);
+        const float width = std::clamp(is_right ? right : left, 5 * size, std::max(5 * size, area.width()));
+        const auto rows = wrapped(mark.text, size, Weight::regular, width, type);
+        std::vector<Label> words;
+        if (fmt::format("{}", fmt::join(rows, " ")) != mark.text) return words;
+        for (const auto& row : rows) {
+            const float length = type.width(row, size), last = std::max(first, area.right - length - 2 * t);
+            const float from = std::clamp(is_right ? x + gap : x - gap - length, first, last);
+            words.push_back(label(row, {from, 0}, size, theme_.text));
         }
+        return words;
+    }
+    /// The texts of marks one above the other, from the foot of the lines up. If they are too high, the first are left
+    /// out, which are those of limits.
+    std::vector<Label> rows_of(const std::vector<TimeMark>& marks) const {
+        const float size = px(style_.font.strip), line = 1.2f * size;
+        float foot = strip_.area.bottom - 0.45f * size;
+        const float maximum = (foot - strip_.area.top) / line + 0.25f;
+        std::vector<Label> rows;
+        for (const auto& mark : marks | std::views::reverse) {
+            const auto words = words_at(mark);
+            if (static_cast<float>(rows.size() + words.size()) > maximum) break;
+            rows.insert(rows.begin(), words.rbegin(), words.rend());
+        }
+        for (auto& row : rows) row.anchor.y = std::exchange(foot, foot - line);
+        return rows;
     }
 
     const StripLayout& strip_;
+    const std::vector<TimeMark> limits_ = limits_of(state_.scene);
     std::vector<CutCurve> traces_;  // one for each curve
 };
 

@@ -228,7 +228,9 @@ std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, 
                                   const std::vector<StripCurve>& curves, bool starts_equal) {
     auto words = strip_caption(strip.kind, scene, layout, curves, starts_equal, strip.cell.width());
     const float room = caption_line(layout) * (static_cast<float>(strip.lines) - 0.5f);
-    std::erase_if(words, [&](const Label& label) { return label.anchor.y > room; });
+    std::erase_if(words, [&](const Label& one) {
+        return one.anchor.y > room || layout.style.type.width(one.text, one.size) > strip.cell.width() + 1;
+    });
     for (auto& label : words) label.anchor = {strip.cell.left + label.anchor.x, strip.baseline + label.anchor.y};
     return words;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -12,13 +13,15 @@
 namespace doppel {
 namespace {
 
+using Measure = std::function<float(std::string_view)>;  // the width of a text, px
+
 /// The number of bytes of `text` whose whole characters are at most `width` px wide; at least one character.
-std::size_t bytes_within(std::string_view text, float size, Weight weight, float width) {
+std::size_t bytes_within(std::string_view text, const Measure& width_of, float width) {
     std::size_t taken = 0;
     for (std::string_view rest = text; !rest.empty();) {
         next_character(rest);
         const std::size_t next = text.size() - rest.size();
-        if (taken > 0 && text_width(text.substr(0, next), size, weight) > width) break;
+        if (taken > 0 && width_of(text.substr(0, next)) > width) break;
         taken = next;
     }
     return taken;
@@ -37,14 +40,14 @@ bool stay_together(std::string_view word, std::string_view next) {
 }
 
 /// The parts of `text` between which a line may break.
-std::vector<std::string> words_of(std::string_view text, float size, Weight weight, float width) {
+std::vector<std::string> words_of(std::string_view text, const Measure& width_of, float width) {
     std::vector<std::string> words;
     std::string_view before;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find(' '), text.size());
         if (const auto word = text.substr(0, end); !word.empty()) {
             const auto joined = words.empty() ? "" : words.back() + ' ' + std::string(word);
-            if (!joined.empty() && stay_together(before, word) && text_width(joined, size, weight) <= width)
+            if (!joined.empty() && stay_together(before, word) && width_of(joined) <= width)
                 words.back() = joined;
             else
                 words.emplace_back(word);
@@ -55,25 +58,25 @@ std::vector<std::string> words_of(std::string_view text, float size, Weight weig
     return words;
 }
 
-void wrap_paragraph(std::string_view text, float size, Weight weight, float width, std::vector<std::string>& lines) {
+void wrap_paragraph(std::string_view text, const Measure& width_of, float width, std::vector<std::string>& lines) {
     std::string line;
     const auto add = [&](const std::string& word) {
         const std::string longer = line.empty() ? word : line + ' ' + word;
-        if (line.empty() || text_width(longer, size, weight) <= width) {
+        if (line.empty() || width_of(longer) <= width) {
             line = longer;
         } else {
             lines.push_back(std::move(line));
             line = word;
         }
         // wider than a line by itself
-        while (text_width(line, size, weight) > width) {
-            const std::size_t part = bytes_within(line, size, weight, width);
+        while (width_of(line) > width) {
+            const std::size_t part = bytes_within(line, width_of, width);
             if (part == line.size()) break;
             lines.push_back(line.substr(0, part));
             line.erase(0, part);
         }
     };
-    for (const auto& word : words_of(text, size, weight, width)) add(word);
+    for (const auto& word : words_of(text, width_of, width)) add(word);
     lines.push_back(std::move(line));
 }
 
@@ -358,11 +361,12 @@ PlacedLabels place_labels(const std::vector<DrawnCurve>& drawn, float size, bool
 
 }  // namespace
 
-std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width) {
+std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width, const Typeface& type) {
+    const auto width_of = [&](std::string_view part) { return type.width(part, size, weight); };
     std::vector<std::string> lines;
     while (true) {
         const std::size_t end = std::min(text.find('\n'), text.size());
-        wrap_paragraph(text.substr(0, end), size, weight, width, lines);
+        wrap_paragraph(text.substr(0, end), width_of, width, lines);
         if (end == text.size()) return lines;
         text.remove_prefix(end + 1);
     }

@@ -3,6 +3,7 @@
 #include "plot/axis.hpp"
 #include "plot/panel.hpp"
 #include "plot/plot.hpp"
+#include "render/typeface.hpp"
 
 #include <cstdint>
 #include <string_view>
@@ -46,7 +47,8 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
 
 /// `text` in lines no wider than `width` px. Lines break at spaces and '\n', but not within a number, or between a
 /// number and its unit. A word that is wider than a line is broken anywhere.
-std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width);
+std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width,
+                                 const Typeface& type = {});
 
 /// The same number of lines, but all of them shorter if the last would be less than a third of a line.
 std::vector<std::string> evenly_wrapped(std::string_view text, float size, Weight weight, float width);

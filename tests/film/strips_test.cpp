@@ -190,6 +190,9 @@ TEST(Strips, NarrowHeadingsKeepTheNumber) {
     const auto noted =
         labels_of(scene_of("kapitza", {"video.size=[320, 180]", "a.note=\"a b = the end of a long note\""}), 0);
     EXPECT_TRUE(label_of(noted, "a b"));
+    const auto springs = labels_of(scene_of("springs", {"video.size=[320, 180]"}), 0);
+    EXPECT_TRUE(label_of(springs, "… in place"));
+    EXPECT_TRUE(label_of(springs, "… 1 mm to"));
 }
 
 TEST(Strips, ACurveBeginsWhereItEntersItsAxis) {
