@@ -271,15 +271,15 @@ TEST(WorkPrecision, RefusesWrongSettings) {
         }
     };
     expect_error_text({"chart.cost=\"money\""}, "cost");
-    expect_error_text({"work_precision.problems=[\"P5\"]"}, "\"P5\" is not");
+    expect_error_text({"work_precision.problems=[\"P5\"]"}, "it is \"P5\"");
     expect_error_text({"work_precision.problems=[]"}, "at least one");
     expect_error_text({"work_precision.problems=[\"P1\", \"P1\"]"}, "must differ; P1 is there twice");
     expect_error_text({"work_precision.scene=\"butterfly\"", "work_precision.problems=[\"P1\"]"},
                       "combined with \"scene\"");
     expect_error_text({"work_precision.scene=\"fig7\""}, "is a figure");
     expect_error_text({"work_precision.duration_s=3"}, "duration_s");
-    expect_error_text({"work_precision.models=[\"angels\"]"}, "\"angels\" is not");
-    expect_error_text({"work_precision.methods=[\"magic\"]"}, "\"magic\" is not");
+    expect_error_text({"work_precision.models=[\"angels\"]"}, "it is \"angels\"");
+    expect_error_text({"work_precision.methods=[\"magic\"]"}, "it is \"magic\"");
     expect_error_text({"work_precision.methods=[\"rattle\"]", "work_precision.models=[\"angles\"]"},
                       "must each run P1 with one of the models; \"rattle\" does not");
     expect_error_text({"work_precision.methods=[\"rattle\", \"rk4\"]", "work_precision.models=[\"angles\"]"},
