@@ -109,7 +109,7 @@ Encoding encoding_of(const VideoOptions& options) {
         encoding.encoder_options = x264_options(options);
         if (options.preset == "doppel") encoding.threads = slice_threads;
         encoding.container_options = {
-            {"movflags", options.is_stream ? "+frag_keyframe+empty_moov+default_base_moof" : "+faststart"},
+            {"movflags", options.is_stream ? "+frag_keyframe+empty_moov+delay_moov+default_base_moof" : "+faststart"},
             {"movie_timescale", fmt::to_string(mp4_timescale(options))}};
     }
     if (options.format == FilmFormat::webm)

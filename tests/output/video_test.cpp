@@ -70,7 +70,8 @@ TEST(Streamed, AreWholeWithoutSeeking) {
     for (const auto format : {FilmFormat::mp4, FilmFormat::webm}) {
         const VideoOptions options{.format = format, .size = small, .fps_numerator = 25, .is_stream = true};
         const auto video = read_video(film(folder / ("x" + extension(format)), options, 30));
-        EXPECT_EQ(video.times.size(), 30U);
+        ASSERT_EQ(video.times.size(), 30U);
+        for (long k = 0; k < 30; ++k) EXPECT_EQ(video.times[static_cast<std::size_t>(k)], (Ratio{k, 25})) << k;
         EXPECT_EQ(video.average_rate, (Ratio{25, 1}));
         expect_bt709(video);
     }
