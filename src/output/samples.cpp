@@ -145,6 +145,7 @@ DOPPEL_INLINE void convert_420(const Picture& picture, const Rect& area, const T
 
 }  // namespace
 
+// libav's functions for whole pictures refuse those above 2^31 / 8 pixels
 PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area) {
     const int shift = plane == 1 || plane == 2 ? av_pix_fmt_desc_get(format)->log2_chroma_h : 0;
     const auto bytes = [&](int width) { return av_image_get_linesize(format, width, plane); };
@@ -152,8 +153,12 @@ PlaneArea plane_area(AVPixelFormat format, int plane, const Rect& area) {
 }
 
 std::size_t byte_count(AVPixelFormat format, const Rect& area) {
-    return static_cast<std::size_t>(
-        av_image_get_buffer_size(format, area.right - area.left, area.bottom - area.top, 1));
+    std::size_t count = 0;
+    for (int k = 0; k < av_pix_fmt_count_planes(format); ++k) {
+        const auto plane = plane_area(format, k, area);
+        count += static_cast<std::size_t>(plane.row_bytes) * static_cast<std::size_t>(plane.rows);
+    }
+    return count;
 }
 
 std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas) {
@@ -172,7 +177,12 @@ DOPPEL_WIDEST_SIMD
 void convert(const Picture& picture, const Rect& area, AVPixelFormat format, std::uint8_t* to) {
     const int width = area.right - area.left;
     Target out;
-    av_image_fill_arrays(out.plane.data(), out.stride.data(), to, format, width, area.bottom - area.top, 1);
+    for (std::size_t k = 0; k < out.plane.size(); ++k) {
+        const auto plane = plane_area(format, static_cast<int>(k), area);
+        out.plane[k] = to;
+        out.stride[k] = plane.row_bytes;
+        to += std::ptrdiff_t{plane.row_bytes} * plane.rows;
+    }
     if (format == AV_PIX_FMT_YUV420P10LE) convert_420<std::uint16_t>(picture, area, out);
     if (format == AV_PIX_FMT_YUV420P || format == AV_PIX_FMT_YUVA420P) convert_420<std::uint8_t>(picture, area, out);
     for (int i = 0; i < area.bottom - area.top; ++i) {

@@ -156,6 +156,12 @@ TEST(Samples, AnyCoverByAreasGivesTheBytesOfTheWhole) {
     }
 }
 
+TEST(Samples, OfTheLargestPictureAreCounted) {
+    const Rect largest{0, 0, 16384, 16384};  // more than libav takes
+    EXPECT_EQ(byte_count(AV_PIX_FMT_RGBA, largest), std::size_t{1} << 30);
+    EXPECT_EQ(byte_count(AV_PIX_FMT_YUV420P10LE, largest), std::size_t{3} << 28);
+}
+
 TEST(Samples, AreasAreCutToThePictureAndEvenWhereTheyMust) {
     EXPECT_EQ(aligned(AV_PIX_FMT_YUV420P, {-3, -1, 1, 1}, {8, 6}), (Rect{0, 0, 2, 2}));
     EXPECT_EQ(aligned(AV_PIX_FMT_YUVA420P, {5, 3, 99, 99}, {8, 6}), (Rect{4, 2, 8, 6}));
