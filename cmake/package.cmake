@@ -7,10 +7,10 @@ install(DIRECTORY presets DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel FILES_MATC
 install(FILES python/doppel.py DESTINATION lib/python3/dist-packages)  # Debian's folder for modules of every Python 3
 install(PROGRAMS .ci/golden DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel/ci)
 install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
-install(FILES packaging/copyright README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
-install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
-install(DIRECTORY docs/clusters DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
+install(FILES packaging/copyright README.md action.yml DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# pictures would be nine tenths of it
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        PATTERN *.png EXCLUDE PATTERN gallery EXCLUDE PATTERN update-gallery EXCLUDE)
 
 add_custom_command(
     OUTPUT ${pages}/made

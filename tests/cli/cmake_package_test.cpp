@@ -90,6 +90,10 @@ TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
     EXPECT_NE(half.out.find("the manual pages and completions are not built"), std::string::npos) << half.out;
     EXPECT_TRUE(fs::exists(folder / "first/share/doppel/presets/calm.toml"));
     EXPECT_FALSE(fs::exists(folder / "first/share/man"));
+    // its pages link to files that are there, but for pictures, and folders of the source
+    const auto lost = shell(folder, R"(cd first/share/doc/doppel/docs && ls ../action.yml >/dev/null &&
+        grep -oh ']([^.)#:][^)#:]*' *.md | cut -c3- | grep -v 'png$' | while read f; do [ -e "$f" ] || echo "$f"; done)");
+    EXPECT_EQ(lost.out + lost.err, "");
 
     fs::remove(folder / "half/doppel");
     const auto none = shell(folder, "cmake --install half --prefix \"$PWD/second\"");
