@@ -381,7 +381,7 @@ Json json_of(const PresetText& preset, const FigureCheck& check, Json warnings) 
 }
 
 struct CheckOptions : PresetOptions {
-    std::string size, format;
+    std::string size, format, quality;
     bool as_json = false;
 };
 
@@ -401,8 +401,8 @@ void check_presets(const CheckOptions& options) {
                 print(check);
         };
         const bool is_chart = is_figure(preset);
-        const auto overrides =
-            overrides_of(options, picture_overrides(is_chart ? "chart" : "video", options.size, options.format));
+        const auto overrides = overrides_of(
+            options, picture_overrides(is_chart ? "chart" : "video", options.size, options.format, options.quality));
         if (is_chart)
             report(checked(read_figure(preset, overrides, stop), stop));
         else
@@ -425,6 +425,7 @@ void add_check(CLI::App& app) {
     add_preset_options(command, *options);
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px");
     add_value(command, "--format", options->format, "FORMAT", "Format, as render or figure takes it");
+    add_quality_option(command, options->quality);
     command.add_flag("--json", options->as_json,
                      "The same as JSON, an array with an object a preset: see docs/files.md");
     command.callback([options] { check_presets(*options); });

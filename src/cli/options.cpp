@@ -124,12 +124,22 @@ Rational seconds_of_option(const std::string& option, const std::string& text) {
     return *seconds;
 }
 
-std::vector<Override> picture_overrides(const std::string& table, const std::string& size, const std::string& format) {
+void add_quality_option(CLI::App& command, std::string& quality) {
+    add_choice(command, "--quality", quality, "QUALITY",
+               "draft: a quarter of the pixels; standard: as the preset; best: slow", {"draft", "standard", "best"});
+}
+
+std::vector<Override> picture_overrides(const std::string& table, const std::string& size, const std::string& format,
+                                        const std::string& quality) {
     std::vector<Override> all;
     const auto sides = two_numbers(size, 'x');
     if (sides) all.push_back({table + ".size", fmt::format("[{}, {}]", sides->first, sides->second), "--size " + size});
     if (!sides && !size.empty()) throw bad_input("--size must be WIDTHxHEIGHT, such as 1280x720; it is \"{}\"", size);
     if (!format.empty()) all.push_back({table + ".format", toml_text(format), "--format " + format});
+    if (!quality.empty() && table != "video") throw bad_input("--quality is for films, and not for figures");
+    const auto origin = "--quality " + quality;
+    if (quality == "draft") all.push_back({"video.preview", "true", origin});
+    if (quality == "best") all.insert(all.end(), {{"video.preset", "\"slow\"", origin}, {"video.crf", "14", origin}});
     return all;
 }
 

@@ -69,10 +69,12 @@ std::pair<long, long> frames_of_option(const std::string& text);
 /// The value of --at, --from or --to, "6.8" or "1/3". Throws Error (exit 2).
 Rational seconds_of_option(const std::string& option, const std::string& text);
 
-/// --size WIDTHxHEIGHT and --format, where they are given, as overrides in the table "video" or "chart". Throws Error
-/// (exit 2).
+/// --quality.
+void add_quality_option(CLI::App& command, std::string& quality);
+/// --size WIDTHxHEIGHT, --format and, of films, --quality, where they are given, as overrides in the table "video" or
+/// "chart". Throws Error (exit 2).
 std::vector<Override> picture_overrides(const std::string& table, const std::string& size,
-                                        const std::string& format = {});
+                                        const std::string& format = {}, const std::string& quality = {});
 
 /// Throws Error (exit 2) if the results of two presets, `paths`, would have the same names.
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths);

@@ -99,17 +99,6 @@ void set_range(const RenderOptions& options, RunOptions& run) {
     std::tie(run.first, run.last) = frames_of_option(options.frames);
 }
 
-std::vector<Override> overrides(const RenderOptions& options) {
-    auto all = picture_overrides("video", options.size, options.format);
-    if (!options.quality.empty() && options.quality != "standard") {
-        const auto origin = "--quality " + options.quality;
-        if (options.quality == "draft") return all.push_back({"video.preview", "true", origin}), all;
-        all.push_back({"video.preset", "\"slow\"", origin});
-        all.push_back({"video.crf", "14", origin});
-    }
-    return all;
-}
-
 /// How the other pendulum is integrated while its start is fitted: with the preset's method, or by Taylor series if the
 /// preset requires an accuracy.
 MotionSpec simulated_motion(SideSpec side, const Rational& sample_hz) {
@@ -223,8 +212,7 @@ void add_render(CLI::App& app) {
     add_choice(command, "--format", options->format, "FORMAT",
                "png: a sequence; html: a page to use in a browser; y4m, rgb: raw",
                {format_names.begin(), format_names.end()});
-    add_choice(command, "--quality", options->quality, "QUALITY",
-               "draft: a quarter of the pixels; standard: as the preset; best: slow", {"draft", "standard", "best"});
+    add_quality_option(command, options->quality);
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
@@ -239,7 +227,8 @@ void add_render(CLI::App& app) {
         run.recording = options->recording;
         if (options->out == "-" && (run.shard || run.merge))
             throw bad_input("-o -: parts and their merge need a folder; give another --out");
-        const auto scenes = read_scenes(*options, overrides(*options));
+        const auto scenes =
+            read_scenes(*options, picture_overrides("video", options->size, options->format, options->quality));
         // before the first one is rendered
         for (const auto& scene : scenes) check_encoder(video_options(scene));
         run_all(scenes, *options, run);

@@ -57,6 +57,8 @@ TEST(Contracts, ListIsJson) {
 
 TEST(Contracts, CheckIsJson) {
     const auto folder = fresh_folder();
+    const auto draft = doppel(folder, {"check", "calm", "--quality", "draft", "--json"});
+    EXPECT_EQ(Json::parse(draft.out).at(0)["size"], Json({960, 540})) << draft.err;
     const auto result = doppel(folder, {"check", "butterfly", "fig6", "measured", "--json"});
     ASSERT_EQ(result.code, 0) << result.err;
     const auto all = Json::parse(result.out);

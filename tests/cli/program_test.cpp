@@ -157,6 +157,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"render", "butterfly", "--set", "system.mass_kg=[1, 0]"},
          "--set system.mass_kg: [system] mass_kg[1] must be > 0; it is 0"},
         {{"check", "butterfly", "--set", "system.lenght_m=1"}, "did you mean \"length_m\"?"},
+        {{"check", "fig6", "--quality", "draft"}, "--quality is for films, and not for figures"},
         {{"compare", "nothing.png", "stdout"}, "nothing.png: there is no such file or folder"},
         {{"figure"}, "PRESET is required"},
         {{"figure", "fig2-rihgt"}, "there is no preset \"fig2-rihgt\"; did you mean \"fig2-right\"?"},
