@@ -382,10 +382,9 @@ public:
         const Area &area = panel_.area, around = panel_.panel;
         if (!video_.transparent)
             list.push_back(Box{around.left, around.top, around.right, around.bottom, 14 * layout_.unit, theme_.panel});
-        auto style = axis_style();
-        add_axis(panel_.angle, area, around, style, list, 90);
-        style.edge = AxisStyle::Edge::left;
-        add_axis(panel_.rate, area, around, style, list);
+        const bool is_low = area.height() < 2 * px(style_.font.axis);  // its numbers would touch those of the angles
+        add_axis(panel_.angle, area, around, {.edge = Edge::bottom}, list, 90);
+        add_axis(panel_.rate, area, around, {.edge = Edge::left, .has_numbers = !is_low}, list);
         const auto heading = fmt::format("ω{0}, °/s, against θ{0}, °{1}", subscript(link_ + 1),
                                          video_.phase == PhaseKind::section ? ", as θ₁ passes 0 upwards" : "");
         const auto fits = fitted_text(layout_, heading, px(style_.font.strip), Weight::regular, around.width());

@@ -81,20 +81,16 @@ public:
     virtual void frame(DisplayList& list) const = 0;
 
 protected:
-    /// The style of a chart's axes.
-    AxisStyle axis_style() const {
-        return {.edge = AxisStyle::Edge::bottom,
-                .em = px(style_.font.axis),
-                .line = px(style_.width.grid),
-                .grid = theme_.grid,
-                .frame = theme_.frame,
-                .text = theme_.quiet_text,
-                .unit = {}};
-    }
-
-    void add_axis(const Axis& axis, const Area& area, const Area& within, const AxisStyle& style, DisplayList& list,
+    using Edge = AxisStyle::Edge;
+    /// In the film's sizes and colours; `style` has the rest.
+    void add_axis(const Axis& axis, const Area& area, const Area& within, AxisStyle style, DisplayList& list,
                   std::optional<double> every = {}) const {
-        const auto ticks = spaced_ticks(axis, style.edge == AxisStyle::Edge::bottom, style.em, every);
+        style.em = px(style_.font.axis);
+        style.line = px(style_.width.grid);
+        style.grid = theme_.grid;
+        style.frame = theme_.frame;
+        style.text = theme_.quiet_text;
+        const auto ticks = spaced_ticks(axis, style.edge == Edge::bottom, style.em, every);
         std::ranges::move(axis_items(axis, ticks, area, within, style), std::back_inserter(list));
     }
 

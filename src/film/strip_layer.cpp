@@ -24,13 +24,9 @@ public:
         // times after the predictability limit are dimmed
         if (const auto limit = state_.scene.horizon())
             list.push_back(Box{strip_.time.at(*limit), area.top, area.right, area.bottom, 0, theme_.panel});
-        auto style = axis_style();
-        style.has_numbers = strip_.cell.bottom > area.bottom + em;
-        style.unit = " s";
-        add_axis(strip_.time, area, strip_.cell, style, list);
-        style.edge = AxisStyle::Edge::left;
-        style.has_numbers = true;
-        add_axis(strip_.value, area, strip_.cell, style, list);
+        const bool has_times = strip_.cell.bottom > area.bottom + em;
+        add_axis(strip_.time, area, strip_.cell, {.edge = Edge::bottom, .has_numbers = has_times, .unit = " s"}, list);
+        add_axis(strip_.value, area, strip_.cell, {.edge = Edge::left}, list);
         if (line > 0) {
             list.push_back(vertical_line(area.left, area.top, area.bottom, line, theme_.frame));
             list.push_back(horizontal_line(area.bottom, area.left, area.right, line, theme_.frame));
@@ -122,7 +118,7 @@ private:
                                          px(style_.width.mark), theme_.quiet_text));
     }
 
-    /// The text of a mark beside its line, in rows if there is little space; none if a row would break a word.
+    /// The text of a mark beside its line, in rows if there is little space; none if a word is wider than the strip.
     std::vector<Label> words_at(const TimeMark& mark) const {
         const auto& area = strip_.area;
         const float t = layout_.text, size = px(style_.font.strip), x = strip_.time.at(mark.time_s), gap = 10 * t;
@@ -134,7 +130,8 @@ private:
         std::vector<Label> words;
         if (fmt::format("{}", fmt::join(rows, " ")) != mark.text) return words;
         for (const auto& row : rows) {
-            const float length = type.width(row, size), last = std::max(first, area.right - length - 2 * t);
+            const float length = type.width(row, size), last = area.right - length - 2 * t;
+            if (last < first) return {};
             const float from = std::clamp(is_right ? x + gap : x - gap - length, first, last);
             words.push_back(label(row, {from, 0}, size, theme_.text));
         }

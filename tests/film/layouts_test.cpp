@@ -268,7 +268,7 @@ TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {
 
 TEST(Layouts, OfTinyPicturesNothingOverlaps) {
     for (const auto* preset : {"butterfly", "horizon", "phase-dance", "triple", "fan"})
-        for (const auto size : {Size{160, 90}, Size{240, 134}, Size{280, 158}}) {
+        for (const auto size : {Size{160, 90}, Size{212, 118}, Size{240, 134}, Size{280, 158}}) {
             const auto scene = scene_of(preset, {fmt::format("video.size=[{}, {}]", size.width, size.height)});
             expect_apart(labels_of(scene, scene.samples * 3 / 4), size, fmt::format("{} {}", preset, size.width));
         }
