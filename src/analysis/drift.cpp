@@ -87,7 +87,6 @@ double slope(std::span<const double> x, std::span<const double> y) {
 
 DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double> times_s,
                const std::atomic<bool>& stop) {
-    constexpr double calibration_s = 200;
     spec.follows_turns = false;
     spec = calibrated(spec, evaluations_per_s, std::min(calibration_s, times_s.back()), stop);
     const auto lengths = spec.chain->cast<double>().length;

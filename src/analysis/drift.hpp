@@ -20,6 +20,9 @@ struct DriftRun : DriftCost {
     std::vector<double> errors;
 };
 
+/// The longest motion over which a setting is tried, s.
+inline constexpr double calibration_s = 200;
+
 /// Integrates `motion` by its method, model and stabilisation, at the finest setting that `evaluations_per_s` allow.
 /// The points are at the ascending `times_s`; the last one is the end. The run ends if it fails: a step cannot be made,
 /// the energy error reaches the total energy, or a rod error reaches the shortest rod. Step sizes are 100 s divided by

@@ -168,7 +168,8 @@ Computation::Computation(const FigurePreset& figure, const PartHeader& header, s
       report_(std::move(report)),
       number_(number),
       known_(header.trials) {
-    for (auto trial = header_.first(); trial < header_.last(); ++trial) total_units_ += figure_.experiment->units(trial);
+    for (auto trial = header_.first(); trial < header_.last(); ++trial)
+        total_units_ += figure_.experiment->units(trial);
     if (folder_) {
         record_ = *folder_ / resume_name(header_);
         if (header_.of == 1 || !take(shard(), false)) take(record_, true);
@@ -266,6 +267,27 @@ bool Computation::keep(std::size_t trial, TrialNumbers numbers, double cpu_s) {
     return is_last;
 }
 
+namespace {
+
+/// The CPU time of the whole, s, from a part of it that is computed soon; nothing if it has none. `numbers` becomes the
+/// count of its numbers.
+std::optional<double> extrapolated_s(const Experiment& whole, double& numbers, const std::atomic<bool>& stop) {
+    constexpr double enough_s = 0.3, longer = 4;
+    double spent_s = 0, all_s = 0;
+    for (double share = 0x1p-10; share < 1 && spent_s < enough_s; share *= longer) {
+        const auto part = whole.part(share);
+        if (!part) return {};
+        const double start = cpu_now();
+        for (std::size_t trial = 0; trial < part->experiment->trials(); ++trial) part->experiment->compute(trial, stop);
+        spent_s = cpu_now() - start;
+        all_s = spent_s / part->share;
+        numbers = static_cast<double>(part->numbers);
+    }
+    return all_s;
+}
+
+}  // namespace
+
 Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
     constexpr double allowed_s = 1;
     Computation computation(figure, header_of(figure), std::nullopt, {});
@@ -292,11 +314,15 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     estimate.at_least = cut_s > seconds;
     if (estimate.at_least) seconds += cut_s, done += units(*trial);
     estimate.cpu_s = needed_s + (done > 0 ? seconds * computation.total_units() / done : 0);
+    double numbers = 0;
+    const bool is_whole = trial == trials.end();
+    if (const auto all_s = is_whole ? std::nullopt : extrapolated_s(*figure.experiment, numbers, stop))
+        estimate.cpu_s = *all_s, estimate.at_least = false;
     estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), parallel);
     double trials_done = 0, numbers_done = 0;
-    for (const auto& numbers : computation.take_all()) {
-        trials_done += numbers.empty() ? 0 : 1;
-        numbers_done += static_cast<double>(numbers.size());
+    for (const auto& known : computation.take_all()) {
+        trials_done += known.empty() ? 0 : 1;
+        numbers_done += static_cast<double>(known.size());
     }
     // of a row of the table, of a number in it, and of a pixel drawn and as PNG; measured
     constexpr double row_bytes = 6, text_bytes = 18, drawn_bytes = 8, png_bytes = 0.15;
@@ -305,7 +331,8 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     const double pixels = 1.0 * size.width * size.height;
     const double rows = map ? 1.0 * map->columns * map->rows * static_cast<double>(map->panels)
                             : static_cast<double>(figure.experiment->trials());
-    const double numbers = rows * (map ? static_cast<double>(map->numbers) : numbers_done / std::max(trials_done, 1.0));
+    const double of_trial = map ? static_cast<double>(map->numbers) : numbers_done / std::max(trials_done, 1.0);
+    if (numbers == 0) numbers = rows * of_trial;
     estimate.memory_bytes =
         peak_memory() + sizeof(TrialNumbers) * rows + sizeof(double) * numbers + drawn_bytes * pixels;
     estimate.disk_bytes = row_bytes * rows + text_bytes * numbers + png_bytes * pixels;

@@ -138,7 +138,7 @@ private:
     KnownTrials known_;
     std::optional<PartWriter> writer_;
     bool has_record_ = false, is_whole_ = false;  // results in a file, and that file is not damaged
-    std::size_t computed_ = 0;  // trials
+    std::size_t computed_ = 0;                    // trials
     double start_s_ = 0, flushed_s_ = 0, cpu_s_ = 0;
     double done_units_ = 0, total_units_ = 0, computed_units_ = 0;
 };

@@ -112,6 +112,15 @@ public:
     /// set.
     virtual TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const = 0;
 
+    /// A part for estimates: the same over a shorter time.
+    struct Part {
+        std::shared_ptr<const Experiment> experiment;
+        double share;         // of the time that the whole takes to compute
+        std::size_t numbers;  // of all trials of the whole
+    };
+    /// Over about `share` of the time; nothing if it cannot be shortened.
+    virtual std::optional<Part> part(double /*share*/) const { return std::nullopt; }
+
     /// Whether the numbers are valid for the trial: their count, and infinity or NaN only where allowed. It checks
     /// numbers that were read and those that were computed.
     virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
@@ -184,7 +193,7 @@ struct FigureReader {
     SideSpec release(bool physical = false);
 };
 
-/// Throws Error (exit 2) if a key lists a name twice.
+/// Throws Error (exit 2) if a key lists a name or value twice.
 void check_distinct(const TomlReader& table, std::string_view key, const std::vector<std::string>& names);
 
 /// The methods of these names that integrate a model, in the same order.

@@ -122,6 +122,10 @@ public:
         none_words_ = "nothing is greater than 0, which a logarithmic axis cannot show; set series.logarithmic = false";
     }
 
+    std::optional<Part> part(double share) const override {
+        return cut(*this, share, [](double time_s) { return time_s; });
+    }
+
     Json findings(std::span<const TrialNumbers> numbers) const override {
         Json all;
         for (std::size_t i = 0; i < curves_.size(); ++i) {
@@ -174,7 +178,8 @@ private:
         const auto& curve = curves_[trial % curves_.size()];
         auto pair = curve.pair;
         if (trial >= curves_.size()) pair.a.tolerance = pair.b.tolerance = check_tolerance_;
-        const auto scene = make_scene(pair);
+        auto scene = make_scene(pair);
+        scene.samples = static_cast<long>(times_s_.size()) - 1;  // fewer in a part()
         const auto& shown = *curve.film_column;
         if (const auto* of = std::ranges::find(certified_columns, shown); of != certified_columns.end())
             return certified_radii(scene, static_cast<std::size_t>(of - certified_columns.begin()), stop);

@@ -123,8 +123,20 @@ protected:
         return std::span(numbers[k / each_]).subspan(own_ + k % each_ * times_s_.size(), times_s_.size());
     }
 
+    /// part() of this series, as a copy with the first of its times. cost(time) = how long the computing takes.
+    template <class Kind, class Cost>
+    static Part cut(const Kind& series, double share, const Cost& cost) {
+        auto copy = std::make_shared<Kind>(series);
+        auto& times = copy->times_s_;
+        const double end = times.back();
+        const auto count = std::ranges::upper_bound(times, share * end) - times.begin();
+        times.resize(std::max<std::size_t>(2, static_cast<std::size_t>(count)));
+        const auto numbers = series.own_ + series.each_ * series.times_s_.size();
+        return {copy, cost(times.back()) / cost(end), series.trials_ * numbers};
+    }
+
     // set by constructors
-    std::vector<double> times_s_;  // ascending
+    std::vector<double> times_s_;  // ascending, at least two
     std::size_t trials_ = 1, own_ = 0, each_ = 1;
     std::size_t shown_ = 0;            // quantities in the table
     std::vector<std::string> labels_;  // of the curves, the first quantities

@@ -165,4 +165,17 @@ TEST(Computation, StopsSoonAndKeepsARecordFromBefore) {
     EXPECT_EQ(Resumed(figure, header_of(figure), folder).computed_units, 9);
 }
 
+/// A trial that takes longer than the estimate is computed over a part of its time.
+TEST(Computation, IsEstimatedFromAPartOfLongTrials) {
+    const auto figure = figure_of("drift", {"series.methods=[\"dop853\"]", "series.projected=[]"});
+    const std::atomic<bool> never = false;
+    const auto needs = estimated_computation(figure, 1, never);
+    const double start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    computed(figure, 1);
+    const double spent_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - start;
+    EXPECT_FALSE(needs.at_least);
+    EXPECT_GT(needs.cpu_s, spent_s / 2);
+    EXPECT_LT(needs.cpu_s, spent_s * 2);
+}
+
 }  // namespace doppel::computation_test
