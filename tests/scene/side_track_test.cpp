@@ -126,7 +126,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "nowhere/x.toml:2:1: [a.track] file /dev/zero is not a file; a track is a CSV file"},
         // the line, but none of the file's text: a preset from somebody else may name any file
         RefusedText{"[a.track]\nfile = \"" + preset_file + "\"",
-                    "nowhere/x.toml:2:1: [a.track] file " + preset_file + ":1: there is no column time_s"},
+                    "nowhere/x.toml:2:1: [a.track] file " + preset_file +
+                        ":1: there is no column time_s; columns are named as here, in small letters"},
         RefusedText{"[system]\nlinks = 3\n" + track.substr(track.find("[a.track]")),
                     "nowhere/x.toml:4:1: [a.track] file is of two links; the side has 3 links"},
         RefusedText{track + "start_s = 3",
