@@ -129,7 +129,7 @@ TEST(Drift, RefusesImpossibleSettings) {
         EXPECT_NE(message.find(words), std::string::npos) << message;
     };
     expect_error_text("series.methods=[]", "must name at least one");
-    expect_error_text("series.methods=[\"rk5\"]", "\"rk5\" is not");
+    expect_error_text("series.methods=[\"rk5\"]", "it is \"rk5\"; did you mean \"rk4\"?");
     expect_error_text("series.projected=[\"gauss4\"]", "\"gauss4\" does not");
     expect_error_text("series.points_per_decade=0", "points_per_decade");
     expect_error_text("series.duration_s=5", "must be from 10 to");
