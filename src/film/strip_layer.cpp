@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 namespace doppel {
@@ -144,8 +143,8 @@ private:
         float foot = strip_.area.bottom - 0.45f * size;
         const float maximum = (foot - strip_.area.top) / line + 0.25f;
         std::vector<Label> rows;
-        for (const auto& mark : marks | std::views::reverse) {
-            const auto words = words_at(mark);
+        for (auto mark = marks.rbegin(); mark != marks.rend(); ++mark) {
+            const auto words = words_at(*mark);
             if (static_cast<float>(rows.size() + words.size()) > maximum) break;
             rows.insert(rows.begin(), words.rbegin(), words.rend());
         }
