@@ -88,18 +88,18 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     return members;
 }
 
-/// A number of a mass, in words.
+/// A number of a mass, in words: {0} = the number of the mass, {1} = the unit, if it is said.
 struct BobNumber {
-    std::string_view words, unit;
+    const char *words, *unit;
     double Bob<double>::*member;
 };
-constexpr std::array<BobNumber, 7> bob_numbers{{{"rate of the rod", "rad/s", &Bob<double>::omega},
-                                                {"angle of the rod", "rad", &Bob<double>::theta},
-                                                {"mass", "kg", &Bob<double>::mass},
-                                                {"place in x", "m", &Bob<double>::x},
-                                                {"place in y", "m", &Bob<double>::y},
-                                                {"velocity in x", "m/s", &Bob<double>::vx},
-                                                {"velocity in y", "m/s", &Bob<double>::vy}}};
+constexpr std::array<BobNumber, 7> bob_numbers{{{"the rate ω{0}{1}", ", rad/s,", &Bob<double>::omega},
+                                                {"the angle θ{0}{1}", ", rad,", &Bob<double>::theta},
+                                                {"the mass{1} of mass {0}", ", kg,", &Bob<double>::mass},
+                                                {"the place in x{1} of mass {0}", ", m,", &Bob<double>::x},
+                                                {"the place in y{1} of mass {0}", ", m,", &Bob<double>::y},
+                                                {"the velocity in x{1} of mass {0}", ", m/s,", &Bob<double>::vx},
+                                                {"the velocity in y{1} of mass {0}", ", m/s,", &Bob<double>::vy}}};
 
 /// The first number of the observation that is not finite, in words; nothing if all are.
 std::optional<std::string> not_finite(const Observation& seen) {
@@ -107,7 +107,7 @@ std::optional<std::string> not_finite(const Observation& seen) {
     for (std::size_t i = 0; i < seen.bobs.size(); ++i)
         for (const auto& [words, unit, member] : bob_numbers)
             if (const double value = seen.bobs[i].*member; !std::isfinite(value))
-                return fmt::format("the {} of mass {} is {}", words, i + 1, text(value));
+                return fmt::format(fmt::runtime(words), i + 1, "") + " is " + text(value);
     if (!std::isfinite(seen.energy)) return "the energy is " + text(seen.energy);
     if (!std::isfinite(seen.length_error)) return "the rod error is " + text(seen.length_error);
     return std::nullopt;
@@ -294,7 +294,7 @@ void check_distance(const Scene& scene, const PairState& state) {
         for (const auto& [words, unit, member] : std::span(bob_numbers).subspan(2)) {  // without angles
             const double a = all_a[i].*member, b = all_b[i].*member;
             if (std::abs(a - b) > std::abs(worst.a - worst.b))
-                worst = {fmt::format("the {}, {}, of mass {}", words, unit, i + 1), a, b};
+                worst = {fmt::format(fmt::runtime(words), i + 1, unit), a, b};
         }
     const bool of_b = std::abs(worst.b) > std::abs(worst.a);
     throw Error(state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,

@@ -395,6 +395,16 @@ stiffness_N_per_m = 1e300
     EXPECT_NE(message.find("the velocity in x of mass 1 is -inf"), std::string::npos) << message;
 }
 
+TEST(SideRun, NamesTheRateThatIsNoNumber) {
+    const auto scene = scene_from("[system]\nmass_kg = [1e-300, 1e300]");
+    const std::atomic<bool> never = false;
+    SideRun run(scene, scene.a, 'a');
+    run.next(never);
+    const auto [code, message] = error_of([&] { run.next(never); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find("the rate ω1 is not a number"), std::string::npos) << message;
+}
+
 TEST(Mechanism, OfAChainStartsAsTheChainDoes) {
     const auto start = [](const std::string& model) {
         return make_motion(
