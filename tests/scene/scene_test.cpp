@@ -369,6 +369,16 @@ TEST(Distance, OverflowIsReportedWithSideAndQuantity) {
     EXPECT_EQ(error({}).first, ExitCode::done);
 }
 
+/// Side a must fail at the first sample after its start, with these words.
+void expect_failure_at_first_sample(const Scene& scene, const char* words) {
+    const std::atomic<bool> never = false;
+    SideRun run(scene, scene.a, 'a');
+    run.next(never);
+    const auto [code, message] = error_of([&] { run.next(never); });
+    EXPECT_EQ(code, ExitCode::method_failed);
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+}
+
 TEST(SideRun, NamesTheVelocityThatIsNoNumber) {
     // a light mass on a stiff spring: its acceleration overflows, its energy does not
     const auto scene = scene_from(R"(
@@ -387,22 +397,12 @@ to = [0, 0]
 length_m = 0
 stiffness_N_per_m = 1e300
 )");
-    const std::atomic<bool> never = false;
-    SideRun run(scene, scene.a, 'a');
-    run.next(never);
-    const auto [code, message] = error_of([&] { run.next(never); });
-    EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_NE(message.find("the velocity in x of mass 1 is -inf"), std::string::npos) << message;
+    expect_failure_at_first_sample(scene, "the velocity in x of mass 1 is -inf");
 }
 
 TEST(SideRun, NamesTheRateThatIsNoNumber) {
     const auto scene = scene_from("[system]\nmass_kg = [1e-300, 1e300]");
-    const std::atomic<bool> never = false;
-    SideRun run(scene, scene.a, 'a');
-    run.next(never);
-    const auto [code, message] = error_of([&] { run.next(never); });
-    EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_NE(message.find("the rate ω1 is not a number"), std::string::npos) << message;
+    expect_failure_at_first_sample(scene, "the rate ω1 is not a number");
 }
 
 TEST(Mechanism, OfAChainStartsAsTheChainDoes) {
