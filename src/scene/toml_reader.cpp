@@ -202,7 +202,7 @@ bool KeyErrors::concern(std::string_view group) const {
 
 void KeyErrors::throw_if_any() const {
     auto errors = errors_;
-    std::ranges::stable_partition(errors, [](const KeyError& error) { return !error.beside; });
+    std::stable_partition(errors.begin(), errors.end(), [](const KeyError& error) { return !error.beside; });
     std::vector<KeyError> counting;
     for (const auto& error : errors)
         if (std::ranges::none_of(counting, [&](const KeyError& other) { return says_enough(other, error); }))
