@@ -109,10 +109,10 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
-/// A caption in lines no wider than `width` px. The first line begins at (0, 0).
+/// A caption of this size in lines no wider than `width`, px. The first line begins at (0, 0).
 std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
-                                 const std::vector<StripCurve>& curves, bool starts_equal, float width) {
-    const float size = px(layout.style.font.strip), line = caption_line(layout), gap = 0.66f * size;
+                                 const std::vector<StripCurve>& curves, bool starts_equal, float width, float size) {
+    const float line = caption_line(layout), gap = 0.66f * size;
     const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
     std::vector<Label> labels;
     Point pen;
@@ -226,18 +226,30 @@ float above_curves(const Layout& layout) {
 
 std::vector<Label> placed_caption(const StripLayout& strip, const Scene& scene, const Layout& layout,
                                   const std::vector<StripCurve>& curves, bool starts_equal) {
-    auto words = strip_caption(strip.kind, scene, layout, curves, starts_equal, strip.cell.width());
-    const float room = caption_line(layout) * (static_cast<float>(strip.lines) - 0.5f);
-    std::erase_if(words, [&](const Label& one) {
-        return one.anchor.y > room || layout.style.type.width(one.text, one.size) > strip.cell.width() + 1;
-    });
+    const float room = caption_line(layout) * (static_cast<float>(strip.lines) - 0.5f), width = strip.cell.width();
+    const auto is_cut = [&](const Label& one) {
+        return one.anchor.y > room || layout.style.type.width(one.text, one.size) > width + 1;
+    };
+    std::vector<Label> words;
+    for (const float share : {1.0f, 0.85f, 0.75f}) {
+        const float size = std::max(share * px(layout.style.font.strip), layout.min_text);
+        words = strip_caption(strip.kind, scene, layout, curves, starts_equal, width, size);
+        if (std::ranges::none_of(words, is_cut)) break;
+    }
+    const bool ends_early = is_cut(words.back());
+    std::erase_if(words, is_cut);
+    if (ends_early && !words.empty()) {
+        auto& last = words.back();
+        const auto longer = last.text + " …";
+        if (last.anchor.x + layout.style.type.width(longer, last.size) <= width) last.text = longer;
+    }
     for (auto& label : words) label.anchor = {strip.cell.left + label.anchor.x, strip.baseline + label.anchor.y};
     return words;
 }
 
 int caption_lines(StripKind kind, const Scene& scene, const Layout& layout, float width) {
     const auto curves = strip_curves(kind, scene, blank_snapshot(scene).pair, 0, layout.style);
-    const auto labels = strip_caption(kind, scene, layout, curves, false, width);
+    const auto labels = strip_caption(kind, scene, layout, curves, false, width, px(layout.style.font.strip));
     return 1 + static_cast<int>(std::lround(labels.back().anchor.y / caption_line(layout)));
 }
 
