@@ -181,7 +181,15 @@ void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& c
             strip.time.at(ticks.back().value) + text_width(ticks.back().text, em) / 2 + text_width(" s", em);
         right = std::max(right, std::ceil(end - strip.cell.right));
     }
-    for (auto& strip : layout.strips) strip.time.to = strip.area.right = strip.cell.right - right;
+    for (auto& strip : layout.strips) {
+        strip.time.to = strip.area.right = strip.cell.right - right;
+        const double part = strip.time.high / static_cast<double>(seen.distance.size());
+        for (std::size_t k = 0; strip.kind == StripKind::distance && k < seen.distance.size(); ++k)
+            if (const auto& curve = seen.distance[k]; curve.count > 0)
+                strip.covered.push_back({strip.time.at(part * static_cast<double>(k)), strip.value.at(curve.maximum),
+                                         strip.time.at(part * static_cast<double>(k + 1)),
+                                         strip.value.at(curve.minimum)});
+    }
 }
 
 std::size_t panel_count(const VideoSpec& video) {

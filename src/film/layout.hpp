@@ -76,11 +76,12 @@ struct PhasePanel {
 /// A strip: the chart of a quantity over time, with its caption above.
 struct StripLayout {
     StripKind kind;
-    Area cell;           // including captions and numbers
-    Area area;           // inside the axes
-    Axis time, value;    // horizontal; vertical
-    int lines = 1;       // of the caption
-    float baseline = 0;  // of the caption's first line, px
+    Area cell;                    // including captions and numbers
+    Area area;                    // inside the axes
+    Axis time, value;             // horizontal; vertical
+    int lines = 1;                // of the caption
+    float baseline = 0;           // of the caption's first line, px
+    std::vector<Area> covered{};  // by the curve of the whole film, if it is the distance
 };
 
 /// Upright, for telephones.

@@ -77,9 +77,13 @@ void MotionBounds::add(const Scene& scene, const PairState& state, double start_
         }
         if (link < side->bobs.size()) fastest = std::max(fastest, std::abs(side->bobs[link].omega));
     }
+    distance[static_cast<std::size_t>(state.sample) * distance.size() / static_cast<std::size_t>(scene.samples + 1)]
+        .add(state.distance);
     for (const auto kind : video.strips) {
         // a pair that starts equal has distances near zero at first; they are left out
-        if (kind == StripKind::distance && !(start_distance > 0) && 50 * state.sample < scene.samples) continue;
+        if (kind == StripKind::distance && !(start_distance > 0) && 50 * state.sample < scene.samples &&
+            !(state.distance >= Divergence::max_start_distance))
+            continue;
         for (const auto& curve : strip_curves(kind, scene, state, start_distance))
             if (curve.value) strips[static_cast<std::size_t>(kind)].add(*curve.value);
     }
@@ -212,8 +216,8 @@ RecordingReader::RecordingReader(const std::filesystem::path& path, const Scene&
     : BlockFile(path, recording_file) {
     if (header() != header_of(scene))
         throw bad_input(
-            "{} is a recording of another motion, frame rate or version of Doppel; make it again: doppel simulate {} "
-            "--recording {}",
+            "{} is a recording of another motion, frame rate or version of Doppel; make it again, with the same --set: "
+            "doppel simulate {} --recording {}",
             path.string(), scene.preset.name, path.string());
 }
 

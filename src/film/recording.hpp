@@ -44,6 +44,7 @@ struct MotionBounds {
     double left = far, right = -far, bottom = far, top = -far;  // m, over all bobs of both sides and all samples
     double fastest = 0;                                         // rad/s, of the link shown in a phase panel
     std::array<Spread, strip_kinds> strips{};                   // for the strips of the film
+    std::array<Spread, 64> distance{};                          // of the pair, in equal parts of the time
 
     /// Adds the next sample.
     void add(const Scene& scene, const PairState& state, double start_distance);

@@ -58,9 +58,8 @@ public:
         const auto rows = rows_of(marks);
         for (const auto& row : video_.transparent ? std::vector<Label>() : rows) {
             // no grid line crosses the text; curves lie between it and its background
-            const float room = 4 * layout_.text, right = row.anchor.x + style_.type.width(row.text, row.size) + room;
-            list.push_back(Box{row.anchor.x - room, row.anchor.y - 0.9f * row.size, right,
-                               row.anchor.y + 0.28f * row.size, 0, theme_.background.with_alpha(0.85f)});
+            const auto [left, top, right, bottom] = box_of(row);
+            list.push_back(Box{left, top, right, bottom, 0, theme_.background.with_alpha(0.85f)});
         }
         for (std::size_t k = 0; style_.width.trace > 0 && k < now.size(); ++k) {
             auto curve = traces_[k];
@@ -117,6 +116,11 @@ private:
                                          px(style_.width.mark), theme_.quiet_text));
     }
 
+    /// The area of a text and around it, px.
+    Area box_of(const Label& row) const {
+        const float room = 4 * layout_.text, right = row.anchor.x + style_.type.width(row.text, row.size) + room;
+        return {row.anchor.x - room, row.anchor.y - 0.9f * row.size, right, row.anchor.y + 0.28f * row.size};
+    }
     /// The text of a mark beside its line, in rows if there is little space; none if a word is wider than the strip.
     std::vector<Label> words_at(const TimeMark& mark) const {
         const auto& area = strip_.area;
@@ -136,19 +140,30 @@ private:
         }
         return words;
     }
-    /// The texts of marks one above the other, from the foot of the lines up. If they are too high, the first are left
-    /// out, which are those of limits.
+    /// The texts of marks one above the other, at the foot of the lines, or at their top if there they cover less of the
+    /// film's curve. If they are too high, the first are left out, which are those of limits.
     std::vector<Label> rows_of(const std::vector<TimeMark>& marks) const {
         const float size = px(style_.font.strip), line = 1.2f * size;
-        float foot = strip_.area.bottom - 0.45f * size;
-        const float maximum = (foot - strip_.area.top) / line + 0.25f;
+        const float foot = strip_.area.bottom - 0.45f * size, maximum = (foot - strip_.area.top) / line + 0.25f;
         std::vector<Label> rows;
         for (auto mark = marks.rbegin(); mark != marks.rend(); ++mark) {
             const auto words = words_at(*mark);
             if (static_cast<float>(rows.size() + words.size()) > maximum) break;
             rows.insert(rows.begin(), words.rbegin(), words.rend());
         }
-        for (auto& row : rows) row.anchor.y = std::exchange(foot, foot - line);
+        // sets the positions from this one up; returns how often the curve is covered
+        const auto place = [&](float lowest) {
+            std::ptrdiff_t covered = 0;
+            for (auto& row : rows) {
+                row.anchor.y = std::exchange(lowest, lowest - line);
+                covered += std::ranges::count_if(strip_.covered,
+                                                 [&](const Area& curve) { return curve.overlaps(box_of(row)); });
+            }
+            return covered;
+        };
+        const float top = strip_.area.top + size + line * (static_cast<float>(rows.size()) - 1);
+        const auto at_foot = place(foot), at_top = place(top);
+        if (at_foot <= at_top) place(foot);
         return rows;
     }
 

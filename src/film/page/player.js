@@ -194,9 +194,9 @@ function dashedLine({ area: [, top, , bottom], time }, at) {
   for (let y = top; y < bottom; y += 10 * picture.text)
     verticalLine(along(time, at), y, Math.min(y + 5 * picture.text, bottom), theme.quiet_text);
 }
-// The texts of marks beside their lines, in rows that fit, from the foot up: draws what is behind them, returns what draws
-// them. If they are too high, the first are left out, which are those of limits.
-function placeMarks({ area: [left, top, right, bottom], time }, marks) {
+// The texts of marks beside their lines, in rows that fit, at the foot, or at the top if there they cover less of the curve:
+// draws what is behind them, returns what draws them. If they are too high, the first are left out, which are those of limits.
+function placeMarks({ area: [left, top, right, bottom], time }, marks, axis, curve) {
   const t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
   text("", [0, 0], ...style);
   const widthOf = words => g.measureText(words).width;
@@ -214,7 +214,12 @@ function placeMarks({ area: [left, top, right, bottom], time }, marks) {
       return [line, Math.max(Math.min(from, right - width - 2 * t), left + 2 * t), width];
     }), ...rows];
   }
-  const footOf = i => bottom - (0.45 + 1.2 * i) * size;
+  const baseOf = (i, isHigh) => (isHigh ? top + size + 1.2 * (rows.length - 1) * size : bottom - 0.45 * size) - 1.2 * i * size;
+  const covered = isHigh => rows.reduce((sum, [, from, width], i) => sum + curve.filter((v, k) => {
+    const x = along(time, k * film.sample_s), y = along(axis, v) - baseOf(i, isHigh);
+    return x > from - 4 * t && x < from + width + 4 * t && y > -0.9 * size && y < 0.28 * size;
+  }).length, 0);
+  const isHigh = covered(true) < covered(false), footOf = i => baseOf(i, isHigh);
   for (const [i, [, from, width]] of film.transparent ? [] : rows.entries())
     box(from - 4 * t, footOf(i) - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
   return () => rows.forEach(([line, from], i) => text(line, [from, footOf(i)], ...style));
@@ -236,7 +241,7 @@ function drawStrip(strip) {
     dashedLine(strip, since);
   }
   verticalLine(x, area[1], area[3], theme.cursor);
-  const drawMarks = kind === kindOfPair ? placeMarks(strip, marks) : null;
+  const drawMarks = kind === kindOfPair ? placeMarks(strip, marks, axis, kind === "distance" ? curves[0] : []) : null;
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
     const [color, width] = pens[c], pieces = [];  // cut where the curve leaves its axis; the first begins in it
     const isInside = v => Math.abs(axisShare(axis, v) - 0.5) <= 0.500001;
