@@ -39,7 +39,8 @@ std::vector<SideKey> shown_keys(SideSpec spec, const Side& side) {
 
 /// The start first, then the system, then the computation.
 std::vector<KeyPair> shown_pairs(const Scene& scene) {
-    auto pairs = paired(shown_keys(scene.preset.a, scene.a), shown_keys(scene.preset.b, scene.b));
+    const auto keys = shown_keys(scene.preset.a, scene.a);
+    auto pairs = paired(keys, scene.is_single() ? keys : shown_keys(scene.preset.b, scene.b));
     std::ranges::stable_sort(pairs, {}, [](const KeyPair& pair) {
         const auto& key = pair.any();
         return key.is_setting ? 2 : key.key == "angle_deg" || key.key == "omega_deg_per_s" ? 0 : 1;
@@ -264,7 +265,7 @@ std::array<SideCaptions, 2> side_captions(const Scene& scene, Wording wording) {
 }
 
 std::string scene_caption(const Scene& scene, Wording wording) {
-    const auto &a = scene.preset.a, &b = scene.preset.b;
+    const auto &a = scene.preset.a, &b = scene.is_single() ? a : scene.preset.b;
     if (scene.preset.subtitle) return *scene.preset.subtitle;
     if (scene.is_single() && scene.a.replay) return "a real double pendulum";
     if (scene.a.replay && scene.b.replay) return "two real double pendulums";
