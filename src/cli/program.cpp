@@ -120,7 +120,9 @@ int run_program(int argc, char** argv) {
                 write_out(help.str());
                 return 0;
             }
-            return failed(ExitCode::bad_input, fmt::format("{}; see doppel --help", words_of(app, error)));
+            const auto parsed = app.get_subcommands();
+            const auto command = parsed.empty() ? "" : parsed.front()->get_name() + " ";
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel {}--help", words_of(app, error), command));
         }
         return exit_code;
     } catch (const Error& error) {

@@ -79,6 +79,8 @@ PresetText find_preset(const std::string& name_or_path, const std::atomic<bool>*
         names.push_back(preset.name);
     }
     if (fs::is_regular_file(name_or_path, ignored)) return read_file(name_or_path, name_or_path, stop);
+    if (const auto file = fmt::format("{}{}", name_or_path, ending); fs::is_regular_file(file, ignored))
+        throw bad_input("there is no preset \"{}\"; did you mean {}?", name_or_path, file);
     throw bad_input("there is no preset \"{}\"; {}", name_or_path,
                     did_you_mean("", name_or_path, names, fmt::format("there are {}", fmt::join(names, ", "))));
 }
