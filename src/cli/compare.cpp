@@ -196,6 +196,10 @@ std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& 
     const auto found = png_names(actual);
     if (png_names(expected).empty() && !is_drawn)
         throw bad_input("{}: there is no PNG to compare with", expected.string());
+    if (!is_drawn)
+        for (const auto& name : names_in(expected))
+            if (fs::is_directory(expected / name))
+                print_line("{}: this folder is not compared; name it to compare it", (expected / name).string());
     std::vector<ComparedPicture> pairs;
     for (const auto& [name, all] : goldens_in(expected, found)) {
         auto& pair = pairs.emplace_back(
@@ -206,6 +210,15 @@ std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& 
                                 : fmt::format("{}: missing", (all.empty() ? pair.expected : pair.actual).string());
     }
     return pairs;
+}
+
+/// A picture, and the golden for it with its variants.
+ComparedPicture pair_of(const fs::path& expected, const fs::path& actual) {
+    const fs::path name = expected.filename();
+    ComparedPicture pair{.name = actual.filename(), .expected = expected, .actual = actual, .goldens = {expected}};
+    for (const auto& variant : goldens_in(expected.parent_path(), {name})[name])
+        if (variant.filename() != name && !fs::equivalent(variant, actual)) pair.goldens.push_back(variant);
+    return pair;
 }
 
 /// A picture NAME to draw, and its goldens: EXPECTED, or in the folder EXPECTED.
@@ -329,22 +342,24 @@ bool compare(const CompareOptions& options) {
               options.render.empty() ? never_stopped : watch_interrupts()};
     std::optional<TemporaryFolder> drawn;
     bool are_folders = fs::is_directory(options.actual);
-    if (task.is_drawn) {
-        const auto preset = find_preset(options.render, &task.stop);
-        task.folder = fs::path(options.out) / preset.name / "compare";
-        are_folders = !is_figure(preset) && options.at.empty();
-        comparison.pictures = draw(options, preset, drawn.emplace().path(), task);
-    } else if (are_folders) {
-        comparison.pictures = pairs_of(options.expected, options.actual, false);
-    } else {
-        const fs::path expected = options.expected, actual = options.actual, name = expected.filename();
-        auto& pair = comparison.pictures.emplace_back(
-            ComparedPicture{.name = actual.filename(), .expected = expected, .actual = actual, .goldens = {expected}});
-        const auto goldens = goldens_in(expected.parent_path(), {name})[name];
-        for (const auto& variant : goldens)
-            if (variant.filename() != name && !fs::equivalent(variant, actual)) pair.goldens.push_back(variant);
+    std::optional<Error> first_fault;
+    try {
+        if (task.is_drawn) {
+            const auto preset = find_preset(options.render, &task.stop);
+            task.folder = fs::path(options.out) / preset.name / "compare";
+            are_folders = !is_figure(preset) && options.at.empty();
+            comparison.pictures = draw(options, preset, drawn.emplace().path(), task);
+        } else {
+            comparison.pictures = are_folders ? pairs_of(options.expected, options.actual, false)
+                                              : std::vector{pair_of(options.expected, options.actual)};
+        }
+        first_fault = compare_all(comparison, task, are_folders);
+    } catch (const Error& fault) {
+        if (fault.code() == ExitCode::interrupted) throw;
+        first_fault = fault;
+        are_folders = false;
+        comparison.pictures = {{.name = comparison.actual, .match = Match::unreadable, .message = fault.what()}};
     }
-    const auto first_fault = compare_all(comparison, task, are_folders);
     if (junit) write_junit(junit->place, comparison);
     if (html) write_compare_page(html->place, comparison);
     for (auto* report : {&junit, &html})

@@ -60,19 +60,19 @@ GoldenVerdict compare_golden(const Picture& expected, const Picture& actual) {
         verdict.passes = false;
         verdict.why += (verdict.why.empty() ? "" : "; ") + broken;
     };
-    rule(verdict.strong <= max_strong, fmt::format("{} pixels differ by more than {}/255; at most {} may",
+    rule(verdict.strong <= max_strong, fmt::format("{} pixels differ by more than {}/255, and at most {} may",
                                                    verdict.strong, strong_difference, max_strong));
     rule(verdict.largest <= largest_allowed,
-         fmt::format("a pixel differs by {}/255; at most {} is allowed", verdict.largest, largest_allowed));
+         fmt::format("a pixel differs by {}/255, and at most {} is allowed", verdict.largest, largest_allowed));
     rule(static_cast<double>(verdict.differing) <= max_differing * pixels,
-         fmt::format("{:.1f} % of the pixels differ; at most {:.0f} % may",
+         fmt::format("{:.1f} % of the pixels differ, and at most {:.0f} % may",
                      100.0 * static_cast<double>(verdict.differing) / pixels, 100 * max_differing));
     rule(verdict.worst_tile <= max_tile_mean,
-         fmt::format("a {0}×{0} tile differs by {1:.2f}/255 on average; at most {2} is allowed", tile,
+         fmt::format("a {0}×{0} tile differs by {1:.2f}/255 on average, and at most {2} is allowed", tile,
                      verdict.worst_tile, max_tile_mean));
     for (std::size_t c = 0; c < channels; ++c)
         rule(std::abs(verdict.mean[c]) <= max_signed_mean,
-             fmt::format("{} is off by {:+.3f}/255 on average; at most {} is allowed",
+             fmt::format("{} is off by {:+.3f}/255 on average, and at most {} is allowed",
                          std::array{"red", "green", "blue", "opacity"}[c], verdict.mean[c], max_signed_mean));
     return verdict;
 }
