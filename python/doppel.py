@@ -111,12 +111,12 @@ def run(preset, *options, out=None, **keys):
 
 def figure(preset, *options, format="png", out=None, **keys):
     """Draws a figure: a Result with picture, columns and manifest. format: png, svg, pdf or html."""
-    return _call("figure", preset, ("--format", format, *options), out, keys)
+    return _call("figure", preset, (*options, *(() if "--tiles" in options else ("--format", format))), out, keys)
 
 
 def still(preset, at, *options, format="png", out=None, **keys):
     """Draws one picture of a film, at a time in seconds: a Result with a picture. format: png, svg or pdf."""
-    return _call("still", preset, ("--at", _toml(at), "--format", format, *options), out, keys)
+    return _call("still", preset, ("--at", at if isinstance(at, str) else _toml(at), "--format", format, *options), out, keys)
 
 
 def film(preset, *options, format="html", out=None, **keys):
@@ -125,7 +125,7 @@ def film(preset, *options, format="html", out=None, **keys):
 
 
 def _call(command, preset, options, out, keys):
-    if out == "-" or {"--help", "--list-outputs"} & set(options):
+    if out == "-" or {"-h", "--help", "--list-outputs"} & set(options):
         raise ValueError("a Result has files: out must be a folder, and --help and --list-outputs are for the command line")
     folder = None if out is not None else tempfile.TemporaryDirectory(prefix="doppel-")
     result = Result(folder)
@@ -137,7 +137,10 @@ def _call(command, preset, options, out, keys):
         raise KeyboardInterrupt
     if done.returncode != 0:
         lines = [line[len("doppel: "):] if line.startswith("doppel: ") else line for line in done.stderr.splitlines()]
-        raise DoppelError("\n".join(lines) or f"{words[0]} ended by signal {-done.returncode}", done.returncode)
+        text = "\n".join(lines) or f"{words[0]} ended by signal {-done.returncode}"
+        if folder is not None and folder.name in text:
+            text += "; this folder is removed, give out= to keep one"
+        raise DoppelError(text, done.returncode)
     events = [json.loads(line) for line in done.stdout.splitlines()]
     for event in events:
         if event["event"] == "note":
