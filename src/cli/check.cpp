@@ -244,7 +244,7 @@ void print(const SceneCheck& check) {
                counted(estimate.steps));
     const auto& every = scene.frames.stride;  // samples per frame
     const bool is_of_samples = every.is_whole() && every.numerator > 1;
-    const auto stride = is_of_samples ? fmt::format(" (one of {} samples is one)", every.numerator) : "";
+    const auto stride = is_of_samples ? fmt::format(" (one in {} samples)", every.numerator) : "";
     print_line("  video  {} frames of {}×{} at {} frames/s{}, {}", grouped(schedule_of(scene).frames()),
                video.size.width, video.size.height, fmt::format("{:.6g}", scene.fps.value()), stride,
                format_words(scene));

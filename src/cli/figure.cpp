@@ -123,7 +123,7 @@ void add_figure(CLI::App& app) {
                "Format of the picture; html: a page that tells the numbers", {"png", "pdf", "svg", "html"});
     add_value(command, "--scale", options->scale, "N", "Scale: 2 draws four pixels for each pixel of the layout")
         ->check(CLI::Range(0.25, 8.0));
-    add_value(command, "--shard", options->shard, "I/N", "Compute part I of N only, for --merge");
+    add_value(command, "--shard", options->shard, "I/N", "Compute shard I of N only, for --merge");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the figure");
     command.add_flag("--tiles", options->tiles,
                      "Of a map: tiles, one pixel a cell, and a page to pan and zoom, NAME.html");

@@ -105,8 +105,8 @@ std::optional<Shard> shard_of_option(const std::string& text, bool merges) {
     if (text.empty()) return std::nullopt;
     const auto parts = two_numbers(text, '/');
     if (!parts || parts->first < 1 || parts->second < parts->first || parts->second > max_parts)
-        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, part I of N; it is \"{}\"", max_parts, text);
-    if (merges) throw bad_input("--shard makes a part and --merge joins them; give one");
+        throw bad_input("--shard must be I/N with 1 ≤ I ≤ N ≤ {}, shard I of N; it is \"{}\"", max_parts, text);
+    if (merges) throw bad_input("--shard makes a shard and --merge joins them; give one");
     return Shard{static_cast<int>(parts->first), static_cast<int>(parts->second)};
 }
 

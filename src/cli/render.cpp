@@ -205,7 +205,7 @@ void add_render(CLI::App& app) {
               "Only the frames A to B-1 of the motion, with the pixels of the whole film");
     add_value(command, "--from", options->from, "SECONDS", "Start time, s");
     add_value(command, "--to", options->to, "SECONDS", "End time, s, not included: --to 20 makes 20 s");
-    add_value(command, "--shard", options->shard, "I/N", "Draw part I of N only, for --merge");
+    add_value(command, "--shard", options->shard, "I/N", "Draw shard I of N only, for --merge");
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the film");
     add_recording_option(command, options->recording, "Take the motion from simulate --recording FILE");
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px, even");

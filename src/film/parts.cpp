@@ -85,19 +85,19 @@ std::vector<fs::path> all_parts(const fs::path& folder, const std::string& name,
             const auto of = static_cast<std::size_t>(shard.of);
             if (parts.empty()) first = path, parts.resize(of);
             if (of != parts.size())
-                throw bad_input("{} is one of {} parts and {} one of {}; remove those that do not belong",
+                throw bad_input("{} is one of {} shards and {} one of {}; remove those that do not belong",
                                 path.string(), of, first.string(), parts.size());
             auto& seen = parts[static_cast<std::size_t>(shard.number) - 1];
             if (!seen.empty())
-                throw bad_input("{} and {} are both part {}/{}; remove one of them", seen.string(), path.string(),
+                throw bad_input("{} and {} are both shard {}/{}; remove one of them", seen.string(), path.string(),
                                 shard.number, of);
             seen = path;
         }
     if (parts.empty())
-        throw try_again("{} contains no part of {}; make them with the same command, --shard I/N in place of --merge",
+        throw try_again("{} contains no shard of {}; make them with the same command, --shard I/N in place of --merge",
                         folder.string(), name);
     if (const auto missing = missing_parts(parts); !missing.empty())
-        throw try_again("{}: missing parts: {}", folder.string(), missing);
+        throw try_again("{}: missing shards: {}", folder.string(), missing);
     return parts;
 }
 
@@ -113,7 +113,7 @@ FrameRange frames_of(const Scene& scene, const Shard& shard) {
     const auto video = video_options(scene);
     const long segments = video.segments();
     if (shard.of > segments)
-        throw bad_input("--shard {}/{}: {} can have {} part{} at most", shard.number, shard.of, scene.preset.name,
+        throw bad_input("--shard {}/{}: {} can have {} shard{} at most", shard.number, shard.of, scene.preset.name,
                         segments, segments == 1 ? "" : "s");
     const auto start = [&](long number) {
         return number == shard.of ? video.frames : segments * number / shard.of * video.segment();

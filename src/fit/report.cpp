@@ -325,7 +325,7 @@ Plot hierarchy_plot(const FitResult& result) {
 }
 
 Plot horizon_plot(const std::optional<Horizon>& horizon) {
-    Plot plot{.title = "Predictions from at most two seconds of data", .note = "not measured"};
+    Plot plot{.title = "Predictions", .note = "not measured"};
     plot.x = {.label = "time predicted, s", .low = 0, .high = 1};
     plot.y = {.label = "maximum error to date, rad", .logarithmic = true};
     if (!horizon) return plot;

@@ -104,7 +104,7 @@ TEST(FigureProgram, AMissingShardIsExit75) {
     ASSERT_EQ(doppel(folder, with(figure, {"--shard", "1/2"})).code, 0);
     const auto merge = doppel(folder, with(figure, {"--merge"}));
     EXPECT_EQ(merge.code, 75);
-    EXPECT_EQ(merge.err, "doppel: out/fig6: missing parts: 2/2\n");
+    EXPECT_EQ(merge.err, "doppel: out/fig6: missing shards: 2/2\n");
 }
 
 /// A long run keeps its results, whatever stops it.

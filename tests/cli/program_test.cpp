@@ -175,7 +175,7 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"figure", "fig6", "--shard", "1/2/3"}, "\"1/2/3\""},
         {{"figure", "fig6", "--shard", "1.0/2"}, "\"1.0/2\""},
         {{"figure", "fig6", "--shard", "1/9999999999999999999"}, "--shard"},
-        {{"figure", "fig6", "--shard", "1/2", "--merge"}, "--shard makes a part and --merge joins them"},
+        {{"figure", "fig6", "--shard", "1/2", "--merge"}, "--shard makes a shard and --merge joins them"},
         {{"figure", "fig6", "--size", "wide"}, "--size must be WIDTHxHEIGHT"},
         {{"figure", "fig6", "--scale", "0"}, "--scale"},
         {{"figure", "fig6", "--scale", "2", "--set", "chart.scale=3"}, "chart.scale is given twice"},

@@ -74,14 +74,14 @@ TEST_F(Merge, NamesThePartsThatAreMissing) {
     fs::remove(part(3));
     expect_refused(ExitCode::try_again, {"missing", "2/3, 3/3"}, small_sweep());
     fs::remove(part(1));
-    expect_refused(ExitCode::try_again, {"contains no part of fig2-right", "--shard"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"contains no shard of fig2-right", "--shard"}, small_sweep());
 }
 
 TEST_F(Merge, NamesTheFirstOfManyMissing) {
     for (int i = 1; i <= 3; ++i) fs::remove(part(i));
     run_figure(small_sweep(), {.out = out_, .shard = Shard{3, 100'000}});
     const auto message = error_of([&] { run_figure(small_sweep(), {.out = out_, .merge = true}); }).second;
-    EXPECT_NE(message.find("missing parts: 1/100000, 2/100000, 4/100000, 5/100000, 6/100000 … 99999 in all"),
+    EXPECT_NE(message.find("missing shards: 1/100000, 2/100000, 4/100000, 5/100000, 6/100000 … 99999 in all"),
               std::string::npos)
         << message.substr(0, 1000);
     EXPECT_LT(message.size(), folder_.string().size() + 150);
@@ -90,10 +90,10 @@ TEST_F(Merge, NamesTheFirstOfManyMissing) {
 TEST_F(Merge, RefusesAPartThatIsThereTwice) {
     const auto copy = folder_ / "fig2-right.1-of-3 (copy).shard";
     fs::copy_file(part(1), copy);
-    expect_refused(ExitCode::bad_input, {part(1).string(), copy.string(), "both part 1/3"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(1).string(), copy.string(), "both shard 1/3"}, small_sweep());
     fs::remove(copy);
     fs::copy_file(part(1), part(2), fs::copy_options::overwrite_existing);
-    expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both part 1/3"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both shard 1/3"}, small_sweep());
 }
 
 TEST_F(Merge, RejectsAChangedDigit) {

@@ -102,7 +102,7 @@ TEST(FilmParts, AreRefusedIfTheyDoNotFit) {
     const auto place = (folder / "butterfly").string();
     EXPECT_EQ(merge(scene).first, ExitCode::try_again);
     render(scene, {.out = folder, .shard = Shard{2, 2}});
-    EXPECT_EQ(merge(scene), (Thrown{ExitCode::try_again, place + ": missing parts: 1/2"}));
+    EXPECT_EQ(merge(scene), (Thrown{ExitCode::try_again, place + ": missing shards: 1/2"}));
     const auto other = merge(film({"video.theme=light"}));
     EXPECT_EQ(other.first, ExitCode::bad_input);
     EXPECT_TRUE(other.second.starts_with(
@@ -145,7 +145,7 @@ TEST(FilmParts, NeedAFormatThatCanBeJoined) {
               (Thrown{ExitCode::bad_input,
                       "--shard: a film in the format GIF cannot be joined from parts; use mp4, webm or png"}));
     EXPECT_EQ(refused(film(), {.shard = Shard{1, 9}}),
-              (Thrown{ExitCode::bad_input, "--shard 1/9: butterfly can have 8 parts at most"}));
+              (Thrown{ExitCode::bad_input, "--shard 1/9: butterfly can have 8 shards at most"}));
     EXPECT_EQ(refused(film(), {.first = 5, .shard = Shard{1, 2}}).first, ExitCode::bad_input);
 }
 
