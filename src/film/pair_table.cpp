@@ -38,10 +38,10 @@ void visit_row(const Scene& scene, const Snapshot& snapshot, double start_distan
     };
     cell("", "sample", 0, state.sample);
     cell("", "time_s", 0, scene.time(state.sample));
-    of_sides([&](const std::string& of, const Side& side, const Observation& seen) {
+    of_sides([&](const std::string& of, const Side& side, const SideState& seen) {
         seen.exact.empty() ? visit_bobs(of, side, seen.bobs, cell) : visit_bobs(of, side, seen.exact, cell);
         cell(of, "energy_J", 0, seen.energy);
-        cell(of, "energy_error", 0, &side == &scene.a ? state.energy_error_a : state.energy_error_b);
+        cell(of, "energy_error", 0, seen.energy_error);
         cell(of, "length_error_m", 0, seen.length_error);
     });
     if (!scene.is_single()) {

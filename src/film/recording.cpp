@@ -15,9 +15,9 @@
 namespace doppel {
 namespace {
 
-void add(SideRecord& record, const Observation& seen, std::optional<double> energy_error) {
-    record.energy_error = std::max(record.energy_error, std::abs(energy_error.value_or(0)));
-    if (energy_error) record.energy_change = std::max(record.energy_change, std::abs(seen.energy_change));
+void add(SideRecord& record, const SideState& seen) {
+    record.energy_error = std::max(record.energy_error, std::abs(seen.energy_error.value_or(0)));
+    if (seen.energy_error) record.energy_change = std::max(record.energy_change, std::abs(seen.energy_change));
     record.length_error = std::max(record.length_error, seen.length_error);
 }
 
@@ -46,10 +46,9 @@ std::string header_of(const Scene& scene) {
 void pass_all(BlockFile& all, Snapshot& snapshot, MotionRecord& record) {
     auto& pair = snapshot.pair;
     all(pair.sample, pair.share, pair.distance, record.a.effort, record.b.effort, snapshot.members);
-    all(pair.energy_error_a, pair.energy_error_b, pair.mean_energy_a, pair.mean_energy_b);
     for (auto* seen : {&pair.a, &pair.b}) {
         all(seen->bobs, seen->exact, seen->pivot, seen->tension, seen->energy, seen->kinetic_energy);
-        all(seen->work, seen->energy_change, seen->length_error);
+        all(seen->work, seen->energy_change, seen->length_error, seen->energy_error, seen->mean_energy);
     }
 }
 
@@ -177,8 +176,8 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
         const auto& state = snapshot.pair;
         check_distance(scene_, state);
         if (state.share == 0) {
-            add(record_.a, state.a, state.energy_error_a);
-            add(record_.b, state.b, state.energy_error_b);
+            add(record_.a, state.a);
+            add(record_.b, state.b);
             record_.outcome.add(scene_.time(state.sample), state);
             add_sample(state);
         }

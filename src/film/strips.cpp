@@ -165,7 +165,7 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
                 if (!side.has_energy_error) curves.back().value.reset();
                 break;
             case StripKind::total_energy:
-                curves.push_back({is_a ? state.mean_energy_a : state.mean_energy_b, color, of_side});
+                curves.push_back({seen.mean_energy, color, of_side});
                 if (auto& mean = curves.back().value) *mean -= side.lowest_potential;
                 break;
             case StripKind::rod_force:

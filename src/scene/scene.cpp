@@ -175,11 +175,6 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
         energy_.emplace(*period);
 }
 
-std::optional<double> SideRun::energy_error(const Observation& seen) const {
-    if (!side_.has_energy_error) return std::nullopt;
-    return seen.energy_change / proportion_.energy;
-}
-
 RunFailure SideRun::broken(const std::string& what) const {
     return {fmt::format("{}: side {} failed by t = {} s: {} ({}, {}, {})", scene_.preset.name, name_, scene_.time(now_),
                         what, name_of(side_.motion.model), side_.method.title, step_control_text(side_)),
@@ -195,7 +190,7 @@ void SideRun::watch(const Observation& seen) {
                                  seen.length_error));
 }
 
-Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
+SideState SideRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
     throw_if_set(stop);
     const bool is_released = now_.sample < 0;
     now_ = moment;
@@ -208,9 +203,12 @@ Observation SideRun::advance_to(const Moment& moment, const std::atomic<bool>& s
         if (error.code() != ExitCode::method_failed) throw;
         throw broken(error.what());
     }
-    auto seen = motion_->observe();
+    SideState seen{motion_->observe()};
     watch(seen);
-    if (energy_ && moment.share == 0) energy_->add(scene_.time(now_), seen.energy);
+    if (side_.has_energy_error) seen.energy_error = seen.energy_change / proportion_.energy;
+    const double time = scene_.time(now_);
+    if (energy_ && moment.share == 0) energy_->add(time, seen.energy);
+    seen.mean_energy = energy_ ? energy_->at(time, seen.energy) : seen.energy;
     return seen;
 }
 
@@ -270,10 +268,6 @@ PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& sto
     now.sample = sample_ = moment.sample;
     now.share = moment.share;
     advance_sides(stop, now);
-    now.energy_error_a = a_.energy_error(now.a);
-    now.energy_error_b = b_ ? b_->energy_error(now.b) : now.energy_error_a;
-    now.mean_energy_a = a_.mean_energy(now.a);
-    now.mean_energy_b = b_ ? b_->mean_energy(now.b) : now.mean_energy_a;
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
     const auto distance = [&](const auto& a, const auto& b) {
         if (!differ_in_kind(scene_.preset.a, scene_.preset.b)) return static_cast<double>(state_space_distance(a, b));

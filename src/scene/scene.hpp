@@ -161,14 +161,20 @@ struct Scene {
 /// accuracy cannot be reached; exit 130 soon after `stop` is set (choosing by accuracy requires trial runs).
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
 
-/// Both sides and their difference at a sample, or between two.
+/// A side at a sample, or between two.
+struct SideState : Observation {
+    /// Relative (analysis/watched_motion.hpp); nothing if damping reduces the energy, so that its change is no error.
+    std::optional<double> energy_error = {};
+    /// J; for a driven side the mean over the last drive period, once one is over.
+    std::optional<double> mean_energy = {};
+};
+
+/// Both sides and their difference.
 struct PairState {
     long sample = 0;   // the last sample reached
     double share = 0;  // fraction of the interval to the next one
-    Observation a, b;
-    std::optional<double> energy_error_a, energy_error_b;  // as SideRun::energy_error()
-    std::optional<double> mean_energy_a, mean_energy_b;    // as SideRun::mean_energy()
-    double distance = 0;                                   // in state space, analysis/difference.hpp
+    SideState a, b;
+    double distance = 0;  // in state space, analysis/difference.hpp
 
     Moment moment() const { return {sample, share}; }
 };
@@ -211,17 +217,10 @@ public:
 
     /// Returns sample 0, then 1, 2, … Throws RunFailure with time and quantity if a number is not finite, errors of
     /// energy or rods are far too large, or a step fails; exit 130 soon after `stop` is set.
-    Observation next(const std::atomic<bool>& stop) { return advance_to({now_.sample + 1}, stop); }
+    SideState next(const std::atomic<bool>& stop) { return advance_to({now_.sample + 1}, stop); }
     /// Advances to a moment up to the next sample. With a fixed step, Motion::advance_within() says what that gives.
     /// Throws as next().
-    Observation advance_to(const Moment& moment, const std::atomic<bool>& stop);
-
-    /// Relative (analysis/watched_motion.hpp); nothing if damping reduces the energy, so that its change is no error.
-    std::optional<double> energy_error(const Observation& seen) const;
-    /// J; for a driven side the mean over the last drive period, once one is over.
-    std::optional<double> mean_energy(const Observation& seen) const {
-        return energy_ ? energy_->at(scene_.time(now_), seen.energy) : seen.energy;
-    }
+    SideState advance_to(const Moment& moment, const std::atomic<bool>& stop);
     Effort effort() const { return motion_->effort(); }
 
 private:

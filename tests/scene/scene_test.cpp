@@ -301,7 +301,7 @@ TEST(Size, OfOneParticleIsThatOfItsConstraint) {
     PairRun pair(scene);
     const std::atomic<bool> never = false;
     double worst = 0;
-    for (long n = 0; n <= scene.samples; ++n) worst = std::max(worst, std::abs(*pair.next(never).energy_error_a));
+    for (long n = 0; n <= scene.samples; ++n) worst = std::max(worst, std::abs(*pair.next(never).a.energy_error));
     EXPECT_LT(worst, 1e-7);  // measured 1.1e-8, the error of the method
 }
 
@@ -478,10 +478,10 @@ damping_N_s_per_m = 2
     PairState last;
     for (long n = 0; n <= scene.samples; ++n) {
         last = pair.next(never);
-        ASSERT_TRUE(last.energy_error_a);
-        ASSERT_FALSE(last.energy_error_b);
+        ASSERT_TRUE(last.a.energy_error);
+        ASSERT_FALSE(last.b.energy_error);
     }
-    EXPECT_LT(std::abs(*last.energy_error_a), 1e-11);  // measured 6e-13
+    EXPECT_LT(std::abs(*last.a.energy_error), 1e-11);  // measured 6e-13
     EXPECT_LT(last.b.energy_change, -1);               // measured -3.9 J
 }
 

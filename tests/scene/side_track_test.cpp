@@ -31,8 +31,8 @@ TEST(SideTrack, IsShownInPlaceOfASimulation) {
     const auto start = run.next(never);
     EXPECT_NEAR(start.a.bobs[0].theta, -0.525818, 1e-4);  // the file's first row
     EXPECT_NEAR(start.a.bobs[1].theta, 0.399823, 1e-4);
-    EXPECT_FALSE(start.energy_error_a);
-    EXPECT_TRUE(start.energy_error_b);
+    EXPECT_FALSE(start.a.energy_error);
+    EXPECT_TRUE(start.b.energy_error);
     for (int k = 0; k < 240; ++k) run.next(never);
     EXPECT_EQ(run.effort_a().steps, 0);
     EXPECT_GT(run.effort_b().steps, 0);
