@@ -16,7 +16,6 @@ Rational exact_rate(const Rational& fps) {
     return fps;
 }
 
-/// Times must increase, from 0 s on.
 void check_changes(const Preset& preset, const TomlReader& video) {
     const auto& changes = preset.video.speed.changes;
     const double end = preset.duration_s.value();

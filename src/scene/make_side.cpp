@@ -10,7 +10,6 @@
 namespace doppel {
 namespace {
 
-/// The smallest suitable model, and the reason.
 std::pair<Model, std::string> chosen_model(const SideSpec& spec, const MethodEntry& method) {
     if (spec.model != ModelChoice::automatic) return {value_named<Model>(name_of(spec.model)), "the preset selects it"};
     if (!spec.particles.empty())
@@ -77,10 +76,7 @@ void measure(const SideSpec& spec, Side& side) {
     const auto start = Mechanism<double>::start(parts);
     const auto bobs = mechanism.bobs(start);
     double mass = 0;
-    for (const auto& bob : bobs) {
-        side.mass.push_back(bob.mass);
-        mass += bob.mass;
-    }
+    for (const auto& bob : bobs) mass += side.mass.emplace_back(bob.mass);
     side.energy_unit =
         std::max({2 * mass * side.gravity * side.reach, std::abs(mechanism.energy(start)), kinetic_energy(bobs)});
     if (!(side.energy_unit > 0)) side.energy_unit = 1;
@@ -90,60 +86,43 @@ Place<Quad> place(const QuadPair& xy) {
     return {xy[0], xy[1]};
 }
 
-/// Builds constraints and forces of an assembly, whose particles have these names, from the preset's entries.
-class PartBuilder {
-public:
-    PartBuilder(const std::vector<std::string>& names, const Assembly<Quad>& assembly) : assembly_(assembly) {
-        for (std::size_t i = 0; i < names.size(); ++i) indices_.emplace(names[i], i);
-    }
-
-    Constraint<Quad> constraint(const PartSpec& part) const {
-        if (part.kind == PartKind::rod) {
-            const auto [a, b] = ends(part);
-            return Rod<Quad>{a, b, length(part, a, b)};
-        }
-        const auto particle = indices_.at(part.particle);
-        const auto at = part.position_m ? place(*part.position_m) : start(particle);
-        if (part.kind == PartKind::anchor) return Anchor<Quad>{particle, at};
-        if (part.kind == PartKind::slot_line) return SlotLine<Quad>{particle, at, place(part.direction)};
-        return SlotCircle<Quad>{particle, at, part.radius_m ? *part.radius_m : distance(particle, at)};
-    }
-    Force<Quad> force(const PartSpec& part) const {
-        const auto constant = part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>());
-        if (part.kind == PartKind::droplet) return Droplet<Quad>{place(*part.position_m), part.mass_kg, constant};
-        const auto [a, b] = ends(part);
-        if (part.kind == PartKind::spring)
-            return Spring<Quad>{a, b, part.stiffness_N_per_m, length(part, a, b), part.damping_N_s_per_m};
-        return Attraction<Quad>{a, std::get<std::size_t>(b), constant};
-    }
-
-private:
-    End<Quad> end(const EndSpec& spec) const {
-        if (const auto* name = std::get_if<std::string>(&spec)) return indices_.at(*name);
+/// Adds a constraint or a force to an assembly, whose particles have these numbers.
+void add(const PartSpec& part, const std::map<std::string, std::size_t>& numbers, Assembly<Quad>& to) {
+    using enum PartKind;
+    using std::sqrt;
+    const auto constant = part.constant_m3_per_kg_s2.value_or(newton_constant<Quad>());
+    if (part.kind == droplet)
+        return to.forces.push_back(Droplet<Quad>{place(*part.position_m), part.mass_kg, constant});
+    const auto end = [&](const EndSpec& spec) -> End<Quad> {
+        if (const auto* name = std::get_if<std::string>(&spec)) return numbers.at(*name);
         return place(std::get<QuadPair>(spec));
+    };
+    const auto start = [&](const End<Quad>& of) {
+        const auto* particle = std::get_if<std::size_t>(&of);
+        return particle ? to.particles[*particle].place : std::get<Place<Quad>>(of);
+    };
+    const bool has_ends = part.kind == rod || part.kind == spring || part.kind == attraction;
+    auto first = end(has_ends ? *part.from : part.particle), b = has_ends ? end(*part.to) : first;
+    if (!std::holds_alternative<std::size_t>(first)) std::swap(first, b);  // a fixed end comes second
+    const auto a = std::get<std::size_t>(first);
+    const auto at = part.position_m && !has_ends ? place(*part.position_m) : start(b);
+    const Place<Quad> r = start(a) - at;
+    const Quad distance = sqrt(Quad(r[0] * r[0] + r[1] * r[1])), length = part.length_m.value_or(distance);
+    switch (part.kind) {
+        case anchor:
+            return to.constraints.push_back(Anchor<Quad>{a, at});
+        case rod:
+            return to.constraints.push_back(Rod<Quad>{a, b, length});
+        case slot_line:
+            return to.constraints.push_back(SlotLine<Quad>{a, at, place(part.direction)});
+        case slot_circle:
+            return to.constraints.push_back(SlotCircle<Quad>{a, at, part.radius_m.value_or(distance)});
+        case spring:
+            return to.forces.push_back(Spring<Quad>{a, b, part.stiffness_N_per_m, length, part.damping_N_s_per_m});
+        default:
+            return to.forces.push_back(Attraction<Quad>{a, std::get<std::size_t>(b), constant});
     }
-    /// The two ends; a fixed end comes second.
-    std::pair<std::size_t, End<Quad>> ends(const PartSpec& part) const {
-        auto from = end(*part.from), to = end(*part.to);
-        if (!std::holds_alternative<std::size_t>(from)) std::swap(from, to);
-        return {std::get<std::size_t>(from), to};
-    }
-    Place<Quad> start(const End<Quad>& end) const {
-        const auto* particle = std::get_if<std::size_t>(&end);
-        return particle ? assembly_.particles[*particle].place : std::get<Place<Quad>>(end);
-    }
-    Quad distance(const End<Quad>& one, const End<Quad>& other) const {
-        using std::sqrt;
-        const Place<Quad> r = start(one) - start(other);
-        return sqrt(Quad(r[0] * r[0] + r[1] * r[1]));
-    }
-    Quad length(const PartSpec& part, const End<Quad>& a, const End<Quad>& b) const {
-        return part.length_m ? *part.length_m : distance(a, b);
-    }
-
-    std::map<std::string, std::size_t> indices_;  // of particles, by name
-    const Assembly<Quad>& assembly_;
-};
+}
 
 }  // namespace
 
@@ -189,11 +168,12 @@ Assembly<Quad> assembly_of(const SideSpec& spec) {
     if (spec.particles.empty()) assembly = parts_of(chain_of(spec));
     for (const auto& particle : spec.particles)
         assembly.particles.push_back({particle.mass_kg, place(particle.position_m), place(particle.velocity_m_per_s)});
-    const PartBuilder builder(particle_names(spec), assembly);
-    for (const auto& part : spec.constraints) assembly.constraints.push_back(builder.constraint(part));
     if (!spec.particles.empty() && spec.gravity_m_per_s2 != 0)
         assembly.forces.push_back(Gravity<Quad>{spec.gravity_m_per_s2});
-    for (const auto& part : spec.forces) assembly.forces.push_back(builder.force(part));
+    std::map<std::string, std::size_t> numbers;
+    for (const auto& name : particle_names(spec)) numbers.emplace(name, numbers.size());
+    for (const auto* parts : {&spec.constraints, &spec.forces})
+        for (const auto& part : *parts) add(part, numbers, assembly);
     return assembly;
 }
 
@@ -264,12 +244,10 @@ std::vector<MechanismLine> lines_of(const Assembly<double>& assembly) {
 
 Replay replay_of(const TrackSpec& spec) {
     const Quad degree = pi_of<Quad>() / 180;
-    std::array<double, 2> offset{};
-    std::transform(spec.offset_deg.begin(), spec.offset_deg.end(), offset.begin(),
-                   [&](const Quad& angle) { return static_cast<double>(Quad(angle * degree)); });
+    const auto offset = [&](std::size_t i) { return static_cast<double>(Quad(spec.offset_deg[i] * degree)); };
     std::optional<double> start;
     if (spec.start_s) start = static_cast<double>(*spec.start_s);
-    return replay_from(spec.track, start, offset);
+    return replay_from(spec.track, start, {offset(0), offset(1)});
 }
 
 Rational longest_duration(const Replay& replay, const Rational& sample_hz) {

@@ -17,12 +17,10 @@ namespace {
 struct Place {
     std::string_view table, entry, key;
 
-    explicit Place(std::string_view inside) : key(inside) {
+    explicit Place(std::string_view inside) : key(inside.substr(inside.rfind('.') + 1)) {
         const auto first = inside.find('.'), last = inside.rfind('.');
-        if (first == std::string_view::npos) return;
-        table = inside.substr(0, first);
-        entry = first == last ? "" : inside.substr(first + 1, last - first - 1);
-        key = inside.substr(last + 1);
+        if (first != std::string_view::npos) table = inside.substr(0, first);
+        if (first != last) entry = inside.substr(first + 1, last - first - 1);
     }
 };
 
@@ -37,14 +35,14 @@ struct FoundNumber {
 
 /// The index of the entry with this name, or of the only entry of this kind; 0 = the side itself, or its pivot.
 int entry_meant(SideSpec& side, const Place& place) {
-    if (place.table.empty() || place.table == "pivot") return 0;
-    std::vector<int> of_kind;
+    constexpr int several = -1;
+    int of_kind = 0;
     for (const auto& entry : entries_of(side)) {
         if (entry.table != place.table) continue;
         if (entry.name == place.entry) return entry.number;
-        if (entry.kind == place.entry && entry.kind != entry.table) of_kind.push_back(entry.number);
+        if (entry.kind == place.entry && entry.kind != entry.table) of_kind = of_kind == 0 ? entry.number : several;
     }
-    return of_kind.size() == 1 ? of_kind.front() : -1;
+    return of_kind;
 }
 
 /// `put_whole` replaces a whole number before its dependent keys are listed.
@@ -135,10 +133,10 @@ void find_in(SideSpec side, const Rational& sample_hz, const TomlReader& table, 
         refuse(fmt::format("is beyond the array, whose last element is [{}]", values.size() - 1));
     if (!number.element && field.each.empty() && values.size() > 1)
         refuse(fmt::format("has two numbers; give {0}[0] or {0}[1]", number.path));
+    if (place.key != "links") return;
     for_each_key(side, [&](const SideEntry& owner, const Field& other, const KeyMember& any) {
         const auto all = numbers_of(any);
-        const bool is_of_links = place.key == "links" && owner.number == 0 && all;
-        if (is_of_links && !all->empty() && !are_equal(*all))
+        if (owner.number == 0 && all && !all->empty() && !are_equal(*all))
             refuse(fmt::format("needs links that are all equal; {} has different numbers", other.key));
     });
 }
@@ -152,18 +150,14 @@ Rational step_near(const Quad& value, const Rational& sample_hz) {
 
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {
     const Place place(number.inside);
-    auto old = side;
-    const auto whole =
-        number.is_whole ? std::optional(static_cast<int>(std::lround(static_cast<double>(value)))) : std::nullopt;
-    const auto found = find_number(side, place, whole);
-    if (found.step) {
-        *found.step = step_near(value, sample_hz);
-    } else if (number.element) {
-        found.values[*number.element] = value;
-    } else {
-        std::fill(found.values.begin(), found.values.end(), value);
+    if (!number.is_whole) {
+        const auto found = find_number(side, place);
+        if (found.step) *found.step = step_near(value, sample_hz);
+        std::ranges::fill(number.element ? found.values.subspan(*number.element, 1) : found.values, value);
+        return;
     }
-    if (!number.is_whole) return;
+    auto old = side;
+    find_number(side, place, static_cast<int>(std::lround(static_cast<double>(value))));
     // equal links stay equal
     const auto numbers = all_numbers(side), were = all_numbers(old);
     for (std::size_t i = 0; i < numbers.size(); ++i)

@@ -61,7 +61,6 @@ void format_fields(KeyVisitor& visit, VideoSpec& video) {
           video.crf);
 }
 
-/// Times and speeds.
 void time_fields(KeyVisitor& visit, VideoSpec& video) {
     constexpr auto seconds = from_to(0, 3600, "none");
     constexpr std::string_view all_samples = "sample_hz · speed, of a gif up to 30; where the speed changes sample_hz";
@@ -136,7 +135,6 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
     }
 }
 
-/// Colours, widths, fonts, text sizes, and trails.
 void style_fields(KeyVisitor& visit, VideoSpec& video) {
     visit(theme_field, video.theme);
     constexpr std::string_view of_theme = "the theme's";

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace doppel {
 namespace {
@@ -25,7 +26,6 @@ std::string rates_that_divide(const Rational& steps_per_second, double rate) {
     return fmt::format("{} or {}", below, above);
 }
 
-/// A single pendulum has no options of a pair.
 void check_single(const Preset& preset, TomlReader& top, const TomlReader& video) {
     if (preset.video.layout != Arrangement::single) return;
     if (top.has("b"))
@@ -143,16 +143,8 @@ bool read_font(TomlReader& top, const std::string& preset_path, VideoSpec& video
     return fonts.guarded(key, [&] { video.typeface = Typeface::with_system_fonts(Font::from_file(*video.text_font)); });
 }
 
-/// Gives members without this list, if others have it, numbers from side a to side b as the preset has them.
-void fill(std::vector<Release>& members, const Release::List& list, const Preset& preset) {
-    if (std::ranges::all_of(members, [&](const Release& member) { return (member.*list.member).empty(); })) return;
-    for (std::size_t k = 0; k < members.size(); ++k)
-        if (auto& numbers = members[k].*list.member; numbers.empty())
-            numbers = between(preset.a, preset.b, Quad(k) / Quad(members.size() - 1)).*list.of_side;
-}
-
-/// If members of an ensemble are listed, its pair is the first and the last one. Throws if the file gives a side other
-/// numbers, or lists with too many or too few of them.
+/// If members of an ensemble are listed, its pair is the first and the last one. A list that some of them lack goes from
+/// side a to side b there. Throws if the file gives a side other numbers, or lists with too many or too few of them.
 void place_members(TomlReader& top, TomlReader& video, Preset& preset) {
     auto& members = preset.video.members.releases;
     if (members.empty()) return;
@@ -162,21 +154,23 @@ void place_members(TomlReader& top, TomlReader& video, Preset& preset) {
                 throw video.error("members", "must have {} numbers each, one a link; {} of [{}] has {}",
                                   preset.a.links(), list.key, k, count);
     for (const auto& list : Release::lists) {
-        fill(members, list, preset);
+        if (std::ranges::all_of(members, [&](const Release& member) { return (member.*list.member).empty(); }))
+            continue;
+        for (std::size_t k = 0; k < members.size(); ++k)
+            if (auto& numbers = members[k].*list.member; numbers.empty())
+                numbers = between(preset.a, preset.b, Quad(k) / Quad(members.size() - 1)).*list.of_side;
         const auto &first = members.front().*list.member, &last = members.back().*list.member;
-        const auto check_side = [&](const char* table, const std::vector<Quad>& given,
-                                    const std::vector<Quad>& member) {
+        auto &of_a = preset.a.*list.of_side, &of_b = preset.b.*list.of_side;
+        for (const auto& [table, given, member] :
+             {std::tuple("a", &of_a, &first), {"b", &of_b, &last}, {"system", &of_a, &first}}) {
             auto side = top.inner(table);
             const bool is_replaced = video.from_command_line("members") && !side.from_command_line(list.key);
-            if (member.empty() || is_replaced || !side.has(list.key) || given == member) return;
+            if (is_replaced || !side.has(list.key) || *given == *member) continue;
             throw video.error("members", "must begin with side a and end with side b; [{}] {} is {}, the member's {}",
-                              table, list.key, toml_value(given), toml_value(member));
-        };
-        check_side("a", preset.a.*list.of_side, first);
-        check_side("b", preset.b.*list.of_side, last);
-        check_side("system", preset.a.*list.of_side, first);
-        if (!first.empty()) preset.a.*list.of_side = first;
-        if (!last.empty()) preset.b.*list.of_side = last;
+                              table, list.key, toml_value(*given), toml_value(*member));
+        }
+        of_a = first;
+        of_b = last;
     }
 }
 

@@ -102,12 +102,9 @@ std::string entries_toml(const std::string& name, SideSpec& side) {
     return text;
 }
 
-/// [a] or [b] with all keys.
 std::string side_toml(const std::string& name, SideSpec side) {
-    if (find_method(side.integrator)->adaptive)
-        side.tolerance = side.allowed_error();
-    else
-        side.step_s = side.step();
+    side.tolerance = side.allowed_error();  // written where the method takes it
+    side.step_s = side.step();
     return table_text(fmt::format("[{}]", name),
                       [&](TomlWriter& writer) {
                           side_text_fields(writer, side);

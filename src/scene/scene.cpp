@@ -113,11 +113,6 @@ std::optional<std::string> not_finite(const Observation& seen) {
     return std::nullopt;
 }
 
-std::unique_ptr<Motion> motion_of(const Scene& scene, const Side& side, char name) {
-    return for_side(scene.preset, name,
-                    [&] { return side.replay ? make_replay(side.motion, *side.replay) : make_motion(side.motion); });
-}
-
 }  // namespace
 
 Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
@@ -137,20 +132,17 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
     scene.fps = preset.video.fps ? *preset.video.fps : *product(preset.sample_hz, preset.video.speed.constant);
     scene.frames = frame_times(preset, scene.fps, scene.samples);
     check_steps(scene);
-    const auto wanted = [&](StripKind kind) {
-        return std::find(preset.video.strips.begin(), preset.video.strips.end(), kind) != preset.video.strips.end();
-    };
-    const auto keeps_energy = [](const Side& side) { return !side.replay && !side.has_work; };
-    if (!keeps_energy(scene.a) || !keeps_energy(scene.b))
-        std::replace(scene.preset.video.strips.begin(), scene.preset.video.strips.end(), StripKind::energy,
-                     StripKind::total_energy);
-    const auto has_rod_forces = [](const Side& side) { return !side.motion.physical && !side.replay; };
-    if (wanted(StripKind::rod_force) && !(has_rod_forces(scene.a) && has_rod_forces(scene.b)))
-        throw bad_input(
-            "{}: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and tracks, "
-            "have no rod tension",
-            preset.name);
-    scene.a.motion.wants_tension = scene.b.motion.wants_tension = wanted(StripKind::rod_force);
+    auto& strips = scene.preset.video.strips;
+    const bool wants_tension = std::ranges::count(strips, StripKind::rod_force) > 0;
+    for (auto* side : {&scene.a, &scene.b}) {
+        if (side->replay || side->has_work) std::ranges::replace(strips, StripKind::energy, StripKind::total_energy);
+        if (wants_tension && (side->motion.physical || side->replay))
+            throw bad_input(
+                "{}: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and "
+                "tracks, have no rod tension",
+                preset.name);
+        side->motion.wants_tension = wants_tension;
+    }
     check_difference(scene);
     check_tracks(scene);
     if (preset.video.layout == Arrangement::ensemble) scene.members = members_of(scene);
@@ -169,7 +161,9 @@ SideRun::SideRun(const Scene& scene, const Side& side, char name)
     : scene_(scene),
       side_(side),
       name_(name),
-      motion_(motion_of(scene, side, name)),
+      motion_(
+          for_side(scene.preset, name,
+                   [&] { return side.replay ? make_replay(side.motion, *side.replay) : make_motion(side.motion); })),
       proportion_(motion_->observe(), side.energy_unit, side.reach) {
     if (const auto period = drive_period(name == 'a' ? scene.preset.a : scene.preset.b, scene.preset.duration_s))
         energy_.emplace(*period);
@@ -241,33 +235,29 @@ std::optional<double> PeriodMean::at(double time, double value) const {
     return (last.integral - first.integral) / period_;
 }
 
-void PairRun::advance_sides(const std::atomic<bool>& stop, PairState& now) {
-    if (!b_) {
-        now.a = now.b = a_.advance_to(now.moment(), stop);
-        return;
-    }
-    const auto advance_b = [&] { now.b = b_->advance_to(now.moment(), stop); };
-    std::exception_ptr error;
-    auto other = start_threads(are_large_ ? 1 : 0, [&] {
+PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
+    PairState now{.sample = moment.sample, .share = moment.share};
+    sample_ = moment.sample;
+    std::exception_ptr error;  // of side b; one of side a comes first
+    const auto advance_b = [&] {
         try {
-            advance_b();
+            now.b = b_->advance_to(moment, stop);
         } catch (...) {
             error = std::current_exception();
         }
+    };
+    auto other = start_threads(b_ && are_large_ ? 1 : 0, [&] {
+        advance_b();
         other_cpu_s_ += seconds_of(CLOCK_THREAD_CPUTIME_ID);
     });
     const bool is_alone = other.empty();
-    now.a = a_.advance_to(now.moment(), stop);
-    if (is_alone) return advance_b();
+    now.a = a_.advance_to(moment, stop);
     other.clear();
+    if (!b_)
+        now.b = now.a;
+    else if (is_alone)
+        advance_b();
     if (error) std::rethrow_exception(error);
-}
-
-PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
-    PairState now;
-    now.sample = sample_ = moment.sample;
-    now.share = moment.share;
-    advance_sides(stop, now);
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
     const auto distance = [&](const auto& a, const auto& b) {
         if (!differ_in_kind(scene_.preset.a, scene_.preset.b)) return static_cast<double>(state_space_distance(a, b));

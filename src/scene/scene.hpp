@@ -173,7 +173,7 @@ struct SideState : Observation {
 struct PairState {
     long sample = 0;   // the last sample reached
     double share = 0;  // fraction of the interval to the next one
-    SideState a, b;
+    SideState a = {}, b = {};
     double distance = 0;  // in state space, analysis/difference.hpp
 
     Moment moment() const { return {sample, share}; }
@@ -266,8 +266,6 @@ public:
 
 private:
     static constexpr std::size_t large = 256;  // masses, from which on a sample takes longer than starting a thread
-
-    void advance_sides(const std::atomic<bool>& stop, PairState& now);
 
     const Scene& scene_;
     SideRun a_;

@@ -204,17 +204,12 @@ bool KeyPair::differs() const {
 std::vector<KeyPair> paired(std::vector<SideKey> a, std::vector<SideKey> b) {
     std::vector<KeyPair> all;
     std::map<std::string, std::size_t> indices;  // of names
-    for (auto& key : a) {
-        indices.emplace(key.name(), all.size());
-        all.push_back({std::move(key), std::nullopt});
-    }
-    for (auto& key : b) {
-        const auto [index, is_new] = indices.emplace(key.name(), all.size());
-        if (is_new)
-            all.push_back({std::nullopt, std::move(key)});
-        else
-            all[index->second].b = std::move(key);
-    }
+    for (auto* keys : {&a, &b})
+        for (auto& key : *keys) {
+            const auto [index, is_new] = indices.emplace(key.name(), all.size());
+            if (is_new) all.emplace_back();
+            (keys == &a ? all[index->second].a : all[index->second].b) = std::move(key);
+        }
     std::vector<KeyPair> kept;
     std::ranges::copy_if(all, std::back_inserter(kept), [&](const KeyPair& pair) {
         const auto& key = pair.any();

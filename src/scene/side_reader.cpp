@@ -76,7 +76,6 @@ bool read_particle(TomlReader& entry, ParticleSpec& particle, bool) {
     return true;
 }
 
-/// The keys of one constraint or force: those of its kind.
 bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const std::string_view> kinds) {
     const bool has_kind = entry.has("kind");
     if (is_new && !has_kind) {
@@ -101,7 +100,6 @@ bool read_part(TomlReader& entry, PartSpec& part, bool is_new, std::span<const s
     return true;
 }
 
-/// A chain, with the properties of rigid-body chains.
 void read_physical_chain(TomlReader& table, SideSpec& side) {
     const bool has_rods =
         table.has("rod_mass_kg") || !table.elements_of("rod_mass_kg").empty() || !is_zero(side.physical.rod_mass_kg);
@@ -143,7 +141,6 @@ void check_masses(TomlReader& table, const SideSpec& side) {
             throw table.error("mass_kg", "of link {} and its rod_mass_kg are both 0; one must be > 0", i + 1);
 }
 
-/// What excludes a rigid-body chain, and what it requires.
 void check_physical(TomlReader& table, const SideSpec& side) {
     const auto& physical = side.physical;
     if (physical.is_none()) return;
@@ -165,7 +162,6 @@ void check_physical(TomlReader& table, const SideSpec& side) {
     check_masses(table, side);
 }
 
-/// Checks keys together.
 void check_choices(TomlReader& table, const SideSpec& side) {
     check_physical(table, side);
     if (side.is_mechanism() && side.model != ModelChoice::automatic && side.model != ModelChoice::mechanism)

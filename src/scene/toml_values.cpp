@@ -215,7 +215,6 @@ public:
         }
     }
 
-    /// Reads "#rrggbb".
     void read(const toml::node& node, Color& into) const {
         const auto* text = node.as_string();
         const auto color = text ? parse_color(text->get()) : std::nullopt;
@@ -226,7 +225,6 @@ public:
         read_array(node, into, "2 colours, a and b");
     }
 
-    /// "pendulums" and the strips, in order.
     void read(const toml::node& node, Panels& into) const {
         std::vector<std::string> panels;
         read(node, panels);
@@ -242,7 +240,6 @@ public:
     }
 
 private:
-    /// A reader of an element of the array.
     ValueReader at(std::size_t i) const { return {table_, field_, fmt::format("{}[{}]", at_, i)}; }
 
     template <class... Args>
@@ -314,7 +311,6 @@ private:
         constexpr std::size_t max_links = 10'000;
         return {.key = key, .bounds = bounds, .maximum = max_links};
     }
-    /// Reads the table of a member of an ensemble.
     void read_release(const toml::table& table, std::size_t k, Release& member) const {
         auto keys = table_.inner(&table, fmt::format("{}[{}]", table_.subject(field_.key), k));
         for (const auto& list : Release::lists)
