@@ -70,14 +70,20 @@ TEST(Text, ShortenedEndsWithAWholeCharacter) {
 }
 
 TEST(Text, TheNearestWordIsATypingErrorAwayOrBeginsSo) {
-    const std::vector<std::string_view> keys{"mass_kg", "length_m", "gravity_m_per_s2", "rod_mass_kg", "fps"};
-    for (const auto& [word, meant] : std::vector<std::pair<const char*, const char*>>{{"mas_kg", "mass_kg"},
-                                                                                      {"mass", "mass_kg"},
-                                                                                      {"gravity", "gravity_m_per_s2"},
-                                                                                      {"grvity", "gravity_m_per_s2"},
-                                                                                      {"fsp", "fps"},
-                                                                                      {"zzzzzz", ""},
-                                                                                      {"colour", ""}})
+    const std::vector<std::string_view> keys{"mass_kg", "length_m", "gravity_m_per_s2", "rod_mass_kg",
+                                             "fps",     "poster_s", "background_color"};
+    for (const auto& [word, meant] : std::vector<std::pair<const char*, const char*>>{
+             {"mas_kg", "mass_kg"},
+             {"mass", "mass_kg"},
+             {"gravity", "gravity_m_per_s2"},
+             {"grvity", "gravity_m_per_s2"},
+             {"fsp", "fps"},
+             {"zzzzzz", ""},
+             {"backgruond_colour", "background_color"},
+             {"bakgrund_kolour", "background_color"},  // 4 of 15 letters differ
+             {"bakgrnd_kollour", ""},                  // 6 letters differ
+             {"pst", ""},
+             {"colour", ""}})
         EXPECT_EQ(nearest(word, keys).value_or(""), meant);
     EXPECT_FALSE(nearest("x", {}));
 }

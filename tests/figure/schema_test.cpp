@@ -76,8 +76,7 @@ TEST(Schema, AcceptsEveryPresetAsItIsAndResolved) {
 
 TEST(Schema, RefusesWhatTheReaderRefusesOfOneKey) {
     std::vector<std::pair<std::string, std::string>> refused;  // texts and their messages
-    for (const auto& list : {refused_keys, refused_system, refused_rates, refused_video})
-        for (const auto& preset : list) refused.emplace_back(preset.text, preset.message);
+    for (const auto& preset : refused_presets) refused.emplace_back(preset.text, preset.message);
     for (const auto& preset : refused_video_keys)
         refused.emplace_back(std::string("[video]\n") + preset.text, preset.message);
     for (const auto& list : {refused_figures_sweep, refused_figures_values, refused_figures_chart,

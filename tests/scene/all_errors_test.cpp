@@ -12,7 +12,7 @@ using Lines = std::vector<std::string>;
 /// The messages about the preset, without the path.
 Lines faults_of(const std::string& text, const std::vector<std::string>& arguments = {}) {
     try {
-        read_preset({"x", "x.toml", text, "x.toml"}, sets(arguments));
+        preset_from(text, arguments);
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::bad_input);
         Lines lines{error.what()};

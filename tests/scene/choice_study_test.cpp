@@ -1,7 +1,6 @@
 #include "base/error.hpp"
 #include "base/machine.hpp"
 #include "scene/drawn_scenes.hpp"
-#include "scene/method_choice.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,11 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 
 namespace doppel::choice_study_test {
-
-const std::atomic<bool> never = false;
 
 /// CPU time of a run up to `last`, s: the minimum of several. Infinite where the method fails.
 double seconds_of_run(const MotionSpec& motion, long last) {
@@ -62,37 +58,22 @@ TEST(ChoiceStudy, TakesLittleMoreTimeThanTheBestMethod) {
     drawn::Lot lot(20261125);
     double worst = 0, sum = 0;
     int scenes = 0;
-    for (const auto& kind : drawn::kinds) {
-        int reached = 0;
-        for (int drawing = 0; reached < enough && drawing < 4 * enough; ++drawing) {
-            auto spec = kind.drawn(lot);
-            spec.accuracy = Quad(1);
-            for (std::size_t tenths = 2 + lot.of(11); tenths > 0; --tenths) *spec.accuracy /= 10;
-            const Rational seconds{2 + static_cast<long>(lot.of(8)), 1};
-            const Preset preset{.duration_s = seconds, .sample_hz = hz, .a = spec, .b = spec};
-            std::optional<Side> side;
-            try {
-                side = MethodChooser(preset, never).choose(1, never)[0];
-            } catch (const Error& error) {
-                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // not achievable
-                continue;
-            }
-            ++reached;
-            const double taken = seconds_of_run(side->motion, side->choice->horizon);
+    for (const auto& kind : drawn::kinds)
+        drawn::choose_for_each(kind, lot, enough, 11, 2, hz, [&](const Preset& preset, const Side& side) {
+            const auto& spec = preset.a;
+            const double taken = seconds_of_run(side.motion, side.choice->horizon);
             double best = taken;
             const double unit = 1 / std::sqrt(std::max(static_cast<double>(spec.gravity_m_per_s2), 1.0));
             for (const auto method : {"taylor", "dop853", "dopri5", "adams"}) {
                 if (!find_method(method)->adaptive && spec.physical.has_coulomb()) continue;
-                best = std::min(best, seconds_of_loosest(StepLevels(method, spec, hz, unit), spec, hz, *side, taken));
+                best = std::min(best, seconds_of_loosest(StepLevels(method, spec, hz, unit), spec, hz, side, taken));
             }
             fmt::print("{:30} {:2} s at {:.0e} rad: {:8} {:8.1f} us, {:.2f} times the best\n", kind.name,
-                       seconds.text(), side->choice->accuracy, side->method.name, 1e6 * taken, taken / best);
+                       preset.duration_s.text(), side.choice->accuracy, side.method.name, 1e6 * taken, taken / best);
             worst = std::max(worst, taken / best);
             sum += taken / best;
             ++scenes;
-        }
-        EXPECT_GE(reached, enough) << kind.name;
-    }
+        });
     fmt::print("{} scenes: {:.2f} times the best at worst, {:.3f} on average\n", scenes, worst, sum / scenes);
     EXPECT_LE(worst, 1.6);
     EXPECT_LE(sum / scenes, 1.15);

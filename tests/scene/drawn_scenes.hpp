@@ -1,6 +1,7 @@
 #pragma once
 
-#include "scene/scene.hpp"
+#include "scene/method_choice.hpp"
+#include "scene/support.hpp"
 
 #include <cmath>
 #include <random>
@@ -41,13 +42,18 @@ inline SideSpec chain_by(Lot& lot, std::size_t links, double fastest) {
 }
 
 inline SideSpec mechanism_of(const std::string& parts) {
-    return read_preset({"drawn", "drawn.toml", "[system]\nintegrator = \"taylor\"\n" + parts}).a;
+    return preset_from("[system]\nintegrator = \"taylor\"\n" + parts).a;
 }
 inline std::string particle(const char* name, const std::string& mass, const std::string& x, const std::string& y) {
     return fmt::format("[[system.particle]]\nname = \"{}\"\nmass_kg = {}\nposition_m = [{}, {}]\n", name, mass, x, y);
 }
 inline std::string rod(const char* from, const char* to) {
     return fmt::format("[[system.constraint]]\nkind = \"rod\"\nfrom = \"{}\"\nto = {}\n", from, to);
+}
+
+inline SideSpec of_model(SideSpec side, ModelChoice model) {
+    side.model = model;
+    return side;
 }
 
 /// Two links with mass, and friction in their joints.
@@ -69,18 +75,9 @@ struct Kind {
 inline const std::vector<Kind> kinds{
     {"chain", [](Lot& lot) { return chain_by(lot, 1 + lot.of(4), 200); }},
     {"chain as particles on rods",
-     [](Lot& lot) {
-         auto side = chain_by(lot, 1 + lot.of(3), 200);
-         side.model = ModelChoice::constraints;
-         return side;
-     }},
+     [](Lot& lot) { return of_model(chain_by(lot, 1 + lot.of(3), 200), ModelChoice::constraints); }},
     {"chain as a mechanism",
-     [](Lot& lot) {
-         auto side = chain_by(lot, 1 + lot.of(3), 200);
-         side.model = ModelChoice::mechanism;
-         return side;
-     },
-     true},
+     [](Lot& lot) { return of_model(chain_by(lot, 1 + lot.of(3), 200), ModelChoice::mechanism); }, true},
     {"chain on a spring",
      [](Lot& lot) {
          auto side = chain_by(lot, 1 + lot.of(3), 200);
@@ -132,12 +129,7 @@ inline const std::vector<Kind> kinds{
      }},
     {"long chain", [](Lot& lot) { return chain_by(lot, 5 + lot.of(8), 100); }, true},
     {"long chain as a mechanism",
-     [](Lot& lot) {
-         auto side = chain_by(lot, 5 + lot.of(8), 100);
-         side.model = ModelChoice::mechanism;
-         return side;
-     },
-     true},
+     [](Lot& lot) { return of_model(chain_by(lot, 5 + lot.of(8), 100), ModelChoice::mechanism); }, true},
     {"bodies", bodies_by, true},
     {"bodies without friction",
      [](Lot& lot) {
@@ -161,5 +153,24 @@ inline const std::vector<Kind> kinds{
          return side;
      },
      true}};
+
+/// Calls use(preset, side) for so many random scenes of a kind with an accuracy that can be kept.
+template <class Use>
+void choose_for_each(const Kind& kind, Lot& lot, int enough, std::size_t most_tenths, long least_s, const Rational& hz,
+                     const Use& use) {
+    int reached = 0;
+    for (int drawing = 0; reached < enough && drawing < 4 * enough; ++drawing) {
+        auto spec = kind.drawn(lot);
+        spec.accuracy = Quad(1);
+        for (std::size_t tenths = 2 + lot.of(most_tenths); tenths > 0; --tenths) *spec.accuracy /= 10;
+        const Rational seconds{least_s + static_cast<long>(lot.of(8)), 1};
+        const Preset preset{.duration_s = seconds, .sample_hz = hz, .a = spec, .b = spec};
+        std::optional<Side> side;
+        const auto [code, message] = error_of([&] { side = *MethodChooser(preset, never).choose(1, never)[0]; });
+        if (side) use(preset, *side), ++reached;
+        EXPECT_TRUE(side || code == ExitCode::bad_input) << kind.name << ": " << message;  // not achievable
+    }
+    EXPECT_EQ(reached, enough) << kind.name;
+}
 
 }  // namespace doppel::drawn

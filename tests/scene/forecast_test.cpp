@@ -10,13 +10,9 @@
 
 namespace doppel::forecast_test {
 
-const std::atomic<bool> never = false;
-
 Scene scene_from(const std::string& system, int duration_s) {
-    return make_scene(
-        read_preset({"test", "test.toml",
-                     fmt::format("[scene]\nduration_s = {}\nsample_hz = 30\n[system]\nintegrator = \"taylor\"\n{}",
-                                 duration_s, system)}));
+    return doppel::scene_from(fmt::format(
+        "[scene]\nduration_s = {}\nsample_hz = 30\n[system]\nintegrator = \"taylor\"\n{}", duration_s, system));
 }
 
 Forecast predicted(const std::string& system, int duration_s = 30) {

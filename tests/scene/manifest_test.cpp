@@ -1,5 +1,6 @@
 #include "output/fixtures.hpp"
 #include "scene/resolved.hpp"
+#include "scene/support.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,8 +33,7 @@ TEST(Manifest, KeepsMoreDigitsThanDouble) {
     const auto json = json_of_toml("a = [90.0000000000000000000000001, 90.0, 90, 1e-6]\nb = {c = \"x\", d = true}");
     EXPECT_EQ(json.dump(), R"({"a":["90.0000000000000000000000001",90.0,90,1e-06],"b":{"c":"x","d":true}})");
     const auto preset =
-        read_preset({"x", "x.toml",
-                     "[system]\nprecision = \"quad\"\n[b]\nangle_deg = [90.0000000000000000000000001, 90]", "x.toml"});
+        preset_from("[system]\nprecision = \"quad\"\n[b]\nangle_deg = [90.0000000000000000000000001, 90]");
     const auto resolved = json_of_toml(resolved_toml(preset));
     EXPECT_EQ(resolved["a"]["angle_deg"][0], 90);
     EXPECT_EQ(resolved["b"]["angle_deg"][0], "90.0000000000000000000000001");

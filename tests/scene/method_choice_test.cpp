@@ -4,7 +4,7 @@
 #include "base/threads.hpp"
 #include "scene/drawn_scenes.hpp"
 #include "scene/resolved.hpp"
-#include "scene/scene.hpp"
+#include "scene/support.hpp"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -17,25 +17,8 @@
 
 namespace doppel::method_choice_test {
 
-const std::atomic<bool> never = false;
-
-/// A side with a required accuracy.
-Side choose_side(const SideSpec& spec, const Rational& duration, const Rational& sample_hz) {
-    const Preset preset{.duration_s = duration, .sample_hz = sample_hz, .a = spec, .b = spec};
-    return *MethodChooser(preset, never).choose(1, never)[0];
-}
-
-Preset preset_from(const std::string& toml, const std::vector<Override>& overrides = {}) {
-    return read_preset({"test", "test.toml", toml}, overrides);
-}
-
-std::string error_of(const std::string& toml, const std::vector<Override>& overrides = {}) {
-    try {
-        make_scene(preset_from(toml, overrides));
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
+std::string error_of(const std::string& toml, const std::vector<std::string>& arguments = {}) {
+    return test::thrown_by([&] { scene_from(toml, arguments); }).second;
 }
 
 /// The largest error of a side's run against quad, at all samples up to its horizon. `rounded`: against the motion of
@@ -64,15 +47,14 @@ double true_error(const SideSpec& spec, const Side& side, bool rounded = false) 
 }
 
 TEST(Accuracy, TooManyStepsAreRefused) {
-    EXPECT_NE(error_of("[system]\nmodel = \"constraints\"\ngravity_m_per_s2 = 1e50\naccuracy = 1e-6\n")
-                  .find("steps a sample"),
-              std::string::npos);
+    EXPECT_TRUE(says(error_of("[system]\nmodel = \"constraints\"\ngravity_m_per_s2 = 1e50\naccuracy = 1e-6\n"),
+                     "steps a sample"));
 }
 
 // a motor of 1e12 Hz takes some 1e11 steps a sample
 TEST(Accuracy, IsInterruptedWhileAFastDriveIsStepped) {
-    const auto scene = make_scene(preset_from(
-        "[system]\nintegrator = \"taylor\"\n[[system.torque]]\namplitude_N_m = 1\njoint = 1\nfrequency_hz = 1e6\n"));
+    const auto scene = scene_from(
+        "[system]\nintegrator = \"taylor\"\n[[system.torque]]\namplitude_N_m = 1\njoint = 1\nfrequency_hz = 1e6\n");
     const TimeLimit limit(0.1, never);
     SideRun run(scene, scene.a, 'a');
     EXPECT_THROW(for (int sample = 0; sample < 2; ++sample) run.next(limit.reached()), Error);
@@ -84,27 +66,13 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesTheErrorOnRandomScenes) {
     double most_optimistic = 0;
     for (const auto& kind : drawn::kinds) {
         const int enough = all || !kind.is_slow ? 6 : 0;
-        int reached = 0;
         double largest_share = 0;
-        for (int drawing = 0; reached < enough && drawing < 4 * enough; ++drawing) {
-            auto spec = kind.drawn(lot);
-            spec.accuracy = Quad(1);
-            for (std::size_t tenths = 2 + lot.of(12); tenths > 0; --tenths) *spec.accuracy /= 10;
-            const Rational seconds{1 + static_cast<long>(lot.of(8)), 1};
-            Side side;
-            try {
-                side = choose_side(spec, seconds, {10, 1});
-            } catch (const Error& error) {
-                EXPECT_EQ(error.code(), ExitCode::bad_input) << kind.name << ": " << error.what();  // not achievable
-                continue;
-            }
-            ++reached;
-            const double error = true_error(spec, side);
-            EXPECT_LE(error, side.choice->accuracy) << kind.name << ' ' << drawing << ": " << side.method.name;
+        drawn::choose_for_each(kind, lot, enough, 12, 1, {10, 1}, [&](const Preset& preset, const Side& side) {
+            const double error = true_error(preset.a, side);
+            EXPECT_LE(error, side.choice->accuracy) << kind.name << ": " << side.method.name;
             most_optimistic = std::max(most_optimistic, error / side.choice->estimated_error);
             largest_share = std::max(largest_share, error / side.choice->accuracy);
-        }
-        EXPECT_EQ(reached, enough) << kind.name;
+        });
         if (enough > 0) {
             EXPECT_GT(largest_share, 0.1) << kind.name;  // the estimate is not too cautious
         }
@@ -114,23 +82,23 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesTheErrorOnRandomScenes) {
 
 TEST(Choice, MeetsTheAccuracyOfAMotionWhoseNumbersAreRoundedToDoubleToo) {
     // compared only with the exact decimals, round-off errors may cancel by chance: the error was 38 % too large here
-    const auto scene = make_scene(preset_from(
+    const auto scene = scene_from(
         "[scene]\nduration_s = 10\nsample_hz = 60\n[video]\nfps = 60\n[system]\nlinks = 3\nangle_deg = [76.79, 9.394, "
         "89.658]\nomega_deg_per_s = [175.67, 21.14, 388.1]\nlength_m = [1.112, 1.213, 1.443]\nmass_kg = [6.5504, "
-        "0.3471, 6.1755]\naccuracy = 8.1e-10"));
+        "0.3471, 6.1755]\naccuracy = 8.1e-10");
     EXPECT_LE(true_error(scene.preset.a, scene.a, true), scene.a.choice->accuracy);  // 3.2 times before the correction
 }
 
 TEST(Choice, MeetsTheAccuracyOfAMechanismInPartsOfItsSize) {
     // against dop853 in quad: 9.34e-6 m of 1.84 m up to the horizon of 4.78 s
-    const auto scene = make_scene(preset_from(
+    const auto scene = scene_from(
         "[scene]\nduration_s = 5\nsample_hz = 60\n[video]\nfps = 60\n[system]\naccuracy = 6.6e-06\n"
         "[[system.particle]]\nname = \"u\"\nmass_kg = 0.977\nposition_m = [0.682, -0.024]\n"
         "[[system.particle]]\nname = \"v\"\nmass_kg = 1.853\nposition_m = [-1.155, 0.075]\n"
         "[[system.constraint]]\nkind = \"slot-circle\"\nparticle = \"u\"\nposition_m = [0, 0]\n"
         "[[system.constraint]]\nkind = \"rod\"\nfrom = [-1, 0.6]\nto = \"v\"\n"
         "[[system.force]]\nkind = \"spring\"\nfrom = \"u\"\nto = \"v\"\nlength_m = 0.515\nstiffness_N_per_m = 44.881\n"
-        "[[system.force]]\nkind = \"attraction\"\nfrom = \"u\"\nto = \"v\"\nconstant_m3_per_kg_s2 = 2.818\n"));
+        "[[system.force]]\nkind = \"attraction\"\nfrom = \"u\"\nto = \"v\"\nconstant_m3_per_kg_s2 = 2.818\n");
     EXPECT_NEAR(scene.a.reach, 1.84, 0.01);
     EXPECT_LE(true_error(scene.preset.a, scene.a), 1.001 * scene.a.choice->estimated_error);  // 5.08e-6 of 5.19e-6
     EXPECT_LE(scene.a.choice->estimated_error, scene.a.choice->accuracy);
@@ -161,8 +129,7 @@ TEST(Choice, NeverTakesMoreWorkForLessAccuracy) {
 
 TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
     // eight links, released level: errors grow tenfold within half a second
-    const auto scene =
-        make_scene(preset_from("[scene]\nduration_s = 10\n[system]\nlinks = 8\nlength_m = 0.2\naccuracy = 1e-6"));
+    const auto scene = scene_from("[scene]\nduration_s = 10\n[system]\nlinks = 8\nlength_m = 0.2\naccuracy = 1e-6");
     const auto& choice = *scene.a.choice;
     ASSERT_LT(choice.horizon, scene.samples);
     EXPECT_EQ(scene.a.motion.method, "taylor");
@@ -189,8 +156,8 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
 
 TEST(Choice, KeepsTheUprightAsLongAsRoundingAllows) {
     // one link released at the double nearest to π: the difference from π grows as cosh(√(g/l) t)
-    const auto scene = make_scene(preset_from(
-        "[scene]\nduration_s = 20\n[system]\nlinks = 1\nangle_deg = 180\nomega_deg_per_s = 0\naccuracy = 1e-3"));
+    const auto scene = scene_from(
+        "[scene]\nduration_s = 20\n[system]\nlinks = 1\nangle_deg = 180\nomega_deg_per_s = 0\naccuracy = 1e-3");
     const double lacking = 1.2246467991473532e-16, rounding = pi * 0x1p-53, rate = std::sqrt(9.8);
     const double exact = std::acosh(0.8e-3 / (lacking + rounding)) / rate;  // 80 % of the required accuracy
     EXPECT_NEAR(scene.time(scene.a.choice->horizon), exact, 0.1);           // measured 0.02; 9.22 s
@@ -198,7 +165,7 @@ TEST(Choice, KeepsTheUprightAsLongAsRoundingAllows) {
 
 TEST(Choice, TakesTheCheapestWayThatTheTableAllows) {
     const auto scene = [](const std::string& more) {
-        return make_scene(preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-6\n" + more));
+        return scene_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-6\n" + more);
     };
     EXPECT_EQ(scene("").a.motion.model, Model::angles);
     EXPECT_EQ(scene("model = \"constraints\"").a.motion.model, Model::constraints);
@@ -206,8 +173,7 @@ TEST(Choice, TakesTheCheapestWayThatTheTableAllows) {
     EXPECT_EQ(scene("[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [2, 0]").a.motion.model,
               Model::mechanism);
     // a higher accuracy costs more
-    const auto loose = scene(""),
-               tight = make_scene(preset_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-11"));
+    const auto loose = scene(""), tight = scene_from("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-11");
     EXPECT_LT(loose.a.choice->work, tight.a.choice->work);
     EXPECT_LT(tight.a.choice->estimated_error, loose.a.choice->estimated_error);
 }
@@ -227,7 +193,7 @@ TEST(Choice, TakesMethodsThatSupportTheSystem) {
 
 TEST(Choice, IsSharedBySidesThatDifferOnlyInTheSystem) {
     const auto scene = [](const std::string& sides) {
-        return make_scene(preset_from("[scene]\nduration_s = 20\n[system]\naccuracy = 1e-6\n" + sides));
+        return scene_from("[scene]\nduration_s = 20\n[system]\naccuracy = 1e-6\n" + sides);
     };
     // alone, side a would get a tolerance three times as large
     const auto calm = scene("angle_deg = [20, 0]\n[b]\nangle_deg = [110, 0]");
@@ -292,59 +258,57 @@ TEST(Choice, GivesTolerancesOfOneOrThreeOfAPowerOfTen) {
 TEST(Choice, ReplacesIntegratorAndStep) {
     const std::string euler =
         "[scene]\nduration_s = 1\n[system]\nintegrator = \"euler\"\nstep_s = \"1/1200\"\n[b]\nstep_s = \"1/2400\"";
-    const auto by_accuracy = preset_from(euler, {parse_set("system.accuracy=1e-5")});
+    const auto by_accuracy = preset_from(euler, {"system.accuracy=1e-5"});
     EXPECT_TRUE(by_accuracy.a.accuracy && by_accuracy.b.accuracy && !by_accuracy.b.step_s);
     // the preset's keys apply table by table; the command line's method overrides the preset's accuracy
     const auto mixed = preset_from("[system]\naccuracy = 1e-5\n[b]\nintegrator = \"rk4\"");
     EXPECT_TRUE(mixed.a.accuracy && !mixed.b.accuracy);
-    const auto by_method = preset_from("[system]\naccuracy = 1e-5", {parse_set("system.integrator=\"rk4\"")});
+    const auto by_method = preset_from("[system]\naccuracy = 1e-5", {"system.integrator=\"rk4\""});
     EXPECT_TRUE(!by_method.a.accuracy && by_method.a.integrator == "rk4");
     // and the resolved preset gives the same preset again
     EXPECT_EQ(resolved_toml(preset_from(resolved_toml(mixed))), resolved_toml(mixed));
-    EXPECT_NE(resolved_toml(mixed).find("accuracy = 1e-05\n"), std::string::npos) << resolved_toml(mixed);
+    EXPECT_TRUE(says(resolved_toml(mixed), "accuracy = 1e-05\n"));
 }
 
 TEST(Choice, NamesAPossibleAccuracy) {
     EXPECT_EQ(error_of("[system]\naccuracy = 1e-6\nstep_s = 0.001"),
-              "test.toml:2:1: [system] accuracy chooses integrator, step and tolerance; remove it, or step_s");
-    EXPECT_EQ(error_of("[system]\naccuracy = 2"), "test.toml:2:1: [system] accuracy must be at most 1 rad; it is 2");
-    EXPECT_EQ(error_of("[system]\naccuracy = 0"), "test.toml:2:1: [system] accuracy must be > 0; it is 0");
+              "x.toml:2:1: [system] accuracy chooses integrator, step and tolerance; remove it, or step_s");
+    EXPECT_EQ(error_of("[system]\naccuracy = 2"), "x.toml:2:1: [system] accuracy must be at most 1 rad; it is 2");
+    EXPECT_EQ(error_of("[system]\naccuracy = 0"), "x.toml:2:1: [system] accuracy must be > 0; it is 0");
     const auto beyond = error_of("[scene]\nduration_s = 30\n[system]\naccuracy = 1e-15");
-    EXPECT_EQ(beyond.find("test: side a: accuracy = 1e-15 rad is beyond double here: it would be kept for "), 0u)
+    EXPECT_EQ(beyond.find("x: side a: accuracy = 1e-15 rad is beyond double here: it would be kept for "), 0u)
         << beyond;
-    EXPECT_NE(beyond.find("; precision = \"quad\" allows more"), std::string::npos) << beyond;
+    EXPECT_TRUE(says(beyond, "; precision = \"quad\" allows more"));
     // the accuracy that the message calls possible for a chaotic motion is accepted
     const auto at = beyond.find("possible: ") + 10;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);
-    EXPECT_EQ(error_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "");
+    EXPECT_EQ(error_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "no error");
     // so is the one that a regular motion keeps to the end
     const std::string gentle = "[scene]\nduration_s = 30\n[system]\nangle_deg = [30, 0]\naccuracy = ";
     const auto to_end = error_of(gentle + "1e-16");
     const auto end = to_end.find(" to the end;"), start = to_end.rfind(' ', end - 1);
     ASSERT_NE(end, std::string::npos) << to_end;
-    EXPECT_EQ(error_of(gentle + to_end.substr(start, end - start)), "") << to_end;
+    EXPECT_EQ(error_of(gentle + to_end.substr(start, end - start)), "no error") << to_end;
     // a spring whose ends meet has no direction: the method fails, whatever the accuracy
-    EXPECT_NE(error_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]")
-                  .find("the reference fails within 0.0083 s: taylor:"),
-              std::string::npos);
+    EXPECT_TRUE(
+        says(error_of("[system]\naccuracy = 1e-6\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [1, 0]"),
+             "the reference fails within 0.0083 s: taylor:"));
     // so does the reference where the series of a light mass exceeds double
     const std::string bounce = "[scene]\nduration_s = 2\n[system]\naccuracy = 1e-2\nangle_deg = [100, -60]\nmass_kg = ";
-    EXPECT_EQ(error_of(bounce + "[1e-9, 1]"), "");
-    EXPECT_NE(error_of(bounce + "[1e-10, 1]").find("no accuracy can be verified, because the reference fails"),
-              std::string::npos);
+    EXPECT_EQ(error_of(bounce + "[1e-9, 1]"), "no error");
+    EXPECT_TRUE(says(error_of(bounce + "[1e-10, 1]"), "no accuracy can be verified, because the reference fails"));
     // the least error of all methods is possible, whatever is asked
     const auto possible = [&](const char* asked) {
-        const auto words = error_of(bounce + "[1e-5, 1]\nmodel = \"mechanism\"", {parse_set(asked)});
+        const auto words = error_of(bounce + "[1e-5, 1]\nmodel = \"mechanism\"", {asked});
         return words.substr(std::min(words.find("possible: "), words.size()));
     };
     EXPECT_EQ(possible("system.accuracy=1e-11"), possible("system.accuracy=1e-13"));
     EXPECT_EQ(possible("system.accuracy=1e-11").find("possible: 5e-11 for 2 s"), 0u);
     const std::string particle = "[[system.particle]]\nname = \"p\"\nmass_kg = 1\nposition_m = [1, 0]\n";
-    EXPECT_NE(error_of("[system]\naccuracy = 1e-17\n" + particle +
-                       "[[system.constraint]]\nkind = \"rod\"\nfrom = \"p\"\nto = [0, 0]")
-                  .find("accuracy = 1e-17 of its size is beyond double"),
-              std::string::npos);
-    EXPECT_EQ(error_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "");
+    EXPECT_TRUE(says(error_of("[system]\naccuracy = 1e-17\n" + particle +
+                              "[[system.constraint]]\nkind = \"rod\"\nfrom = \"p\"\nto = [0, 0]"),
+                     "accuracy = 1e-17 of its size is beyond double"));
+    EXPECT_EQ(error_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "no error");
 }
 
 }  // namespace doppel::method_choice_test

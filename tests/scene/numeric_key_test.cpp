@@ -37,15 +37,11 @@ struct Found {
 
     Found(const std::string& path, const std::string& text = "", bool reads_springs = false) {
         const PresetText source{"x", "x.toml", "[sweep]\nparameter = 1\n" + text};
-        preset = read_preset({"x", "x.toml", reads_springs ? springs : text});
+        preset = preset_from(reads_springs ? springs : text);
         const auto document = parse_document(source, {});
         TomlReader top(&document.root, "", document.path, document.texts);
         auto table = top.inner("sweep");
-        try {
-            key.emplace(table, "parameter", path, preset);
-        } catch (const Error& error) {
-            message = error.what();
-        }
+        message = error_of([&] { key.emplace(table, "parameter", path, preset); }).second;
     }
     Preset with(double value, double difference = 0) {
         auto changed = preset;
@@ -87,14 +83,13 @@ TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
     ASSERT_TRUE(line.key) << line.message;
     EXPECT_EQ(line.with(0.5).a.constraints[0].direction[1], Quad(0.5));
     // two springs: the key is ambiguous
-    EXPECT_NE(Found("system.force.spring.stiffness_N_per_m", "", true).message.find("no particle, constraint or force"),
-              std::string::npos);
+    EXPECT_TRUE(
+        says(Found("system.force.spring.stiffness_N_per_m", "", true).message, "no particle, constraint or force"));
 }
 
 TEST(NumericKey, OfLinksKeepsWhatAllLinksHaveInCommon) {
     const Found unequal("system.links", "[system]\nlinks = 2\nangle_deg = 120\nlength_m = [1, 2]\n");
-    EXPECT_NE(unequal.message.find("needs links that are all equal; length_m has different numbers"), std::string::npos)
-        << unequal.message;
+    EXPECT_TRUE(says(unequal.message, "needs links that are all equal; length_m has different numbers"));
     Found links("system.links", "[system]\nlinks = 2\nangle_deg = 120\nlength_m = 3\n");
     ASSERT_TRUE(links.key) << links.message;
     EXPECT_TRUE(links.key->is_whole);
@@ -119,7 +114,7 @@ TEST(NumericKey, OfAStepTakesTheNearestThatDividesASample) {
 TEST(NumericKey, IsRefusedWithWhatWouldBeRight) {
     const auto refused = [](const std::string& path, const std::string& words, const std::string& text = "") {
         const Found found(path, text);
-        EXPECT_NE(found.message.find(words), std::string::npos) << path << ": " << found.message;
+        EXPECT_TRUE(says(found.message, words)) << path << ": " << found.message;
         EXPECT_TRUE(found.message.starts_with("x.toml:2:1: [sweep] parameter ")) << found.message;
     };
     refused("gravity", "system.gravity_m_per_s2");

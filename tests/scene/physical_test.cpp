@@ -1,6 +1,5 @@
 // Links with mass, friction and drives, from a preset to a scene.
 #include "scene/captions.hpp"
-#include "scene/refused_presets.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
@@ -11,9 +10,6 @@
 
 namespace doppel::physical_test {
 
-Preset preset_from(const std::string& text) {
-    return read_preset({"x", "presets/x.toml", text});
-}
 PhysicalPendulum<Quad> physical_of_a(const std::string& system) {
     return physical_of(preset_from("[system]\n" + system).a);
 }
@@ -37,27 +33,17 @@ TEST(Physical, ABobOnARodIsOneBodyAboutTheirCentre) {
 
 TEST(Physical, WithoutPropertiesIsThePointMassChain) {
     EXPECT_FALSE(scene_of("butterfly").a.motion.physical);
-    const auto none = make_scene(preset_from("[system]\nrod_mass_kg = 0\njoint_viscous_N_m_s = [0, 0]"));
+    const auto none = scene_from("[system]\nrod_mass_kg = 0\njoint_viscous_N_m_s = [0, 0]");
     EXPECT_FALSE(none.a.motion.physical);
     EXPECT_EQ(resolved_toml(none.preset).find("viscous"), std::string::npos);
-    const auto one = make_scene(preset_from("[a]\njoint_viscous_N_m_s = [0, 0.1]"));
+    const auto one = scene_from("[a]\njoint_viscous_N_m_s = [0, 0.1]");
     EXPECT_TRUE(one.a.motion.physical);
     EXPECT_FALSE(one.b.motion.physical);
 }
 
-TEST(Physical, ItsResolvedPresetIsTheSameScene) {
-    for (const char* name : {"rods", "damped", "kapitza", "driven"}) {
-        const auto preset = read_preset(find_preset(name));
-        const auto again = read_preset({preset.name, "resolved.toml", resolved_toml(preset)});
-        EXPECT_EQ(again.a.physical, preset.a.physical) << name;
-        EXPECT_EQ(again.b.physical, preset.b.physical) << name;
-        EXPECT_EQ(resolved_toml(again), resolved_toml(preset)) << name;
-    }
-}
-
 TEST(Physical, CaptionsStateTheDifference) {
-    const auto scene = make_scene(
-        preset_from("[system.pivot]\namplitude_m = 0.1\n[b]\njoint_viscous_N_m_s = 0.5\n[b.pivot]\nfrequency_hz = 3"));
+    const auto scene =
+        scene_from("[system.pivot]\namplitude_m = 0.1\n[b]\njoint_viscous_N_m_s = 0.5\n[b.pivot]\nfrequency_hz = 3");
     const auto words = side_captions(scene);
     EXPECT_EQ(words[0].heading, "no viscous friction, pivot frequency 1 Hz");
     EXPECT_EQ(words[1].heading, "viscous friction 0.5 N m s, pivot frequency 3 Hz");
@@ -69,33 +55,24 @@ TEST(Physical, TheEnergyStripShowsEnergyWhereItIsNotKept) {
     EXPECT_EQ(scene_of("rods").preset.video.strips[1], StripKind::energy);  // links with mass conserve it
 }
 
-class RefusedPhysical : public testing::TestWithParam<RefusedPreset> {};
-
-TEST_P(RefusedPhysical, SaysWhatWouldBeRight) {
-    const auto [code, message] = error_of([&] { make_scene(preset_from(GetParam().text)); });
-    EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_EQ(message, GetParam().message);
+TEST(Physical, RefusalsSayWhatWouldBeRight) {
+    const std::vector<std::pair<const char*, const char*>> refused{
+        {"[system]\nmass_kg = [0, 1]", "x.toml:2:1: [system] mass_kg[0] must be > 0; it is 0"},
+        {"[system]\nmass_kg = [0, 1]\nrod_mass_kg = [0, 1]",
+         "x.toml:2:1: [system] mass_kg of link 1 and its rod_mass_kg are both 0; one must be > 0"},
+        {"[system]\njoint_viscous_N_m_s = -1", "x.toml:2:1: [system] joint_viscous_N_m_s[0] must be ≥ 0; it is -1"},
+        {"[[system.torque]]\njoint = 3\namplitude_N_m = 1",
+         "x.toml:2:1: [[system.torque]] 1 joint must be 1 to 2, the number of links; it is 3"},
+        {"[system.pivot]\namplitude_m = 1\nfrequency_hz = 0",
+         "x.toml:3:1: [system.pivot] frequency_hz must be > 0; it is 0"},
+        {"[system]\nrod_mass_kg = 1\n[video]\npanels = [\"pendulums\", \"rod-force\"]",
+         "x: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and tracks, have "
+         "no rod tension"},
+        {"[system]\njoint_viscous_N_m_s = 1\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [0, 1]",
+         "x.toml:3:10: [system] force cannot be combined with links with mass, friction or a drive, which need a plain "
+         "chain"}};
+    for (const auto& [text, message] : refused) expect_refused(text, message);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    Presets, RefusedPhysical,
-    testing::Values(
-        RefusedPreset{"[system]\nmass_kg = [0, 1]", "presets/x.toml:2:1: [system] mass_kg[0] must be > 0; it is 0"},
-        RefusedPreset{"[system]\nmass_kg = [0, 1]\nrod_mass_kg = [0, 1]",
-                      "presets/x.toml:2:1: [system] mass_kg of link 1 and its rod_mass_kg are both 0; one must be > 0"},
-        RefusedPreset{"[system]\njoint_viscous_N_m_s = -1",
-                      "presets/x.toml:2:1: [system] joint_viscous_N_m_s[0] must be ≥ 0; it is -1"},
-        RefusedPreset{"[[system.torque]]\njoint = 3\namplitude_N_m = 1",
-                      "presets/x.toml:2:1: [[system.torque]] 1 joint must be 1 to 2, the number of links; it is 3"},
-        RefusedPreset{"[system.pivot]\namplitude_m = 1\nfrequency_hz = 0",
-                      "presets/x.toml:3:1: [system.pivot] frequency_hz must be > 0; it is 0"},
-        RefusedPreset{"[system]\nrod_mass_kg = 1\n[video]\npanels = [\"pendulums\", \"rod-force\"]",
-                      "x: [video] panels: \"rod-force\" needs massless rods; links with mass, friction or a drive, and "
-                      "tracks, have no rod tension"},
-        RefusedPreset{
-            "[system]\njoint_viscous_N_m_s = 1\n[[system.force]]\nkind = \"spring\"\nfrom = \"bob1\"\nto = [0, 1]",
-            "presets/x.toml:3:10: [system] force cannot be combined with links with mass, friction or a drive, which "
-            "need a plain chain"}));
 
 /// The largest angle error of a preset's run up to its horizon, against another method.
 double error_at_end(const Preset& preset) {
@@ -104,7 +81,6 @@ double error_at_end(const Preset& preset) {
     truth.method = "taylor";
     truth.tolerance = parse_quad("1e-15");
     auto requested = scene.a.motion;
-    const std::atomic<bool> never = false;
     const auto one = make_motion(requested), other = make_motion(truth);
     double worst = 0;
     const long last = scene.a.choice->horizon;

@@ -40,8 +40,15 @@ TEST(Presets, ResolvedReadsBackToTheSame) {
         if (is_figure(source)) continue;
         const auto preset = read_preset(source, sets({"video.fps=60", "video.side_colors=[\"#102030\", \"#a0b0c0\"]"}));
         const auto text = resolved_toml(preset);
-        EXPECT_EQ(resolved_toml(read_preset({source.name, "resolved", text})), text);
+        const auto again = read_preset({source.name, "resolved", text});
+        EXPECT_EQ(resolved_toml(again), text);
+        for (const auto side : {&Preset::a, &Preset::b}) {
+            EXPECT_EQ((again.*side).physical, (preset.*side).physical) << source.name;
+            EXPECT_EQ((again.*side).track.sha256, (preset.*side).track.sha256) << source.name;
+            EXPECT_EQ((again.*side).track.offset_deg, (preset.*side).track.offset_deg) << source.name;
+        }
     }
+    EXPECT_EQ(resolved_toml(read_preset(find_preset("butterfly"))).find("track"), std::string::npos);
 }
 
 TEST(Clock, SampleNIsStep250N) {
@@ -51,7 +58,6 @@ TEST(Clock, SampleNIsStep250N) {
     MotionSpec spec;
     spec.chain = scene.b.motion.chain;
     auto by_hand = make_motion(spec);
-    const std::atomic<bool> never = false;
     for (long n = 0; n <= 240; ++n) {
         const auto moment = pair.next(never);
         ASSERT_EQ(moment.sample, n);
@@ -77,7 +83,7 @@ TEST(Clock, SpeedAndFramesFallOnSamples) {
 TEST(AutoModel, IsTheSmallestThatSupportsTheScene) {
     const auto scene = scene_of("butterfly");
     EXPECT_EQ(scene.a.motion.model, Model::angles);
-    EXPECT_NE(scene.a.why.find("closed form"), std::string::npos);
+    EXPECT_TRUE(says(scene.a.why, "closed form"));
 }
 
 TEST(AutoModel, ExplainsAnotherChoice) {
@@ -89,13 +95,12 @@ TEST(AutoModel, ExplainsAnotherChoice) {
               (std::pair{Model::constraints, std::string("\"rattle\" integrates particles with constraints")}));
     EXPECT_EQ(why({"system.stabilise=\"projection\""}),
               (std::pair{Model::constraints, std::string("only constraints can be stabilised")}));
-    EXPECT_EQ(make_scene(read_preset({"x", "x.toml", "[system]\nlinks = 7"})).a.motion.model, Model::angles);
+    EXPECT_EQ(scene_from("[system]\nlinks = 7").a.motion.model, Model::angles);
 }
 
 TEST(Numbers, MeanTheirDecimals) {
     const auto preset =
-        read_preset({"x", "x.toml", "[system]\nangle_deg = [90.003, 1_0.1]\ngravity_m_per_s2 = 9.80665"},
-                    sets({"b.mass_kg=[0.1, +1e-1]"}));
+        preset_from("[system]\nangle_deg = [90.003, 1_0.1]\ngravity_m_per_s2 = 9.80665", {"b.mass_kg=[0.1, +1e-1]"});
     EXPECT_EQ(preset.a.angle_deg[0], Quad(90003) / 1000);
     EXPECT_EQ(preset.a.angle_deg[1], Quad(101) / 10);
     EXPECT_EQ(preset.a.gravity_m_per_s2, Quad(980665) / 100000);
@@ -112,10 +117,8 @@ TEST(Numbers, MeanTheirDecimals) {
 
 TEST(Numbers, EqualInDoubleNeedQuad) {
     const std::vector<std::string> apart{"b.angle_deg=[90.00000000000000000001, 90]"};
-    const auto [code, message] = error_of([&] { scene_of("butterfly", apart); });
-    EXPECT_EQ(code, ExitCode::bad_input);
     EXPECT_EQ(
-        message,
+        refusal([&] { scene_of("butterfly", apart); }),
         "butterfly: angle_deg[0] is 90 on side a and 90.00000000000000000001 on side b, the same number in double: "
         "both sides would move identically. Set precision = \"quad\"");
     auto in_quad = apart;
@@ -127,7 +130,7 @@ TEST(Numbers, EqualInDoubleNeedQuad) {
 std::pair<ExitCode, std::string> error_of_sides(const std::string& system, const std::string& in_a,
                                                 const std::string& in_b, const std::string& precision = "double") {
     const auto text = "[system]\nprecision = \"" + precision + "\"\n" + system + "\n[a]\n" + in_a + "\n[b]\n" + in_b;
-    return error_of([&] { make_scene(read_preset({"x", "x.toml", text, "x.toml"})); });
+    return error_of([&] { scene_from(text); });
 }
 
 TEST(Numbers, OfAnyKeyEqualInDoubleNeedQuad) {
@@ -181,10 +184,8 @@ TEST(Numbers, OfAnyKeyEqualInDoubleNeedQuad) {
     for (const auto& [system, sides, name] : all) {
         const auto [code, message] = error_of_sides(system, sides[0], sides[1]);
         EXPECT_EQ(code, ExitCode::bad_input) << name << ": " << message;
-        EXPECT_NE(message.find("x: " + name + (name.ends_with("r\" length_m") ? " differ" : " is ")), std::string::npos)
-            << name << ": " << message;
-        EXPECT_NE(message.find("both sides would move identically. Set precision = \"quad\""), std::string::npos)
-            << message;
+        EXPECT_TRUE(says(message, "x: " + name + (name.ends_with("r\" length_m") ? " differ" : " is ")));
+        EXPECT_TRUE(says(message, "both sides would move identically. Set precision = \"quad\""));
         EXPECT_EQ(error_of_sides(system, sides[0], sides[1], "quad").first, ExitCode::done) << name;
     }
     // equal sides are accepted if the difference has no effect in quad either
@@ -197,20 +198,19 @@ TEST(Numbers, EqualInQuadAreRefused) {
     const auto [code, message] =
         error_of_sides("", "angle_deg = [125, 90]", "angle_deg = [125.00000000000000000000000000000001, 90]", "quad");
     EXPECT_EQ(code, ExitCode::bad_input) << message;
-    EXPECT_NE(message.find("the same number in quad: both sides would move identically"), std::string::npos) << message;
+    EXPECT_TRUE(says(message, "the same number in quad: both sides would move identically"));
     const auto long_one = error_of_sides("", "", "angle_deg = [90.00000000000000000000000000000000000001, 90]", "quad");
     EXPECT_EQ(long_one.second,
               "x.toml:7:1: [b] angle_deg[0] must have at most 34 digits, the precision of quad; it has 40");
     const auto step = error_of_sides("", "step_s = 0.001", "step_s = 0.00100000000000000000001");
-    EXPECT_NE(step.second.find("[b] step_s is no fraction of whole numbers up to 9.2e18"), std::string::npos)
-        << step.second;
+    EXPECT_TRUE(says(step.second, "[b] step_s is no fraction of whole numbers up to 9.2e18"));
     // trailing zeros do not count
     EXPECT_EQ(error_of_sides("", "", "angle_deg = [91.00000000000000000000000000000000000000, 90]").first,
               ExitCode::done);
 }
 
 TEST(Scene, OfAsManyLinksAsThereMayBeIsMadeAtOnce) {
-    const auto preset = read_preset({"x", "x.toml", "[system]\nlinks = 10000\n[b]\ngravity_m_per_s2 = 9.7", "x.toml"});
+    const auto preset = preset_from("[system]\nlinks = 10000\n[b]\ngravity_m_per_s2 = 9.7");
     const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     const auto scene = make_scene(preset);
     EXPECT_EQ(scene.b.mass.size(), 10000u);
@@ -228,8 +228,7 @@ TEST(ExclusiveKeys, TheCommandLineReplacesKeysOfAnotherKind) {
     EXPECT_FALSE(fixed.preset.a.tolerance);
     EXPECT_EQ(fixed.a.step, default_step);
     // the preset gives one side its own method
-    const auto mixed =
-        make_scene(read_preset({"x", "x.toml", "[system]\nstep_s = \"1/600\"\n[b]\nintegrator = \"dop853\""}));
+    const auto mixed = scene_from("[system]\nstep_s = \"1/600\"\n[b]\nintegrator = \"dop853\"");
     EXPECT_EQ(mixed.a.step, (Rational{1, 600}));
     EXPECT_EQ(mixed.b.motion.tolerance, usual_tolerance);
 
@@ -249,7 +248,6 @@ TEST(Sides, MayDifferInModelMethodAndStep) {
     EXPECT_EQ(scene.b.method.name, "rk4");
     EXPECT_EQ(scene.b.motion.steps_per_sample, 10);
     PairRun pair(scene);
-    const std::atomic<bool> never = false;
     PairState last;
     for (int n = 0; n <= 120; ++n) last = pair.next(never);
     EXPECT_LT(std::abs(last.b.bobs[0].x - last.a.bobs[0].x), 0.001);  // measured 0.0002
@@ -260,12 +258,11 @@ TEST(PairRun, ReportsWhereAMethodFailed) {
         "butterfly", {"b.step_s=\"1/3\"", "scene.sample_hz=3", "scene.duration_s=3000", "b.model=\"constraints\""});
     const auto [code, message] = error_of([&] {
         PairRun pair(scene);
-        const std::atomic<bool> never = false;
         for (long n = 0; n <= scene.samples; ++n) pair.next(never);
     });
     EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_NE(message.find("butterfly: side b failed by t = "), std::string::npos) << message;
-    EXPECT_NE(message.find("constraints, explicit Euler, 1/3 s"), std::string::npos) << message;
+    EXPECT_TRUE(says(message, "butterfly: side b failed by t = "));
+    EXPECT_TRUE(says(message, "constraints, explicit Euler, 1/3 s"));
 }
 
 TEST(PairRun, StopsInTheMiddleOfALongSample) {
@@ -275,11 +272,6 @@ TEST(PairRun, StopsInTheMiddleOfALongSample) {
     pair.next(stop);
     stop = true;
     EXPECT_EQ(error_of([&] { pair.next(stop); }).first, ExitCode::interrupted);
-}
-
-/// A preset of this text.
-Scene scene_from(const std::string& text) {
-    return make_scene(read_preset({"x", "presets/x.toml", text}));
 }
 
 /// A bead of 1 kg on a rod from a fixed point, 1 m to one side.
@@ -299,7 +291,6 @@ TEST(Size, OfOneParticleIsThatOfItsConstraint) {
     EXPECT_DOUBLE_EQ(scene.a.energy_unit, 2 * 9.8);
     // it starts with E = 0, and swings for half a minute
     PairRun pair(scene);
-    const std::atomic<bool> never = false;
     double worst = 0;
     for (long n = 0; n <= scene.samples; ++n) worst = std::max(worst, std::abs(*pair.next(never).a.energy_error));
     EXPECT_LT(worst, 1e-7);  // measured 1.1e-8, the error of the method
@@ -328,7 +319,6 @@ integrator = "euler"
 step_s = "1/50"
 )",
                                               0.3 / degree, rate / degree));
-    const std::atomic<bool> never = false;
     const auto motion = make_motion(scene.a.motion);
     EXPECT_NEAR(motion->observe().energy, 0, 1e-14);                // measured 1.8e-15
     const double maximum = 10 * (2 * 9.8 * 1 + 0.5 * rate * rate);  // the potential range, and the kinetic energy
@@ -348,7 +338,6 @@ TEST(Distance, OverflowIsReportedWithSideAndQuantity) {
     const auto error = [](const std::vector<std::string>& arguments) {
         const auto scene = scene_of("butterfly", arguments);
         PairRun pair(scene);
-        const std::atomic<bool> never = false;
         auto moment = pair.next(never);
         const auto start = error_of([&] { check_distance(scene, moment); });
         moment.sample = 1;
@@ -371,12 +360,11 @@ TEST(Distance, OverflowIsReportedWithSideAndQuantity) {
 
 /// Side a must fail at the first sample after its start, with these words.
 void expect_failure_at_first_sample(const Scene& scene, const char* words) {
-    const std::atomic<bool> never = false;
     SideRun run(scene, scene.a, 'a');
     run.next(never);
     const auto [code, message] = error_of([&] { run.next(never); });
     EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_NE(message.find(words), std::string::npos) << message;
+    EXPECT_TRUE(says(message, words));
 }
 
 TEST(SideRun, NamesTheVelocityThatIsNoNumber) {
@@ -433,10 +421,8 @@ TEST(Particles, AreInTheOrderOfTheOtherSide) {
                })
             .second;
     };
-    EXPECT_NE(error("moon", "sun").find("particle must be in the order of the other side: moon, sun"),
-              std::string::npos)
-        << error("moon", "sun");
-    EXPECT_EQ(error("sun", "moon"), "nothing was thrown");
+    EXPECT_TRUE(says(error("moon", "sun"), "particle must be in the order of the other side: moon, sun"));
+    EXPECT_EQ(error("sun", "moon"), "no error");
 }
 
 TEST(Ensemble, GoesFromOneSideToTheOtherInEqualSteps) {
@@ -474,7 +460,6 @@ damping_N_s_per_m = 2
     EXPECT_TRUE(scene.a.has_energy_error);
     EXPECT_FALSE(scene.b.has_energy_error);
     PairRun pair(scene);
-    const std::atomic<bool> never = false;
     PairState last;
     for (long n = 0; n <= scene.samples; ++n) {
         last = pair.next(never);

@@ -1,13 +1,18 @@
 #pragma once
 
-#include "base/error.hpp"
+#include "errors.hpp"
 #include "numeric/state.hpp"
 #include "scene/scene.hpp"
 
+#include <gtest/gtest.h>
+
+#include <atomic>
 #include <string>
 #include <vector>
 
 namespace doppel {
+
+inline const std::atomic<bool> never = false;
 
 /// Overrides in the form of --set: {"video.size=[480, 270]", …}.
 inline std::vector<Override> sets(const std::vector<std::string>& arguments) {
@@ -20,15 +25,37 @@ inline Scene scene_of(const std::string& preset, const std::vector<std::string>&
     return make_scene(read_preset(find_preset(preset), sets(arguments)));
 }
 
-/// The error that `action` throws; the test fails if it throws none.
+/// The preset "x" of this text.
+inline Preset preset_from(const std::string& text, const std::vector<std::string>& arguments = {},
+                          const std::string& path = "x.toml") {
+    return read_preset({"x", path, text, path}, sets(arguments));
+}
+inline Scene scene_from(const std::string& text, const std::vector<std::string>& arguments = {}) {
+    return make_scene(preset_from(text, arguments));
+}
+
 template <class Action>
-std::pair<ExitCode, std::string> error_of(Action&& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return {error.code(), error.what()};
-    }
-    return {ExitCode::done, "nothing was thrown"};
+test::Thrown error_of(Action&& action) {
+    return test::thrown_by(action);
+}
+
+/// The message of the error in the input (exit 2) that `action` throws.
+template <class Action>
+std::string refusal(Action&& action) {
+    const auto [code, message] = error_of(action);
+    EXPECT_EQ(code, ExitCode::bad_input) << message;
+    return message;
+}
+
+/// Expects that a preset of this text, or its scene, is refused with this message.
+inline void expect_refused(const std::string& text, const std::string& message) {
+    EXPECT_EQ(refusal([&] { scene_from(text); }), message) << text;
+}
+
+/// Whether the text contains these words, for EXPECT_TRUE.
+inline testing::AssertionResult says(const std::string& text, const std::string& words) {
+    if (text.find(words) != std::string::npos) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "\"" << words << "\" is not in: " << text;
 }
 
 }  // namespace doppel

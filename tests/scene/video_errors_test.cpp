@@ -1,4 +1,3 @@
-#include "scene/refused_presets.hpp"
 #include "scene/resolved.hpp"
 #include "scene/support.hpp"
 
@@ -6,21 +5,9 @@
 
 namespace doppel::video_errors_test {
 
-class VideoErrors : public testing::TestWithParam<RefusedPreset> {};
-
-TEST_P(VideoErrors, NamePlaceValueAndRemedy) {
-    const std::string text = std::string("[video]\n") + GetParam().text;
-    const auto [code, message] = error_of([&] { read_preset({"x", "presets/x.toml", text}); });
-    EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_TRUE(message.starts_with("presets/x.toml:2:")) << message;
-    EXPECT_EQ(message.substr(message.find(": [") + 2), GetParam().message);
-}
-
-INSTANTIATE_TEST_SUITE_P(Keys, VideoErrors, testing::ValuesIn(refused_video_keys));
-
 TEST(VideoErrors, LayoutsSayWhichSystemsTheyTake) {
     const auto message = [](const std::string& preset, const std::vector<std::string>& arguments) {
-        return error_of([&] { scene_of(preset, arguments); }).second;
+        return refusal([&] { scene_of(preset, arguments); });
     };
     EXPECT_EQ(message("springs", {"video.layout=\"phase\""}),
               "--set video.layout: [video] layout \"phase\" is for chains; the sides are mechanisms");
@@ -33,7 +20,7 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
     const auto read = [](const std::vector<std::string>& arguments) {
         const char* text =
             "[video]\nformat = \"webm\"\ncodec = \"av1\"\npixel_format = \"yuv420p10\"\ncrf = 60\npreset = \"slow\"";
-        return read_preset({"x", "x.toml", text}, sets(arguments)).video;
+        return preset_from(text, arguments).video;
     };
     for (const char* format : {"gif", "apng", "png"}) {
         const auto set = fmt::format("video.format=\"{}\"", format);
@@ -46,13 +33,12 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
         // but keys of the command line that do not fit are errors
         for (const char* key :
              {"video.crf=20", "video.preset=\"slow\"", "video.pixel_format=\"yuv444p\"", "video.codec=\"vp9\""}) {
-            const auto [code, message] = error_of([&] { read({set, key}); });
-            EXPECT_EQ(code, ExitCode::bad_input) << key;
-            EXPECT_EQ(message.rfind("--set video.", 0), 0u) << message;
-            EXPECT_NE(message.find(fmt::format("the format is \"{}\"", format)), std::string::npos) << message;
+            const auto message = refusal([&] { read({set, key}); });
+            EXPECT_TRUE(message.starts_with("--set video.")) << message;
+            EXPECT_TRUE(says(message, fmt::format("the format is \"{}\"", format)));
         }
     }
-    EXPECT_EQ(error_of([&] { read({"video.crf=20"}); }).second, "nothing was thrown");
+    EXPECT_EQ(error_of([&] { read({"video.crf=20"}); }).second, "no error");
     EXPECT_EQ(error_of([&] { read({"video.format=\"mp4\""}); }).second,
               "x.toml:5:1: [video] crf must be from 0 to 51; it is 60");
 }
@@ -60,7 +46,7 @@ TEST(VideoErrors, AFormatFromTheCommandLineDropsWhatTheFileSaysForAnother) {
 TEST(VideoErrors, APreviewIsAQuarterOfThePixelsUnlessTheCommandLineSaysOtherwise) {
     const auto read = [](const std::vector<std::string>& arguments) {
         const char* text = "[video]\nsize = [1366, 768]\ncrf = 12\npreset = \"slow\"\npreview = true";
-        return read_preset({"x", "x.toml", text}, sets(arguments)).video;
+        return preset_from(text, arguments).video;
     };
     const auto video = read({});
     EXPECT_EQ(video.size, (Size{682, 384}));  // even numbers
@@ -72,11 +58,10 @@ TEST(VideoErrors, APreviewIsAQuarterOfThePixelsUnlessTheCommandLineSaysOtherwise
     EXPECT_EQ(read({"video.preview=false"}).size, (Size{1366, 768}));
     EXPECT_EQ(read({"video.size=[100, 100]", "video.preview=false"}).crf, 12);
     // the resolved preset has the final size, which is not halved again
-    const auto preset = read_preset({"x", "x.toml", "[video]\npreview = true"});
-    EXPECT_EQ(read_preset({"x", "x.toml", resolved_toml(preset)}).video.size, (Size{960, 540}));
-    EXPECT_EQ(read_preset({"x", "x.toml", "[video]\npreview = true\nlayout = \"portrait\""}).video.size,
-              (Size{540, 960}));
-    EXPECT_EQ(read_preset({"x", "x.toml", "[video]\npreview = true\nformat = \"png\""}).video.size, (Size{960, 540}));
+    const auto preset = preset_from("[video]\npreview = true");
+    EXPECT_EQ(preset_from(resolved_toml(preset)).video.size, (Size{960, 540}));
+    EXPECT_EQ(preset_from("[video]\npreview = true\nlayout = \"portrait\"").video.size, (Size{540, 960}));
+    EXPECT_EQ(preset_from("[video]\npreview = true\nformat = \"png\"").video.size, (Size{960, 540}));
 }
 
 TEST(VideoErrors, GifsGetARateThatTheyCanShow) {
@@ -107,7 +92,7 @@ TEST(VideoErrors, FractionsWhoseProductsWouldLeave64BitsAreRefused) {
               refused);
     EXPECT_EQ(message({"scene.sample_hz=\"999999937/999999929\"", "scene.duration_s=\"999999929/999999937\"",
                        "video.fps=\"999983/999979\""}),
-              "nothing was thrown");
+              "no error");
     EXPECT_EQ(
         message({"scene.sample_hz=\"999999937/999999929\"", "scene.duration_s=\"999999929/999999937\"",
                  "video.fps=\"999983/999979\"", "video.speed=\"999961/999959\""}),

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace doppel::whip_test {
@@ -23,10 +22,9 @@ double bend(const Bobs<double>& bobs) {
 TEST(Whip256, IsSmoothUntilItCracksAndThenDiverges) {
     const auto scene = scene_of("whip-256");
     PairRun pair(scene);
-    const std::atomic<bool> stop = false;
     double fastest = 0;
     for (double time = 0; time < 4;) {
-        const auto now = pair.next(stop);
+        const auto now = pair.next(never);
         time = scene.time(now.sample);
         fastest = std::max(fastest, speed(now.a.bobs.back()));
         if (now.sample == 360) {
@@ -47,10 +45,9 @@ TEST(Whip256, GivesTheSameNumbersOnTwoThreads) {
     const auto scene = scene_of("whip-256");
     PairRun pair(scene);
     SideRun b(scene, scene.b, 'b');
-    const std::atomic<bool> stop = false;
     for (int i = 0; i < 60; ++i) {
-        const auto now = pair.next(stop);
-        const auto alone = b.next(stop);
+        const auto now = pair.next(never);
+        const auto alone = b.next(never);
         ASSERT_EQ(now.b.energy, alone.energy);
         for (std::size_t k = 0; k < alone.bobs.size(); ++k) {
             ASSERT_EQ(now.b.bobs[k].x, alone.bobs[k].x);
@@ -59,8 +56,8 @@ TEST(Whip256, GivesTheSameNumbersOnTwoThreads) {
     }
     const auto few = scene_of("whip");
     PairRun small(few);
-    small.next(stop);
-    small.next(stop);
+    small.next(never);
+    small.next(never);
     EXPECT_EQ(small.other_cpu_s(), 0);
 }
 
