@@ -4,8 +4,6 @@
 #include "scene/side_keys.hpp"
 #include "scene/toml_reader.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>

@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <exception>
-#include <thread>
 
 namespace doppel {
 

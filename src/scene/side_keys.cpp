@@ -6,8 +6,6 @@
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,10 +29,7 @@ void take_text(const Field& field, const KeyMember& member, SideKey& key) {
     if (key.is_setting) key.caption = field.caption;
 }
 
-template <class Scalar>
-constexpr std::string_view working = std::is_same_v<Scalar, Quad> ? "quad" : "double";
-template <class Scalar>
-constexpr std::string_view remedy = std::is_same_v<Scalar, Quad> ? "" : ". Set precision = \"quad\"";
+constexpr std::string_view remedy = ". Set precision = \"quad\"";  // of double
 
 /// Throws if the droplet's attraction of the first particle is lost in the rounding of gravity, m/s².
 void check_droplets(const Scene& scene, const Side& side) {
@@ -50,7 +45,7 @@ void check_droplets(const Scene& scene, const Side& side) {
         throw bad_input(
             "{}: the droplet attracts with {:.2g} m/s², below the rounding of g in double ({:.2g}): both sides would "
             "move identically{}",
-            scene.preset.name, attraction, rounding, remedy<double>);
+            scene.preset.name, attraction, rounding, remedy);
     }
 }
 
@@ -60,20 +55,23 @@ Quad factor_of(std::string_view unit) {
     return unit == "Hz" ? 2 * pi_of<Quad>() : Quad(1);
 }
 
-/// Throws if a number differs between the sides and is rounded to the same value in `Scalar`.
-template <class Scalar>
-void check_numbers(const Scene& scene, const std::vector<KeyPair>& differences) {
+/// Throws if a number differs between the sides and is rounded to the same value in this precision.
+void check_numbers(const Scene& scene, const std::vector<KeyPair>& differences, Precision precision) {
+    const bool in_quad = precision == Precision::in_quad;
     for (const auto& [a, b] : differences) {
         if (!a || !b || a->numbers.size() != b->numbers.size()) continue;
         const auto factor = factor_of(a->unit);
-        const auto computed = [&](const Quad& number) { return static_cast<Scalar>(Quad(number * factor)); };
+        const auto computed = [&](const Quad& number) {
+            const Quad value = number * factor;
+            return in_quad ? value : Quad(static_cast<double>(value));
+        };
         for (std::size_t i = 0; i < a->numbers.size(); ++i) {
             const auto &of_a = a->numbers[i], &of_b = b->numbers[i];
             if (of_a == of_b || computed(of_a) != computed(of_b)) continue;
             throw bad_input(
                 "{}: {}{} is {} on side a and {} on side b, the same number in {}: both sides would move identically{}",
                 scene.preset.name, a->name(), a->numbers.size() > 1 ? fmt::format("[{}]", i) : "", text_of(of_a),
-                text_of(of_b), working<Scalar>, remedy<Scalar>);
+                text_of(of_b), name_of(precision), in_quad ? "" : remedy);
         }
     }
 }
@@ -109,7 +107,7 @@ void check_systems(const Scene& scene, const std::vector<KeyPair>& differences) 
         if (const auto name = difference.any().name(); names.find(name) == std::string::npos)
             names += (names.empty() ? "" : ", ") + name;
     throw bad_input("{}: {} differ, but not in the numbers of double: both sides would move identically{}",
-                    scene.preset.name, names, remedy<double>);
+                    scene.preset.name, names, remedy);
 }
 
 }  // namespace
@@ -244,10 +242,9 @@ void check_difference(const Scene& scene) {
     if (differ_in_kind(a, b) || !a.track.is_none() || !b.track.is_none()) return;
     const auto differences = differing_keys(a, b);
     if (differences.empty()) return;
-    if (scene.a.motion.precision == Precision::in_quad && scene.b.motion.precision == Precision::in_quad)
-        return check_numbers<Quad>(scene, differences);
-    check_numbers<double>(scene, differences);
-    check_systems(scene, differences);
+    const auto precision = std::min(scene.a.motion.precision, scene.b.motion.precision);
+    check_numbers(scene, differences, precision);
+    if (precision == Precision::in_double) check_systems(scene, differences);
 }
 
 }  // namespace doppel

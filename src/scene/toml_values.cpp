@@ -2,8 +2,6 @@
 #include "scene/resolved.hpp"
 #include "scene/toml_reader.hpp"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -30,20 +30,18 @@ std::string refused_file(const fs::path& path, const std::atomic<bool>* stop = n
     return refusal([&] { find_preset(path.string(), stop); });
 }
 
+std::string repeated(const std::string& text, std::size_t count) {
+    std::string all;
+    for (std::size_t i = 0; i < count; ++i) all += text;
+    return all;
+}
+
 std::string utf8_of(char32_t c) {
-    const auto byte = [](char32_t bits) { return static_cast<char>(bits); };
-    if (c < 0x80) return {byte(c)};
-    if (c < 0x800) return {byte(0xc0 | c >> 6), byte(0x80 | (c & 0x3f))};
-    if (c < 0x10000) return {byte(0xe0 | c >> 12), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
-    return {byte(0xf0 | c >> 18), byte(0x80 | (c >> 12 & 0x3f)), byte(0x80 | (c >> 6 & 0x3f)), byte(0x80 | (c & 0x3f))};
+    return fs::path(std::u32string(1, c)).string();
 }
 
 TEST(DrawnText, IsOfAtMostAThousandLetters) {
-    const auto of = [](std::size_t letters) {
-        std::string text;
-        for (std::size_t i = 0; i < letters; ++i) text += "\xce\xb8";  // θ
-        return '"' + text + '"';
-    };
+    const auto of = [](std::size_t letters) { return '"' + repeated("θ", letters) + '"'; };
     for (const std::string key : {"title", "subtitle"}) {
         EXPECT_NO_THROW(preset_from(key + " = " + of(1000))) << key;
         EXPECT_EQ(refused(key + " = " + of(1001)),
@@ -161,12 +159,6 @@ TEST(PresetText, NumbersAreFoundSoonInALongText) {
         EXPECT_LT(seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, 2);  // measured 0.1; minutes if counted again for each
         for (const auto& angle : preset.a.angle_deg) ASSERT_EQ(angle, Quad(3) / 2);
     }
-}
-
-std::string repeated(const std::string& text, std::size_t count) {
-    std::string all;
-    for (std::size_t i = 0; i < count; ++i) all += text;
-    return all;
 }
 
 TEST(PresetText, ADeepKeyIsRefusedBeforeItMakesTables) {

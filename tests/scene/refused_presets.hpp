@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 // Presets with errors and their messages, for the tests of the reader and of the schema.
