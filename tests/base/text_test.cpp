@@ -82,7 +82,7 @@ TEST(Text, TheNearestWordIsATypingErrorAwayOrBeginsSo) {
              {"backgruond_colour", "background_color"},
              {"bakgrund_kolour", "background_color"},  // 4 of 15 letters differ
              {"bakgrnd_kollour", ""},                  // 6 letters differ
-             {"pst", ""},
+             {"ptr", ""},                              // no part of poster_s
              {"colour", ""}})
         EXPECT_EQ(nearest(word, keys).value_or(""), meant);
     EXPECT_FALSE(nearest("x", {}));
