@@ -159,6 +159,8 @@ TEST(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {{"check", "butterfly", "--set", "system.lenght_m=1"}, "did you mean \"length_m\"?"},
         {{"check", "fig6", "--quality", "draft"}, "--quality is for films, and not for figures"},
         {{"compare", "nothing.png", "stdout"}, "nothing.png: there is no such file or folder"},
+        {{"check", "bad"}, "there is no preset \"bad\"; did you mean bad.toml?"},
+        {{"render", "calm", "--bogus"}, "--bogus; see doppel render --help"},
         {{"figure"}, "PRESET is required"},
         {{"figure", "fig2-rihgt"}, "there is no preset \"fig2-rihgt\"; did you mean \"fig2-right\"?"},
         {{"figure", "butterfly"}, "doppel render butterfly"},

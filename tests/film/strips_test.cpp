@@ -211,6 +211,32 @@ TEST(Strips, ACurveBeginsWhereItEntersItsAxis) {
         EXPECT_FALSE(point.at.x > words->anchor.x && point.at.y > words->anchor.y - words->size) << point.at.x;
 }
 
+TEST(Strips, TextsOfMarksStandWhereTheyCoverLessOfTheCurve) {
+    // left of a rising curve at the top, under one that has risen at the foot
+    for (const auto& [film, seconds, is_at_top] : {std::tuple("horizon", 35, true), {"pendulum-portrait", 20, false}}) {
+        const auto scene = scene_of(film, {"video.size=[1080, 1920]"});
+        const auto area = make_layout(scene).strips[0].area;
+        const auto labels = labels_of(scene, seconds * 120);
+        for (const char* words : {"numerical", "diverged"}) {
+            const auto text = label_of(labels, words);
+            ASSERT_TRUE(text) << film;
+            EXPECT_EQ(text->anchor.y < (area.top + area.bottom) / 2, is_at_top) << film << words;
+        }
+    }
+}
+
+TEST(Strips, CaptionsOfNarrowStripsShrinkOrSayThatTheyAreCut) {
+    const auto labels =
+        labels_of(scene_of("butterfly", {"video.size=[1280, 720]",
+                                         "video.panels=[\"pendulums\", \"distance\", \"exponent\", "
+                                         "\"energy\", \"rod-error\", \"rod-force\", \"energies-a\", \"angles\"]"}),
+                  120);
+    const auto whole = label_of(labels, "energy error, of the potential range"), cut = label_of(labels, "potential");
+    ASSERT_TRUE(whole && cut);
+    EXPECT_LT(whole->size, label_of(labels, "angles, °")->size);
+    EXPECT_TRUE(cut->text.ends_with(" …")) << cut->text;
+}
+
 TEST(Strips, ACurveIsCutWhereItLeavesItsAxis) {
     const auto scene = scene_of("butterfly", {"video.panels=[\"pendulums\", \"angles\"]", "scene.duration_s=4",
                                               "video.angles_range=[-45, 45]"});
