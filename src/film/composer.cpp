@@ -17,7 +17,6 @@ namespace {
 
 constexpr float leading = 1.55f;  // times the text size
 
-/// A line of text on a card; its position depends on the other lines.
 Label card_line(std::string text, double size, Weight weight, Color color) {
     return label(std::move(text), {}, px(size), color, Align::center, weight);
 }

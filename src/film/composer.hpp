@@ -23,13 +23,12 @@ public:
     /// Adds the next snapshot in order: all samples from 0 on, and any times between them.
     void add(const Snapshot& snapshot);
 
-    /// The picture of the last snapshot.
     DisplayList frame() const;
 
     Color page_color() const { return state_.layout.style.theme.background; }
 
-    /// A card over the whole picture, `opacity` 0…1. It shows the pendulums between lines of text: title and initial
-    /// difference, or the results up to now. Without a title or end card in the film, the pendulums are left out.
+    /// A card over the whole picture, `opacity` 0…1: the pendulums between lines of text. They are left out if the film
+    /// has no card.
     DisplayList title_card(double opacity) const;
     DisplayList end_card(double opacity) const;
 

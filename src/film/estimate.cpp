@@ -1,7 +1,6 @@
 #include "film/estimate.hpp"
 
 #include "base/error.hpp"
-#include "base/machine.hpp"
 #include "base/threads.hpp"
 #include "film/film.hpp"
 #include "film/page.hpp"
@@ -84,7 +83,6 @@ Scene beginning_of(Scene scene, long samples) {
     return scene;
 }
 
-/// What some frames take.
 struct FrameCost {
     double frames = 1, wall_s = 0, cpu_s = 0;  // from the first of them on
     double bytes = 0;                          // of the film

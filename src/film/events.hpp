@@ -12,7 +12,6 @@
 
 namespace doppel {
 
-/// Something that happens in a film.
 struct FilmEvent {
     double time_s;
     std::string event;              // "release", "flip", "divergence", "speed"
@@ -21,8 +20,7 @@ struct FilmEvent {
     long frame = 0;                 // of the whole film, the first that shows it
 };
 
-/// Finds the flips of a pair from its samples: a link of a side passes the upright position. Of chains of one to three
-/// links.
+/// Finds where a link passes the upright position, in chains of one to three links.
 class FlipFinder {
 public:
     explicit FlipFinder(const Scene& scene) : scene_(scene) {}

@@ -3,7 +3,6 @@
 #include "base/machine.hpp"
 #include "image/picture.hpp"
 #include "output/png.hpp"
-#include "output/sink.hpp"
 
 #include <fmt/ranges.h>
 
@@ -180,7 +179,6 @@ void Film::join_parts() {
     record_.frames = schedule_.frames();
 }
 
-/// Puts the pictures of a part into one file.
 void Film::pack_pictures() {
     const auto name = part_name(scene_, *options_.shard);
     BlockFile part(parts_.file(name), part_header(scene_, *options_.shard, record_.gl));

@@ -11,7 +11,6 @@
 #include "scene/resolved.hpp"
 #include "scene/scene.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -42,8 +41,7 @@ Json method_json(const Scene& scene, const Side& side);
 /// Writes the manifest `name` with the hashes of the complete files. Throws Error (exit 4).
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record);
 
-/// One picture with frames from first … last − 1 of a recording, as many as the preset sets. It shows only pendulums
-/// and time, in rows below a title. Throws as Composer and Renderer do.
+/// One picture with frames from first … last − 1 of a recording, as many as the preset sets, in rows below a title.
 Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,
                          const std::atomic<bool>& stop);
 
@@ -54,8 +52,6 @@ struct Schedule {
     long frames() const { return before() + motion + hold_end + end; }
     /// The number of frames before frame 1 of the motion, without its frame 0.
     long before() const { return title + hold_start; }
-    /// The frame of the motion that frame `number` of the film shows.
-    long motion_frame(long number) const { return std::clamp(number - before(), 0L, motion - 1); }
     /// The first frame of the film that shows a frame of the motion without a card.
     long at(long frame) const { return frame == 0 ? title : before() + frame; }
     /// The frames of the film that belong to the frames first … last − 1 of the motion.
@@ -66,12 +62,10 @@ struct Schedule {
 
 Schedule schedule_of(const Scene& scene);
 
-/// The frames of the film that a run draws: those of its part, none for a merge, otherwise all from frame `first` of
-/// the motion on.
+/// The frames of the film that a run draws: those of its part, or all from frame `first` of the motion on.
 FrameRange drawn_frames(const Scene& scene, const RunOptions& options, long first);
 
-/// The opacity of a card on frame `k` of `count`. It fades out over its last half second (or in over its first), but at
-/// most over half of its frames.
+/// The opacity of a card on frame `k` of `count`. A fade takes half a second, but at most half of the frames.
 double card_opacity(long k, long count, double fps, bool fades_in);
 
 /// Draws a composer's frames; with the alpha of each pixel if the film is transparent.
@@ -81,9 +75,7 @@ public:
     Canvas(const Scene& scene, const Composer& composer, Gl gl, const std::atomic<bool>& stop);
 
     const Picture& draw(const DisplayList& list);
-    /// Where the last picture differs from the one before it.
     const std::vector<Rect>& changed() const { return changed_; }
-    /// The library and driver.
     std::string description() const { return renderer_->description(); }
 
 private:
@@ -93,8 +85,7 @@ private:
     std::vector<Rect> changed_;
 };
 
-/// Draws the frames of a run, passes them to the video or picture sequence, and keeps the poster. Of a part it draws
-/// the frames of the part; when it joins parts, only the poster.
+/// Draws the frames of a run, passes them to the video or picture sequence, and keeps the poster.
 class Film {
 public:
     /// Shows the frames first … last − 1 of the motion, and adds the film's files to `parts`. All functions may throw
@@ -102,8 +93,8 @@ public:
     Film(const Scene& scene, const MotionBounds& bounds, const RunOptions& options, long first, long last,
          Transaction& parts, RunRecord& record, const std::atomic<bool>& stop);
 
-    /// Adds a snapshot; all samples and frames from 0 on are required. If it is the next frame, writes it, and returns
-    /// true. The title card precedes the first frame, the end card follows the last.
+    /// Adds a snapshot; all samples and frames from 0 on are required. If it is the next frame, writes it with its
+    /// cards, and returns true.
     bool add(const Snapshot& snapshot);
 
     /// Completes the film, with these events as chapters, and writes the poster.

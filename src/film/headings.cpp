@@ -14,7 +14,6 @@
 namespace doppel {
 namespace {
 
-/// The texts above a side's panel.
 struct Heading {
     std::size_t panel, side;
     SideCaptions said;
@@ -59,26 +58,23 @@ void add_above(Layout& layout, const Heading& words, const HeadingSizes& sizes, 
     const auto& theme = layout.style.theme;
     const float t = layout.text;
     const bool right = words.align == Align::right;
-    const float base = panel.top - 12 * t, edge = right ? panel.right : panel.left;
-    const auto add = [&](const FittedText& fits, float x, float y, Color hue, Weight weight, Align align) {
-        if (!fits.text.empty()) layout.words.push_back(label(fits.text, {x, y}, fits.size, hue, align, weight));
-    };
     const auto fitted_to = [&](const std::string& text, float size, Weight weight) {
         return fitted_text(layout, text, std::max(size, layout.min_text), weight, sizes.width);
     };
     const auto head = fitted_to(words.said.heading, sizes.heading, Weight::bold);
     const auto tail = fitted_to(words.said.note, sizes.note, Weight::regular);
-    const auto color = theme.sides[words.side];
-    if (sizes.two_lines) {
-        add(head, edge, base - 1.25f * tail.size, color, Weight::bold, words.align);
-        add(tail, edge, base, theme.quiet_text, Weight::regular, words.align);
-        return;
-    }
-    const float head_width = layout.style.type.width(head.text, head.size, Weight::bold),
-                tail_width = layout.style.type.width(tail.text, tail.size);
-    const float left = right ? edge - head_width - (tail_width > 0 ? note_gap * t + tail_width : 0) : edge;
-    add(head, left, base, color, Weight::bold, Align::left);
-    add(tail, left + head_width + note_gap * t, base, theme.quiet_text, Weight::regular, Align::left);
+    Point head_at{right ? panel.right : panel.left, panel.top - 12 * t}, tail_at = head_at;
+    if (sizes.two_lines)
+        head_at.y -= 1.25f * tail.size;
+    else if (!right)
+        tail_at.x = tail_at.x + layout.style.type.width(head.text, head.size, Weight::bold) + note_gap * t;
+    else if (!tail.text.empty())
+        head_at.x -= layout.style.type.width(tail.text, tail.size) + note_gap * t;
+    const auto add = [&](const FittedText& fits, Point at, Color color, Weight weight) {
+        if (!fits.text.empty()) layout.words.push_back(label(fits.text, at, fits.size, color, words.align, weight));
+    };
+    add(head, head_at, theme.sides[words.side], Weight::bold);
+    add(tail, tail_at, theme.quiet_text, Weight::regular);
 }
 
 /// The size at which the text fits, but at least three quarters of `size` and legible, px.

@@ -36,10 +36,9 @@ Trail::Trail(const Scene& scene, const Style& style, Color color, float width, f
       pen_{.vertices = {}, .width = width, .color = color, .glow = style.glow} {}
 
 std::optional<Point> Trail::end() const {
-    return points_.empty() ? std::nullopt : std::optional(points_.back().at);
+    return points_.empty() ? std::nullopt : std::optional(points_.back().vertex.at);
 }
 
-/// Removes whole groups that have faded out.
 void Trail::add(Point at, double time, double now) {
     const long g = static_cast<long>(std::floor(time * sample_hz_ + 1e-6)) / group;
     if (!points_.empty() && points_.back().group != g) {
@@ -50,9 +49,9 @@ void Trail::add(Point at, double time, double now) {
         first.starts = false;
         points_.push_back(first);
     }
-    const bool starts = !points_.empty() && std::abs(at.x - points_.back().at.x) > jump_;
-    if (starts) points_.back().joint = true;
-    points_.push_back({.at = at, .time = time, .group = g, .starts = starts, .joint = starts});
+    const bool starts = !points_.empty() && std::abs(at.x - points_.back().vertex.at.x) > jump_;
+    if (starts) points_.back().vertex.joint = true;
+    points_.push_back({{.at = at, .joint = starts}, time, g, starts});
     while (end_of(points_.front().group) < now - trail_s_) points_.pop_front();
 }
 
@@ -63,16 +62,15 @@ void Trail::simplify(Points& points) const {
     std::vector<Stroke::Vertex> path;
     for (std::size_t i = begin; i < points.size(); ++i) {
         // brightness falls almost linearly over short times
-        const double part = (points[i].time - points[begin].time) / trail_s_;
-        path.push_back(
-            {.at = points[i].at, .alpha = static_cast<float>(part), .bend = points[i].bend, .joint = points[i].joint});
+        path.push_back(points[i].vertex);
+        path.back().alpha = static_cast<float>((points[i].time - points[begin].time) / trail_s_);
     }
     std::size_t kept = begin;
     for (std::size_t i = 0; i < path.size(); ++kept) {
         const auto piece = i + 1 < path.size() ? next_piece(path, i) : StrokePiece{i, i + 1};
         points[kept] = points[begin + i];
-        points[kept].bend = piece.bend;
-        points[kept].joint = true;
+        points[kept].vertex.bend = piece.bend;
+        points[kept].vertex.joint = true;
         i = piece.last;
     }
     points.resize(kept);
@@ -93,7 +91,7 @@ double Trail::faded_until(long g, double now) const {
 void Trail::draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, Point shift) const {
     if (!(trail_s_ > 0) || !(pen_.width > 0) || points_.empty()) return;
     auto points = points_;
-    if (head) points.push_back({.at = *head, .time = now, .group = points.back().group});
+    if (head) points.push_back({{.at = *head}, now, points.back().group});
     simplify(points);
     Stroke stroke = pen_;
     const auto end_stroke = [&] {
@@ -102,20 +100,19 @@ void Trail::draw(const Area& area, double now, std::optional<Point> head, Displa
     std::optional<long> last_group;
     double until = 0;
     for (const auto& point : points) {
-        const Point at{point.at.x + shift.x, point.at.y + shift.y};
-        const bool is_within = area.contains(at);
+        auto vertex = point.vertex;
+        vertex.at = {vertex.at.x + shift.x, vertex.at.y + shift.y};
+        const bool is_within = area.contains(vertex.at);
         if (point.starts || !is_within) end_stroke();
         if (!is_within) continue;
         if (point.group != last_group) until = faded_until(point.group, now);
         last_group = point.group;
         const double freshness = std::clamp(1 - (until - point.time) / trail_s_, 0.0, 1.0);
         constexpr double thinnest = 0.55;
-        stroke.vertices.push_back({.at = at,
-                                   .alpha = static_cast<float>(std::pow(freshness, fading)),
-                                   .width = static_cast<float>(thinnest + (1 - thinnest) * freshness),
-                                   .glow = static_cast<float>(std::pow(freshness, 4)),
-                                   .bend = point.bend,
-                                   .joint = point.joint});
+        vertex.alpha = static_cast<float>(std::pow(freshness, fading));
+        vertex.width = static_cast<float>(thinnest + (1 - thinnest) * freshness);
+        vertex.glow = static_cast<float>(std::pow(freshness, 4));
+        stroke.vertices.push_back(vertex);
     }
     end_stroke();
 }
@@ -181,7 +178,6 @@ public:
     }
 
 private:
-    /// The path of a pendulum's last bob.
     struct Path {
         Trail trail;
         std::optional<std::pair<Bob<double>, double>> last{};  // the last bob and its time, s
@@ -277,7 +273,6 @@ private:
         return at(place[0] + pivot.x, place[1] + pivot.y);
     }
 
-    /// Slots in which bobs slide.
     void draw_slots(const Side& side, DisplayList& list) const {
         const float width = px(style_.width.grid);
         const auto& color = theme_.grid;
@@ -297,7 +292,6 @@ private:
         }
     }
 
-    /// Symbols at the fixed ends.
     void draw_pivots(const Side& side, DisplayList& list) const {
         if (!shows("rods") || !(layout_.rod_radius > 0)) return;
         const float radius =

@@ -3,7 +3,6 @@
 #include "film/layout.hpp"
 #include "film/recording.hpp"
 
-#include <algorithm>
 #include <deque>
 #include <iterator>
 #include <limits>
@@ -24,18 +23,15 @@ public:
     /// Adds a point that was reached at `time`, s. Points that have faded out at `now` are removed.
     void add(Point at, double time, double now);
 
-    /// Draws the path up to the head, if there is one. It is interrupted outside the area and at NaN. The whole path is
-    /// moved by `shift`.
+    /// Draws the path up to the head, if there is one, all moved by `shift`. It is interrupted outside the area.
     void draw(const Area& area, double now, std::optional<Point> head, DisplayList& list, Point shift = {}) const;
 
 private:
     struct TrailPoint {
-        Point at;
-        double time;          // s
-        long group;           // number of the group of points that fade together
-        bool starts = false;  // the path is interrupted before it
-        float bend = 0;       // of the parabola to the next point, px
-        bool joint = false;   // simplify() keeps this point
+        Stroke::Vertex vertex;  // without opacity, width and glow
+        double time;            // s
+        long group;             // number of the group of points that fade together
+        bool starts = false;    // the path is interrupted before it
     };
     using Points = std::deque<TrailPoint>;
 
@@ -57,8 +53,7 @@ struct FilmState {
     Outcome outcome{};
 
     double time() const { return scene.time(snapshot.pair.moment()); }
-    /// Whether the snapshot is between two samples. Curves and trails contain only samples, and are drawn on to the
-    /// snapshot.
+    /// Between two samples: curves and trails contain only samples, and are drawn on to the snapshot.
     bool is_between() const { return snapshot.pair.share > 0; }
     const Observation& seen(const Side& side) const { return &side == &scene.a ? snapshot.pair.a : snapshot.pair.b; }
     const Bobs<double>& bobs(std::size_t pendulum) const {
@@ -73,7 +68,6 @@ public:
     explicit Layer(const FilmState& state) : state_(state) {}
     virtual ~Layer() = default;
 
-    /// Draws the constant part.
     virtual void backdrop(DisplayList& list) const = 0;
     /// Adds the state's snapshot, which is the next sample from 0 on.
     virtual void add() {}

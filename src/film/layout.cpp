@@ -1,10 +1,8 @@
 #include "film/layout.hpp"
 
 #include "film/strips.hpp"
-#include "image/color.hpp"
 #include "numeric/state.hpp"
 #include "plot/labels.hpp"
-#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,23 +101,18 @@ View fitted_view(const Scene& scene, const MotionBounds& seen) {
             reach = std::max(reach, static_cast<double>(member.chain->reach()) + scene.a.pivot_reach);
         return {.width = 2 * reach, .height = 2 * reach};
     }
-    double left = seen.left, right = seen.right, bottom = seen.bottom, top = seen.top;
+    auto all = seen;
     for (const auto* side : {&scene.a, &scene.b})
         for (const auto& line : side->lines)
             for (const auto* end : {&line.from, &line.to})
-                if (const auto* place = std::get_if<Place<double>>(end)) {
-                    left = std::min(left, (*place)[0] - line.radius);
-                    right = std::max(right, (*place)[0] + line.radius);
-                    bottom = std::min(bottom, (*place)[1] - line.radius);
-                    top = std::max(top, (*place)[1] + line.radius);
-                }
-    const double minimum = 1e-3 * std::max({right - left, top - bottom, 1e-6});
-    const View view{(left + right) / 2, (bottom + top) / 2, std::max(right - left, minimum),
-                    std::max(top - bottom, minimum), false};
+                if (const auto* place = std::get_if<Place<double>>(end)) all.add((*place)[0], (*place)[1], line.radius);
+    const double width = all.right - all.left, height = all.top - all.bottom;
+    const double minimum = 1e-3 * std::max({width, height, 1e-6});
+    const View view{(all.left + all.right) / 2, (all.bottom + all.top) / 2, std::max(width, minimum),
+                    std::max(height, minimum), false};
     return std::isfinite(view.width + view.height) ? view : View{.width = 2, .height = 2, .is_circle = false};
 }
 
-/// The axis of a strip if the preset sets none.
 Range fitted_range(StripKind kind, const MotionBounds& seen) {
     const auto& spread = seen.strips[static_cast<std::size_t>(kind)];
     if (kind == StripKind::distance) return fitted_distance(spread);

@@ -158,12 +158,10 @@ std::string speed_text(const Scene& scene, double time);
 /// Adds title, subtitle and speed, and places the clock. Returns where they end, px from the top.
 float place_header(Layout& layout, const Scene& scene);
 
-/// Divides the area below the header, and adds the headings of the panels, which state how the sides differ. A heading
-/// is one line, or two if it is long.
+/// Divides the area below the header, and adds the headings of the panels, which state how the sides differ.
 Regions place_headings(Layout& layout, const Scene& scene, const Area& room, RegionNeeds needs);
 
-/// Fits a text into `width` px: shrinks it to at least three quarters and to the smallest legible size, then drops its
-/// last words.
+/// A text for `width` px: shrunk to three quarters and the smallest legible size at least, then without its last words.
 struct FittedText {
     std::string text;
     float size;

@@ -15,7 +15,6 @@
 namespace doppel {
 namespace {
 
-/// For a side that shows a measured track.
 Json track_json(const Replay& replay, const TrackSpec& spec) {
     const auto& piece = replay.samples();
     const Json measured{

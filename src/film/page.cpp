@@ -254,7 +254,6 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
     return json;
 }
 
-/// The player with the data of a film.
 HtmlPage player(const Scene& scene, Json film) {
     const auto file = [](std::string_view name) { return embedded_file(film_files(), name); };
     return {.kind = "film",

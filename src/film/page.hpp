@@ -23,7 +23,6 @@ public:
 
     /// Takes every sample from 0 on; ignores moments between samples.
     void add(const Snapshot& snapshot);
-    /// Writes the file. Throws Error (exit 4).
     void finish();
 
 private:

@@ -19,8 +19,7 @@ std::vector<std::string> columns_of(const Scene& scene, const std::vector<std::s
 /// The numbers of a row in all columns; NaN for empty cells. `start_distance` = the distance of the pair at sample 0,
 /// the reference of log_ratio.
 std::vector<double> numbers_of(const Scene& scene, const Snapshot& snapshot, double start_distance);
-/// Writes the row, of quad numbers all digits. Throws Error (exit 4), as Csv does; exit 3 if the distance exceeds the
-/// range of double.
+/// Writes the row, of quad numbers all digits. Throws Error (exit 4), as Csv does.
 void add_row(Csv& table, const Scene& scene, const Snapshot& snapshot, double start_distance);
 
 }  // namespace doppel

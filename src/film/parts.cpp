@@ -1,16 +1,12 @@
 #include "film/parts.hpp"
 
 #include "base/embedded.hpp"
-#include "base/error.hpp"
 #include "film/film.hpp"
 #include "output/blocks.hpp"
 #include "output/files.hpp"
 #include "output/written.hpp"
-#include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
-
-#include <algorithm>
 
 namespace doppel {
 namespace {
@@ -28,7 +24,6 @@ std::string missing_parts(const std::vector<fs::path>& parts) {
     return fmt::format("{}{}", fmt::join(missing, ", "), count > max_named ? fmt::format(" … {} in all", count) : "");
 }
 
-/// What a part must agree on with the film.
 Json identity(const Scene& scene) {
     return {{"film", scene.preset.name},
             {"version", version()},
@@ -37,7 +32,6 @@ Json identity(const Scene& scene) {
             {"libav", libav_description()}};
 }
 
-/// Reads the header of a part. Throws if it does not belong to the film.
 Shard shard_in(const BlockFile& part, const fs::path& path, const Scene& scene) {
     const auto header = Json::parse(part.header(), nullptr, false);
     const auto shard = shard_of(header);

@@ -19,14 +19,12 @@ struct Shard {
     int number = 1, of = 1;
 };
 
-/// The largest number of parts that a run can be split into.
 inline constexpr int max_parts = 100'000;
 
 /// The keys "shard" and "of" of a header, if they are valid.
 std::optional<Shard> shard_of(const Json& header);
 
-/// Throws Error (exit 2) if a part belongs to another film, figure, preset or version: if its header differs from
-/// `wanted` in one of these keys. `verb` = how a part is made, "render".
+/// Throws Error (exit 2) if the header of a part differs from `wanted` in one of these keys. `verb`: "render".
 void check_identity(const std::filesystem::path& path, const Json& header, const Json& wanted, const Shard& shard,
                     std::string_view verb);
 
@@ -52,8 +50,7 @@ struct FrameRange {
     long at(long k) const { return only.empty() ? first + k : only[static_cast<std::size_t>(k)]; }
 };
 
-/// The frames of a part. A part consists of whole segments (VideoOptions::segment). Throws Error (exit 2) if the film
-/// has fewer segments than parts, or cannot be split.
+/// A part consists of whole segments (VideoOptions::segment). Throws Error (exit 2) if the film has too few of them.
 FrameRange frames_of(const Scene& scene, const Shard& shard);
 
 /// "butterfly.3-of-8.shard"

@@ -9,7 +9,6 @@
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace doppel {
@@ -64,16 +63,18 @@ void Spread::add(double value) {
     ++count;
 }
 
+void MotionBounds::add(double x, double y, double radius) {
+    left = std::min(left, x - radius);
+    right = std::max(right, x + radius);
+    bottom = std::min(bottom, y - radius);
+    top = std::max(top, y + radius);
+}
+
 void MotionBounds::add(const Scene& scene, const PairState& state, double start_distance) {
     const auto& video = scene.preset.video;
     const auto link = static_cast<std::size_t>(video.phase_link - 1);
     for (const auto* side : {&state.a, &state.b}) {
-        for (const auto& bob : side->bobs) {
-            left = std::min(left, bob.x);
-            right = std::max(right, bob.x);
-            bottom = std::min(bottom, bob.y);
-            top = std::max(top, bob.y);
-        }
+        for (const auto& bob : side->bobs) add(bob.x, bob.y);
         if (link < side->bobs.size()) fastest = std::max(fastest, std::abs(side->bobs[link].omega));
     }
     distance[static_cast<std::size_t>(state.sample) * distance.size() / static_cast<std::size_t>(scene.samples + 1)]
@@ -136,8 +137,7 @@ void Recording::play(const Visit& visit) {
     if (error_) std::rethrow_exception(error_);
 }
 
-/// Simulates the required snapshots, or reads them from the file. With bounds of the whole motion, then goes on to its
-/// end.
+/// If the motion is bounded, goes on to its end after the required snapshots.
 void Recording::simulate(bool is_bounded, const Visit& visit) {
     record_ = {};
     std::optional<RecordingReader> file;

@@ -46,6 +46,8 @@ struct MotionBounds {
     std::array<Spread, strip_kinds> strips{};                   // for the strips of the film
     std::array<Spread, 64> distance{};                          // of the pair, in equal parts of the time
 
+    /// Adds what lies within `radius` of a place, m.
+    void add(double x, double y, double radius = 0);
     /// Adds the next sample.
     void add(const Scene& scene, const PairState& state, double start_distance);
 };
@@ -103,14 +105,12 @@ public:
     Recording& operator=(const Recording&) = delete;
 
     using Visit = std::function<void(const Snapshot&)>;
-    /// Calls visit(snapshot) in order of time. Then throws the error that ended the simulation, if any, as
-    /// SideRun::next() and check_distance() do.
+    /// Calls visit(snapshot) in order of time. Then throws the error that ended the simulation, if any.
     void play(const Visit& visit);
 
     /// Whether it is already known that play() will throw.
     bool fails() const { return error_ != nullptr; }
-    /// Bounds of the whole motion, or up to its failure. So a frame has the same pixels alone as in the film. Empty if
-    /// no picture depends on them.
+    /// Of the whole motion, or up to its failure; empty if no picture depends on them.
     const MotionBounds& bounds() const { return bounds_; }
     /// Complete after play().
     const MotionRecord& record() const { return record_; }
@@ -137,7 +137,6 @@ private:
 inline constexpr BlockKind recording_file{R"({"file":"doppel recording")", "is no recording of Doppel",
                                           "is damaged or incomplete; make it again with simulate --recording"};
 
-/// Writes the snapshots of a scene to such a file. Throws Error (exit 4).
 class RecordingWriter : BlockFile {
 public:
     RecordingWriter(const std::filesystem::path& path, const Scene& scene);
@@ -146,8 +145,7 @@ public:
     using BlockFile::finish;
 };
 
-/// Reads such a file. Throws Error: exit 2 if it belongs to another motion or version, exit 4 if it cannot be read or
-/// is damaged.
+/// Throws Error: exit 2 if it belongs to another motion or version, exit 4 if it cannot be read or is damaged.
 class RecordingReader : BlockFile {
 public:
     RecordingReader(const std::filesystem::path& path, const Scene& scene);

@@ -5,13 +5,8 @@
 #include "film/film.hpp"
 #include "film/page.hpp"
 #include "film/pair_table.hpp"
-#include "film/parts.hpp"
-#include "film/recording.hpp"
-#include "output/transaction.hpp"
-#include "scene/scene.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace doppel {
@@ -34,8 +29,8 @@ std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunF
     return {true, effort};
 }
 
-/// The step size that would have reached the sample of `failure`, in words. For a fixed step, it is the first half,
-/// quarter … that works; for an adaptive method, the smallest step that it took. Gives up early if `stop` is set.
+/// In words: of a fixed step, the first half, quarter … that reaches the sample of `failure`; of an adaptive method,
+/// its smallest step.
 std::string sufficient_step(const Scene& scene, const RunFailure& failure, const std::atomic<bool>& stop) {
     auto side = failure.side == 'a' ? scene.a : scene.b;
     if (side.method.adaptive) {
@@ -58,13 +53,11 @@ std::string sufficient_step(const Scene& scene, const RunFailure& failure, const
     return fmt::format("no step down to {} s works", finest.text());
 }
 
-/// "NAME.failed.csv": the files kept of a failed run.
 std::string failed_name(const std::string& name, const std::string& ending) {
     return name + ".failed" + ending;
 }
 
-/// Keeps the samples before the failure in files of their own, with a manifest, unless the folder is temporary. Throws
-/// an error with their path and the step size that would have worked.
+/// Keeps the samples before the failure, unless the folder is temporary. Throws the error with their path and advice.
 [[noreturn]] void keep_failed(const Scene& scene, const RunFailure& failure, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
@@ -90,7 +83,6 @@ struct Part {
     long last_sample() const { return end.share > 0 ? end.sample : end.sample - 1; }
 };
 
-/// From options.from_s to before options.to_s. Throws Error (exit 2) if there is no frame.
 Part part_between(const Scene& scene, const RunOptions& options) {
     const auto& name = scene.preset.name;
     const double duration = scene.preset.duration_s.value(), hz = scene.preset.sample_hz.value();
@@ -108,7 +100,6 @@ Part part_between(const Scene& scene, const RunOptions& options) {
     return part;
 }
 
-/// From frame options.first to before options.last. Throws Error (exit 2) if the scene lacks some of them.
 Part part_of_frames(const Scene& scene, const RunOptions& options) {
     const auto& frames = scene.frames;
     const long first = options.first, last = options.last < 0 ? frames.count : options.last;
@@ -118,12 +109,12 @@ Part part_of_frames(const Scene& scene, const RunOptions& options) {
     return {first, last, frames.at(first), last == frames.count ? Moment{scene.samples + 1} : frames.at(last)};
 }
 
-/// Throws Error (exit 2) as the two above, and if the poster's frame is not included. Of a part of the film, all frames
-/// up to its last one.
+/// Of a part of the film, all frames up to its last one. Throws Error (exit 2) if the poster's frame is not included.
 Part part_of(const Scene& scene, const RunOptions& options) {
     if (options.is_part()) {
-        const long last = schedule_of(scene).motion_frame(drawn_frames(scene, options, 0).last - 1) + 1;
-        return part_of_frames(scene, {.last = last});
+        const auto schedule = schedule_of(scene);
+        const long last = drawn_frames(scene, options, 0).last - schedule.before();
+        return part_of_frames(scene, {.last = std::clamp(last, 1L, schedule.motion)});
     }
     const bool by_time = options.from_s || options.to_s;
     const auto part = by_time ? part_between(scene, options) : part_of_frames(scene, options);

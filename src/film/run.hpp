@@ -62,9 +62,8 @@ void check_run(const Scene& scene, const RunOptions& options);
 /// The files that run() writes in OUT/NAME/; names of folders end with "/".
 std::vector<std::string> run_files(const Scene& scene, const RunOptions& options);
 
-/// Simulates, draws and writes, in parallel. Files appear complete or not at all. A part of a film that is complete is
-/// not made again. Joined parts give the same files as one run. Throws Error: exit 2, 3, 4, 75 if parts are missing, or
-/// 130 soon after `stop` is set.
+/// Simulates, draws and writes, in parallel. A part of a film that is complete is not made again. Throws Error: exit 2,
+/// 3, 4, 75 if parts are missing, or 130 soon after `stop` is set.
 RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<bool>& stop, const Report& report);
 
 }  // namespace doppel

@@ -29,7 +29,6 @@ std::string seconds_text(double seconds) {
     return text;
 }
 
-/// The sample or time between samples for a picture.
 Moment still_moment(const Scene& scene, const Rational& time) {
     const double end = scene.preset.duration_s.value();
     if (time.value() > end) throw bad_input("--at {}: {} ends at {:.6g} s", time.value(), scene.preset.name, end);
@@ -51,8 +50,8 @@ Scene tile_scene(Scene scene) {
     return scene;
 }
 
-/// The title and subtitle of the film, and the captions of the sides.
-DisplayList title_of(const Scene& scene, const Style& style, Size size, float unit) {
+DisplayList title_of(const Scene& scene, Size size, float unit) {
+    const auto style = make_style(scene.preset.video, unit, unit);
     const auto& font = style.font;
     const auto& theme = style.theme;
     const auto width = static_cast<float>(size.width);
@@ -139,8 +138,7 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
     const auto below = contact_sheet(pictures, across, 8, composer.page_color());
     const float unit = static_cast<float>(below.size.width) / 1920;
     const Size title{below.size.width, static_cast<int>(110 * unit) + 1};
-    const auto title_style = make_style(style, unit, unit);
-    Renderer renderer(title, title_of(tile, title_style, title, unit), gl, stop, style.typeface);
+    Renderer renderer(title, title_of(tile, title, unit), gl, stop, style.typeface);
     Picture sheet = renderer.draw({}, stop);
     sheet.size.height += below.size.height;
     sheet.rgba.insert(sheet.rgba.end(), below.rgba.begin(), below.rgba.end());

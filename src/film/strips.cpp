@@ -15,7 +15,6 @@
 namespace doppel {
 namespace {
 
-/// The quantities of strips, before their values or names of curves.
 constexpr std::array<const char*, strip_kinds> titles{"state-space distance",
                                                       "finite-time growth rate, 1/s",
                                                       "energy error, of the potential range",
