@@ -18,7 +18,6 @@ struct Point {
     friend bool operator==(const Point&, const Point&) = default;
 };
 
-/// In px.
 inline float distance(Point a, Point b) {
     return std::hypot(a.x - b.x, a.y - b.y);
 }

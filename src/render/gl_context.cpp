@@ -17,7 +17,6 @@ constinit thread_local const gl::Functions* gl::current = nullptr;
 
 namespace {
 
-/// Looks up each function with `find`. Throws Error if one is missing.
 gl::Functions load(const std::function<gl::Function(const char* name)>& find) {
     const auto found = [&](const char* name) {
         const auto function = find(name);
@@ -109,8 +108,7 @@ std::unique_ptr<Context> egl_context(const std::vector<std::string>& names) {
         Context::Functions{"EGL", bind, release, [=] { destroy(display, context); }, find});
 }
 
-/// Makes a context of this library current. On failure returns null and adds the reason to `errors`. `packages` are
-/// Debian's.
+/// On failure returns null and adds the reason to `errors`. `packages` are Debian's.
 std::unique_ptr<Context> try_library(const char* library, const char* packages,
                                      std::unique_ptr<Context> (*make)(const std::vector<std::string>&),
                                      const std::vector<std::string>& names, std::string& errors) {

@@ -69,7 +69,6 @@ public:
     std::string library() const { return own_.library; }
 
 private:
-    /// If this context is current, makes none current.
     void retire();
 
     Functions own_;
@@ -82,8 +81,7 @@ struct GlLibraries {
     std::vector<std::string> egl{"libEGL.so.1", "libEGL.so"};
 };
 
-/// Makes a context and makes it current. Throws Error (exit 4) if none of the allowed libraries works: why each failed,
-/// and which packages contain them.
+/// Makes a context current. Throws Error (exit 4): why each library failed, and which packages contain them.
 std::unique_ptr<Context> make_context(Gl gl, const GlLibraries& libraries = {});
 
 }  // namespace doppel

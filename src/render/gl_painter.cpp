@@ -12,7 +12,6 @@ namespace {
 
 constexpr GLboolean on = GL_TRUE, off = GL_FALSE;
 
-/// The driver's log of a shader or program.
 template <class GetLog>
 std::string log(GetLog get, GLuint number) {
     std::string text(1024, '\0');
@@ -179,7 +178,6 @@ void Painter::add(const Primitive& primitive, const std::vector<Rect>& regions) 
             outline_.assign(corners.begin(), corners.end());
             if (seen != primitive.bounds) clip(left, right, top, bottom);
         }
-        // a fan of triangles
         for (std::size_t i = 2; i < outline_.size(); ++i)
             for (const std::size_t corner : {std::size_t{0}, i - 1, i})
                 vertices_.push_back({outline_[corner], primitive});

@@ -7,8 +7,7 @@
 
 namespace doppel::gl {
 
-/// Throws Error (exit 4) if OpenGL has reported an error since the last call. `what`: the task, "a canvas of 64 × 64
-/// px".
+/// Throws Error (exit 4) if OpenGL has reported an error since the last call. `what`: the task.
 void check_errors(const std::string& what);
 
 /// Owns an OpenGL object. Its context must be current at construction and destruction.
@@ -30,8 +29,7 @@ using Texture = Object<GenTextures, DeleteTextures>;
 using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
 using Framebuffer = Object<GenFramebuffers, DeleteFramebuffers>;
 
-/// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader beside it;
-/// compiled and linked.
+/// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader.
 class Program {
 public:
     explicit Program(const std::string& fragment);
@@ -63,7 +61,6 @@ private:
         Point at;
         Primitive of;
     };
-    /// Parts drawn together.
     struct Batch {
         Kind kind;
         Rect bounds{};                   // union of its parts' bounds

@@ -9,7 +9,6 @@
 #include <span>
 #include <string_view>
 #include <unordered_set>
-#include <utility>
 
 namespace doppel {
 namespace {

@@ -59,8 +59,7 @@ struct Primitive {
     friend bool operator==(const Primitive&, const Primitive&) = default;
 };
 
-/// The fragment shaders. A `mask` takes a second pass, in which the shader `cover` blends the stroke's colour by the
-/// mask.
+/// The fragment shaders. A `mask` takes a second pass, by the shader `cover`.
 enum class Kind { shape, glyph, mask };
 
 /// A display list converted to primitives with bounds in whole pixels; its parts are in order from back to front.
@@ -77,8 +76,7 @@ struct RenderList {
 /// Converts `list` into `made`, whose memory is reused. An invisible item adds an empty part, or none.
 void make_render_list(const DisplayList& list, Size size, GlyphAtlas& atlas, RenderList& made);
 
-/// Where the pictures of two render lists may differ, as a few disjoint rectangles. Outside, both have the same
-/// primitives in the same order.
+/// Where the pictures of two render lists may differ, as a few disjoint rectangles.
 std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& after);
 
 }  // namespace doppel

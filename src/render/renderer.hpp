@@ -25,9 +25,8 @@ namespace gl {
 class Painter;
 }
 
-/// Draws display lists into pictures of one size, without a display (OSMesa or EGL). A picture is a fixed backdrop with
-/// a list on top. Only the rectangles in which the list differs from the last one are drawn and read back. The pixels
-/// are the same as if everything had been drawn.
+/// Draws display lists into pictures of one size: a fixed backdrop with a list on top. Only the rectangles in which the
+/// list differs from the last one are drawn and read back; the pixels are the same as if everything had been drawn.
 class Renderer {
 public:
     /// `typeface`: the fonts of all text. Throws Error: exit 4 if there is no such OpenGL context or no memory for this

@@ -1,8 +1,6 @@
 #include "render/stroke.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 namespace doppel {
 namespace {

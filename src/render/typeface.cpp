@@ -10,10 +10,8 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <string>
-#include <utility>
 
 namespace doppel {
 namespace {

@@ -31,7 +31,6 @@ class Typeface {
 public:
     /// Only the built-in font, which gives the same picture everywhere.
     Typeface() = default;
-    /// The user's font first, then the built-in font, then fonts of the system.
     static Typeface with_system_fonts(std::shared_ptr<const Font> own = nullptr) { return {std::move(own), true}; }
 
     /// The advance width of `text`, px, equal to that of the drawn text.
