@@ -1,6 +1,5 @@
 #include "film/support.hpp"
 #include "image/color.hpp"
-#include "render/pixels.hpp"
 #include "render/typeface.hpp"
 
 #include <gtest/gtest.h>
@@ -20,13 +19,15 @@ struct Blob {
 /// The pixels of exactly that colour within `radius` of a point.
 Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
     Blob blob;
-    for (int y = static_cast<int>(place.y - radius); y <= static_cast<int>(place.y + radius); ++y)
-        for (int x = static_cast<int>(place.x - radius); x <= static_cast<int>(place.x + radius); ++x) {
-            if (!is_color(picture.at(x, y), color, 2)) continue;
-            blob.x += x + 0.5;
-            blob.y += y + 0.5;
-            ++blob.area;
-        }
+    const auto whole = [](float at) { return static_cast<int>(at); };
+    const Rect around{whole(place.x - radius), whole(place.y - radius), whole(place.x + radius) + 1,
+                      whole(place.y + radius) + 1};
+    for_each_pixel(around, [&](int x, int y) {
+        if (!is_color(picture.at(x, y), color, 2)) return;
+        blob.x += x + 0.5;
+        blob.y += y + 0.5;
+        ++blob.area;
+    });
     blob.x /= static_cast<double>(blob.area);
     blob.y /= static_cast<double>(blob.area);
     return blob;
@@ -34,10 +35,9 @@ Blob blob_at(const Picture& picture, Point place, float radius, Color color) {
 
 TEST(DrawnPositions, BobsAreWherePhysicsSaysInTheirColour) {
     // released at rest from 37°/−61° with unequal rods: sample 0 is known in closed form
-    const auto scene = scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]",
-                                              "system.length_m=[1.3, 0.6]", "video.trail_s=0"});
-    const auto picture = frame_of(scene, 0);
-    const auto layout = make_layout(scene);
+    const auto [scene, layout, picture] =
+        Drawn(scene_of("butterfly", {"system.angle_deg=[37, -61]", "b.angle_deg=[-80, 20]",
+                                     "system.length_m=[1.3, 0.6]", "video.trail_s=0"}));
     const auto& theme = themes[0];
     const std::array starts{std::array{37.0, -61.0}, std::array{-80.0, 20.0}};
     for (std::size_t side = 0; side < 2; ++side) {
@@ -61,9 +61,7 @@ TEST(DrawnPositions, BobsAreWherePhysicsSaysInTheirColour) {
 }
 
 TEST(DrawnPositions, BobsHaveAnAreaLikeTheirMass) {
-    const auto scene = scene_of("butterfly", {"system.mass_kg=[2, 0.5]", "video.trail_s=0"});
-    const auto picture = frame_of(scene, 0);
-    const auto layout = make_layout(scene);
+    const auto [scene, layout, picture] = Drawn(scene_of("butterfly", {"system.mass_kg=[2, 0.5]", "video.trail_s=0"}));
     const auto& panel = layout.panels.front();
     const auto heavy = blob_at(picture, panel.at(1, 0), 1.5f * layout.bob_radius, themes[0].bob);
     const auto light = blob_at(picture, panel.at(2, 0), 1.5f * layout.bob_radius, themes[0].sides[0]);
@@ -71,36 +69,25 @@ TEST(DrawnPositions, BobsHaveAnAreaLikeTheirMass) {
                 0.4);  // measured 4.2: the smaller disc loses a larger share of its pixels to the edge
 }
 
-/// The rows of the strip in which the pixel at `x` has this colour.
-std::vector<int> rows_of(const Picture& picture, int x, const Area& area, Color color) {
-    std::vector<int> rows;
-    for (int y = static_cast<int>(area.top); y < static_cast<int>(area.bottom); ++y)
-        if (is_color(picture.at(x, y), color, 2)) rows.push_back(y);
-    return rows;
-}
-
 TEST(DrawnPositions, AxisTicksFallOnDecades) {
-    const auto scene = scene_of("butterfly", {"video.distance_range=[1e-5, 1e1]"});
-    const auto picture = frame_of(scene, 0);
-    const auto layout = make_layout(scene);
+    const auto [scene, layout, picture] = Drawn(scene_of("butterfly", {"video.distance_range=[1e-5, 1e1]"}));
     const auto& strip = layout.strips[0];
     // between two lines of the time grid, only the lines of the decades have the grid's colour
     const int x = static_cast<int>(strip.time.at(27)) + 3;
-    const auto rows = rows_of(picture, x, strip.area, themes[0].grid);
-    ASSERT_FALSE(rows.empty());
-    for (const int row : rows) {
-        const double share = (strip.area.bottom - (row + 0.5)) / strip.area.height();
-        const double decade = -5 + 6 * share;
+    int rows = 0;
+    for (int y = static_cast<int>(strip.area.top); y < static_cast<int>(strip.area.bottom); ++y) {
+        if (!is_color(picture.at(x, y), themes[0].grid, 2)) continue;
+        ++rows;
+        const double decade = -5 + 6 * (strip.area.bottom - (y + 0.5)) / strip.area.height();
         EXPECT_NEAR(decade, std::round(decade), 0.75 * 6 / strip.area.height());  // within 3/4 of a pixel
     }
-    EXPECT_GE(rows.size(), 2u);
+    EXPECT_GE(rows, 2);
 }
 
 TEST(DrawnPositions, TraceIsAtTheDistanceItShows) {
     // mirror images: while both rest, the distance keeps its initial value 2 (x1, x2), here 10^0.65
-    const auto scene = scene_of("butterfly", {"b.angle_deg=[-90, -90]", "video.distance_range=[1e-3, 1e3]"});
-    const auto picture = frame_of(scene, 0);
-    const auto layout = make_layout(scene);
+    const auto [scene, layout, picture] =
+        Drawn(scene_of("butterfly", {"b.angle_deg=[-90, -90]", "video.distance_range=[1e-3, 1e3]"}));
     const auto& strip = layout.strips[0];
     const double distance = std::sqrt(4.0 + 16.0);
     const double y = strip.area.bottom - strip.area.height() * (std::log10(distance) + 3) / 6;
@@ -110,17 +97,12 @@ TEST(DrawnPositions, TraceIsAtTheDistanceItShows) {
 }
 
 TEST(DrawnPositions, TimesAfterThePredictabilityLimitAreShaded) {
-    const auto scene = scene_of("horizon", {"scene.duration_s=35"});
-    ASSERT_TRUE(scene.horizon());
-    const auto picture = frame_of(scene, 0);
-    const auto layout = make_layout(scene);
-    const auto& strip = layout.strips[0];
-    const auto pixel = [&](float dx, double seconds) {  // away from the lines of the axes
-        return picture.at(static_cast<int>(strip.time.at(seconds) + dx), static_cast<int>(strip.area.top) + 5);
-    };
-    const auto& theme = themes[0];
-    EXPECT_TRUE(is_color(pixel(-6, *scene.horizon()), theme.background, 2));
-    EXPECT_TRUE(is_color(pixel(6, *scene.horizon()), theme.panel, 2));
+    const Drawn film(scene_of("horizon", {"scene.duration_s=35"}));
+    ASSERT_TRUE(film.scene.horizon());
+    const auto& strip = film.layout.strips[0];
+    const float x = strip.time.at(*film.scene.horizon()), y = strip.area.top + 5;  // away from the lines of the axes
+    EXPECT_TRUE(film.has({x - 6, y}, themes[0].background, 2));
+    EXPECT_TRUE(film.has({x + 6, y}, themes[0].panel, 2));
     // a film that is predictable to its end has no horizon
     EXPECT_FALSE(scene_of("horizon", {"scene.duration_s=20"}).horizon());
     EXPECT_FALSE(scene_of("butterfly").horizon());
@@ -133,10 +115,9 @@ TEST(DrawnPositions, ADivergingRunStaysInItsPanel) {
     const auto layout = make_layout(scene);
     bool outside = false;
     PairRun pair(scene);
-    const std::atomic<bool> never = false;
     long sample = 0;
     for (; sample < 2400 && !outside; ++sample) {
-        const auto state = pair.next(never);
+        const auto state = pair.next(never_stopped);
         const auto& bob = state.a.bobs[1];
         outside = !layout.panels.front().area.contains(layout.panels.front().at(bob.x, bob.y));
     }

@@ -2,7 +2,6 @@
 #include "film/layer.hpp"
 #include "film/runs.hpp"
 #include "film/words.hpp"
-#include "render/pixels.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -134,9 +133,7 @@ TEST(Divergence, IsInTheManifest) {
 TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
     const auto scene = at_size(scene_of("fan"), {1920, 1080});
     const auto layout = make_layout(scene);
-    std::vector<Box> bar;  // one box for each pixel, each up to the end
-    for (const auto& item : layout.words)
-        if (const auto* box = std::get_if<Box>(&item)) bar.push_back(*box);
+    const auto bar = items_in<Box>(layout.words);  // one box for each pixel, each up to the end
     ASSERT_GT(bar.size(), 200u);
     EXPECT_LT(bar[0].bottom, layout.panels[0].area.top);
     EXPECT_EQ(bar[0].color, member_color(layout.style.theme, 0));
@@ -144,9 +141,7 @@ TEST(Fan, HasAColourBarAndSaysWhoseDistanceItIs) {
     EXPECT_EQ(bar.back().left + 1, bar.back().right);
     const auto composer = composed(scene, 60);
     EXPECT_TRUE(says(composer->frame(), "first to last"));
-    const auto strokes =
-        std::ranges::count_if(composer->frame(), [](const Item& item) { return std::holds_alternative<Stroke>(item); });
-    EXPECT_GE(strokes, 200) << "a trail each";
+    EXPECT_GE(items_in<Stroke>(composer->frame()).size(), 200u) << "a trail each";
     // many pendulums have thinner rods than few
     const auto few = make_layout(at_size(scene_of("fan", {"video.members=5"}), {1920, 1080})),
                many = make_layout(at_size(scene_of("fan", {"video.members=200"}), {1920, 1080}));
@@ -163,17 +158,13 @@ TEST(Fan, ShowsListedMembersLargeWithALegend) {
     const auto picture = frame_of(scene, 0);
     for (std::size_t k = 0; k < angles.size(); ++k) {
         EXPECT_NEAR(static_cast<double>(scene.members[k].chain->angle[0]) * 180 / pi, angles[k], 1e-12);
-        const auto at_legend = std::ranges::any_of(layout.words, [&](const Item& item) {
-            const auto* dot = std::get_if<Capsule>(&item);
-            return dot && dot->color == layout.style.theme.palette[k];
-        });
-        EXPECT_TRUE(at_legend) << k;
+        const auto color = layout.style.theme.palette[k];
+        const auto is_of = [&](const Capsule& dot) { return dot.color == color; };
+        EXPECT_FALSE(items_in<Capsule>(layout.words, is_of).empty()) << k;
         if (k == 1) continue;  // hidden behind the first
         const double x = std::sin(radians(angles[k])) + std::sin(radians(120.0)),
                      y = -std::cos(radians(angles[k])) - std::cos(radians(120.0));
-        const auto at = layout.panels[0].at(x, y);
-        EXPECT_TRUE(is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), layout.style.theme.palette[k]))
-            << k;
+        EXPECT_TRUE(is_color(picture, layout.panels[0].at(x, y), color)) << k;
     }
     // the distance is that between the first and the last
     EXPECT_EQ(scene.preset.a.angle_deg[0], parse_quad("120"));

@@ -1,7 +1,6 @@
 #include "film/runs.hpp"
 #include "film/strips.hpp"
 #include "film/words.hpp"
-#include "render/pixels.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/ranges.h>
@@ -10,10 +9,6 @@
 #include <cmath>
 
 namespace doppel::layouts_test {
-
-const std::uint8_t* pixel_at(const Picture& picture, Point at) {
-    return picture.at(static_cast<int>(at.x), static_cast<int>(at.y));
-}
 
 TEST(Layouts, NothingOverlapsAndAllIsOnThePage) {
     const std::vector<std::string> all{"\"distance\"",  "\"exponent\"",  "\"energy\"",
@@ -73,16 +68,12 @@ TEST(Layouts, LargeTextsDoNotOverlap) {
 }
 
 TEST(Layouts, PhaseHeadIsAtItsAngleAndRate) {
-    const auto scene = scene_of("butterfly", {"video.layout=\"phase\"", "b.angle_deg=[-30, 300]",
-                                              "system.omega_deg_per_s=[0, 120]", "video.trail_s=0.1"});
-    const auto layout = make_layout(scene);
-    ASSERT_TRUE(layout.phase);
-    const auto picture = frame_of(scene, 0);
-    const auto at = [&](double degrees, double rate) {
-        return Point{layout.phase->angle.at(degrees), layout.phase->rate.at(rate)};
-    };
-    EXPECT_TRUE(is_color(pixel_at(picture, at(90, 120)), themes[0].sides[0]));
-    EXPECT_TRUE(is_color(pixel_at(picture, at(-60, 120)), themes[0].sides[1])) << "300° is −60°";
+    const Drawn film(scene_of("butterfly", {"video.layout=\"phase\"", "b.angle_deg=[-30, 300]",
+                                            "system.omega_deg_per_s=[0, 120]", "video.trail_s=0.1"}));
+    ASSERT_TRUE(film.layout.phase);
+    const auto& [panel, area, angle, rate] = *film.layout.phase;
+    EXPECT_TRUE(film.has({angle.at(90), rate.at(120)}, themes[0].sides[0]));
+    EXPECT_TRUE(film.has({angle.at(-60), rate.at(120)}, themes[0].sides[1])) << "300° is −60°";
 }
 
 TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
@@ -94,9 +85,9 @@ TEST(Layouts, SectionPointsLieWhereTheUpperLinkPassesUpwards) {
     const auto scene = scene_of("butterfly", arguments);
     const auto layout = make_layout(scene);
     const Point expected{layout.phase->angle.at(0), layout.phase->rate.at(360)};
-    const auto before = frame_of(scene, 80), after = frame_of(scene, 100);  // it starts at 90°: 0.75 s to go
-    EXPECT_FALSE(is_color(pixel_at(before, expected), mixed(themes[0].panel, themes[0].sides[0], 0.8f), 40));
-    EXPECT_TRUE(is_color(pixel_at(after, expected), mixed(themes[0].panel, themes[0].sides[0], 0.8f), 40));
+    const auto color = mixed(themes[0].panel, themes[0].sides[0], 0.8f);
+    EXPECT_FALSE(is_color(frame_of(scene, 80), expected, color, 40));  // it starts at 90°: 0.75 s to go
+    EXPECT_TRUE(is_color(frame_of(scene, 100), expected, color, 40));
 }
 
 TEST(Layouts, EnsembleRunsFromOneSideToTheOther) {
@@ -126,13 +117,11 @@ TEST(Layouts, ForcesOfTheRodsAreDrawnWherePhysicsSays) {
         scene_of("butterfly", {"system.angle_deg=[0, 0]", "b.angle_deg=[0.5, 0]", "scene.duration_s=2",
                                "video.panels=[\"pendulums\", \"rod-force\"]", "video.rod_force_range=[0, 40]"});
     ASSERT_TRUE(scene.a.motion.wants_tension);
-    const auto layout = make_layout(scene);
-    const auto& strip = layout.strips[0];
-    const auto picture = frame_of(scene, 120);
+    const Drawn film(scene, 120);
+    const auto& strip = film.layout.strips[0];
     const float x = strip.time.at(0.5);
-    EXPECT_TRUE(is_color(pixel_at(picture, {x, strip.value.at(9.8)}), themes[0].sides[1], 60));
-    EXPECT_TRUE(
-        is_color(pixel_at(picture, {x, strip.value.at(19.6)}), mixed(themes[0].sides[1], themes[0].text, 0.6f), 60));
+    EXPECT_TRUE(film.has({x, strip.value.at(9.8)}, themes[0].sides[1], 60));
+    EXPECT_TRUE(film.has({x, strip.value.at(19.6)}, mixed(themes[0].sides[1], themes[0].text, 0.6f), 60));
     EXPECT_FALSE(scene_of("butterfly").a.motion.wants_tension) << "only where it is shown";
 }
 
@@ -228,19 +217,17 @@ TEST(Layouts, OnlyPairsWithACloseStartDiverge) {
 }
 
 TEST(Layouts, ColoursWidthsAndSizesAreThePresets) {
-    const auto scene = scene_of("butterfly", {"video.colors.background=\"#203040\"", "video.colors.bob=\"#00ff00\"",
-                                              "video.side_colors=[\"#ff0000\", \"#0000ff\"]", "video.widths_px.bob=60",
-                                              "video.trail_s=0", "video.glow_px=0", "video.fonts_px.title=80"});
-    const auto layout = make_layout(scene);
-    const auto picture = frame_of(scene, 0);
-    EXPECT_TRUE(is_color(picture.at(5, 5), rgb(0x203040), 0));
-    const auto last = layout.panels[0].at(2, 0), first = layout.panels[0].at(1, 0);
+    const Drawn film(scene_of("butterfly", {"video.colors.background=\"#203040\"", "video.colors.bob=\"#00ff00\"",
+                                            "video.side_colors=[\"#ff0000\", \"#0000ff\"]", "video.widths_px.bob=60",
+                                            "video.trail_s=0", "video.glow_px=0", "video.fonts_px.title=80"}));
+    EXPECT_TRUE(film.has({5, 5}, rgb(0x203040), 0));
+    const auto last = film.layout.panels[0].at(2, 0), first = film.layout.panels[0].at(1, 0);
     for (const float away : {0.f, 54.f}) {
-        EXPECT_TRUE(is_color(pixel_at(picture, {first.x, first.y - away}), rgb(0x00ff00), 0)) << away;
-        EXPECT_TRUE(is_color(pixel_at(picture, {last.x, last.y - away}), rgb(0xff0000), 0)) << away;
+        EXPECT_TRUE(film.has({first.x, first.y - away}, rgb(0x00ff00), 0)) << away;
+        EXPECT_TRUE(film.has({last.x, last.y - away}, rgb(0xff0000), 0)) << away;
     }
-    EXPECT_FALSE(is_color(pixel_at(picture, {first.x, first.y - 64}), rgb(0x00ff00), 0));
-    EXPECT_EQ(layout.style.font.title, 80);
+    EXPECT_FALSE(film.has({first.x, first.y - 64}, rgb(0x00ff00), 0));
+    EXPECT_EQ(film.layout.style.font.title, 80);
 }
 
 TEST(Layouts, WhatIsResolvedReadsBackToTheSame) {

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <tuple>
 
@@ -17,10 +16,9 @@ namespace doppel::page_test {
 namespace fs = std::filesystem;
 
 std::string page_of(const std::string& text, const RunOptions& options = {}) {
-    auto scene = scene_of_text(text);
     auto in = options;
     in.out = test::fresh_folder();
-    run(scene, in, never_stopped, [](const Progress&) {});
+    render(scene_of_text(text), in);
     return test::bytes_of(in.out / "x" / "x.html");
 }
 
@@ -123,7 +121,7 @@ TEST(Page, HasTheSizeThatCheckSays) {
         auto preset = find_preset(name);
         const auto scene = make_scene(read_preset(preset, {{"video.format", "\"html\"", "test"}}));
         const RunOptions options{.out = test::fresh_folder()};
-        const auto result = run(scene, options, never_stopped, [](const Progress&) {});
+        render(scene, options);
         const auto bytes = static_cast<double>(fs::file_size(options.out / name / (name + std::string(".html"))));
         EXPECT_LT(bytes, std::string_view(name) == "butterfly" ? 40e3 : 400e3) << name;
         const double ratio = bytes / estimated_page_bytes(scene);

@@ -32,11 +32,10 @@ TEST(RunTable, HasTheColumnsOfTheContract) {
 TEST(RunTable, GivesEveryQuadBack) {
     const auto scene = small_scene({"system.precision=\"quad\"", "system.step_s=\"1/480\""});
     const auto lines = table_of(scene);
-    const std::atomic<bool> never = false;
     PairRun pair(scene);
     std::size_t longest = 0;
     for (std::size_t row = 1; row < lines.size(); ++row) {
-        const auto state = pair.next(never);
+        const auto state = pair.next(never_stopped);
         const auto cells = cells_of(lines[row]);
         std::size_t column = 2;
         const auto expect = [&](const Quad& value) {

@@ -22,8 +22,7 @@ inline Scene small_scene(std::vector<std::string> more = {}, const std::string& 
 }
 
 inline RunResult render(const Scene& scene, const RunOptions& options) {
-    const std::atomic<bool> never = false;
-    return run(scene, options, never, [](const Progress&) {});
+    return run(scene, options, never_stopped, [](const Progress&) {});
 }
 
 /// The manifest of a run without pictures.

@@ -17,11 +17,8 @@ Scene held() {
 
 TEST(Schedule, CountsCardsAndHoldsBesideTheMotion) {
     const auto schedule = schedule_of(held());
-    EXPECT_EQ(schedule.title, 24);
-    EXPECT_EQ(schedule.hold_start, 6);
-    EXPECT_EQ(schedule.motion, 31);
-    EXPECT_EQ(schedule.hold_end, 12);
-    EXPECT_EQ(schedule.end, 18);
+    const auto [title, hold_start, motion, hold_end, end] = schedule;
+    EXPECT_EQ((std::array{title, hold_start, motion, hold_end, end}), (std::array{24L, 6L, 31L, 12L, 18L}));
     EXPECT_EQ(schedule.frames(), 91);
     EXPECT_EQ(schedule_of(scene_of("butterfly")).frames(), 3601);
 }
@@ -114,19 +111,15 @@ TEST(Schedule, CardsHaveAStillOfTheOutcome) {
     const auto scene = scene_of("pendulum-portrait", {"scene.duration_s=1", "video.trail_s=0"});
     const auto composer = composed(scene, 120);
     const auto theme = make_layout(scene).style.theme;
-    const auto discs = [](const DisplayList& list, Color color) {
-        return std::ranges::count_if(list, [&](const Item& item) {
-            const auto* disc = std::get_if<Capsule>(&item);
-            return disc && disc->from.x == disc->to.x && disc->from.y == disc->to.y && disc->color == color;
-        });
-    };
     for (const auto& card : {composer->end_card(1), composer->title_card(1)})
-        for (std::size_t side = 0; side < 2; ++side) EXPECT_EQ(discs(card, theme.sides[side]), 1) << side;
-    for (const auto& item : composer->end_card(1))
-        if (const auto* label = std::get_if<Label>(&item)) {
-            EXPECT_GT(label->anchor.y - label->size, 110) << label->text;
-            EXPECT_LT(label->anchor.y, 1920 - 260) << label->text;
+        for (const auto& color : theme.sides) {
+            const auto is_disc = [&](const Capsule& one) { return one.from == one.to && one.color == color; };
+            EXPECT_EQ(items_in<Capsule>(card, is_disc).size(), 1u);
         }
+    for (const auto& label : items_in<Label>(composer->end_card(1))) {
+        EXPECT_GT(label.anchor.y - label.size, 110) << label.text;
+        EXPECT_LT(label.anchor.y, 1920 - 260) << label.text;
+    }
     // the whole end card fades
     for (const auto& item : composer->end_card(0.25))
         std::visit([](const auto& shape) { EXPECT_LE(shape.color.a, 0.25f); }, item);

@@ -44,10 +44,7 @@ TEST(Shown, StripsNameTheirCurves) {
     const auto composer = composed(scene, scene.samples);
     const std::vector<DisplayList> lists{composer->backdrop(), composer->frame()};
     const auto words = words_of(lists);
-    std::ptrdiff_t curves = 0;
-    for (const auto& list : lists)
-        curves += std::ranges::count_if(list, [](const Item& item) { return std::holds_alternative<Stroke>(item); });
-    EXPECT_EQ(curves, 3 + 3 + 4 + 4);
+    EXPECT_EQ(items_in<Stroke>(lists[0]).size() + items_in<Stroke>(lists[1]).size(), 3u + 3 + 4 + 4);
     for (const char* word : {"energy of left, J", "energy of b, J", "kinetic", "potential", "total", "angles, °",
                              "angular rates, °/s", "a1", "b2"})
         EXPECT_NE(std::find(words.begin(), words.end(), word), words.end()) << word;

@@ -2,7 +2,6 @@
 #include "film/runs.hpp"
 #include "film/strips.hpp"
 #include "film/words.hpp"
-#include "render/pixels.hpp"
 #include "scene/resolved.hpp"
 
 #include <gtest/gtest.h>
@@ -14,10 +13,6 @@
 namespace doppel::single_test {
 
 const std::string one = "[system]\nangle_deg = [120, 90]\n[scene]\nduration_s = 1\n[video]\nlayout = \"single\"\n";
-
-bool is_at(const Picture& picture, Point at, Color color) {
-    return is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), color, 60);
-}
 
 TEST(Single, ShowsOnePendulumAndNothingOfAPair) {
     const auto scene = scene_of_text(one);
@@ -35,10 +30,8 @@ TEST(Single, ShowsOnePendulumAndNothingOfAPair) {
         EXPECT_EQ(word.find("two "), std::string::npos) << word;
         EXPECT_EQ(word.find("apart"), std::string::npos) << word;
     }
-    PairState last;
-    for_each_snapshot(scene, 60, [&](const Snapshot& seen) { last = seen.pair; });
-    const auto picture = frame_of(scene, 60);
-    EXPECT_TRUE(is_at(picture, layout.panels[0].at(last.a.bobs[1].x, last.a.bobs[1].y), themes[0].sides[0]));
+    const auto bob = state_at(scene, 60).a.bobs[1];
+    EXPECT_TRUE(is_color(frame_of(scene, 60), layout.panels[0].at(bob.x, bob.y), themes[0].sides[0], 60));
 }
 
 TEST(Single, ItsTableIsThatOfSideA) {
@@ -95,9 +88,7 @@ TEST(Single, MembersOfAnEnsembleHaveMassesLengthsAndColoursOfTheirOwn) {
     EXPECT_EQ(scene.members[1].chain->length[0], Quad(1) / 2);
     EXPECT_EQ(scene.preset.b.length_m[0], Quad(1) / 4);
     // its last bob has the pendulum's colour, and the size that fits its mass
-    const auto layout = make_layout(scene);
-    const auto picture = frame_of(scene, 0);
-    EXPECT_TRUE(is_at(picture, layout.panels[0].at(1, 0), {0, 1, 0, 1}));
+    EXPECT_TRUE(is_color(frame_of(scene, 0), make_layout(scene).panels[0].at(1, 0), {0, 1, 0, 1}, 60));
     // the table ends with the members' columns; the first and the last member are the pair
     const auto table = table_of(scene);
     const auto names = cells_of(table[0]), last = cells_of(table.back());
@@ -163,31 +154,28 @@ TEST(Single, AViewHasItsCentreAndHeightAndFollowsAMass) {
     const auto scene = scene_of_text(one + "[video.view]\nfollow = 2\nheight_m = 2\n");
     const auto panel = make_layout(scene).panels[0];
     for (const long sample : {0L, 50L})
-        EXPECT_TRUE(is_at(frame_of(scene, sample), panel.center, themes[0].sides[0])) << sample;
+        EXPECT_TRUE(is_color(frame_of(scene, sample), panel.center, themes[0].sides[0], 60)) << sample;
 }
 
 TEST(Single, TrailsAlone) {
     for (const char* keys : {"show = []\n", "[video.widths_px]\nrod = 0\nbob = 0\ngrid = 0\ntrace = 0\nmark = 0\n"}) {
         const auto scene = scene_of_text(one + keys);
         const auto list = composed(scene, 60)->frame();
-        EXPECT_FALSE(std::ranges::any_of(list, [&](const Item& item) {
-            const auto* capsule = std::get_if<Capsule>(&item);
-            return capsule && capsule->from.y < 600 && make_layout(scene).panels[0].area.contains(capsule->from);
-        })) << keys;
-        EXPECT_TRUE(std::ranges::any_of(list, [](const Item& item) { return std::holds_alternative<Stroke>(item); }));
-        EXPECT_FALSE(std::ranges::any_of(composed(scene, 0)->backdrop(), [](const Item& item) {
-            return std::holds_alternative<Ring>(item);
-        })) << keys;
+        const auto area = make_layout(scene).panels[0].area;
+        const auto is_high = [&](const Capsule& one) { return one.from.y < 600 && area.contains(one.from); };
+        EXPECT_TRUE(items_in<Capsule>(list, is_high).empty()) << keys;
+        EXPECT_FALSE(items_in<Stroke>(list).empty()) << keys;
+        EXPECT_TRUE(items_in<Ring>(composed(scene, 0)->backdrop()).empty()) << keys;
     }
     const auto none =
         composed(scene_of_text(one + "panels = [\"pendulums\"]\n[video.widths_px]\ntrail = 0\n"), 60)->frame();
-    EXPECT_FALSE(std::ranges::any_of(none, [](const Item& item) { return std::holds_alternative<Stroke>(item); }));
+    EXPECT_TRUE(items_in<Stroke>(none).empty());
     // a pair without the shadows of the second pendulum
     const auto capsules = [](const std::string& show) {
-        const auto list = composed(scene_of("butterfly", {"b.angle_deg=[60, 90]", "video.show=" + show}), 60)->frame();
-        return std::ranges::count_if(list, [](const Item& item) { return std::holds_alternative<Capsule>(item); });
+        const auto scene = scene_of("butterfly", {"b.angle_deg=[60, 90]", "video.show=" + show});
+        return items_in<Capsule>(composed(scene, 60)->frame()).size();
     };
-    EXPECT_EQ(capsules(R"(["rods", "bobs", "twin"])") - capsules(R"(["rods", "bobs"])"), 2 * 4);
+    EXPECT_EQ(capsules(R"(["rods", "bobs", "twin"])") - capsules(R"(["rods", "bobs"])"), 2u * 4);
 }
 
 }  // namespace doppel::single_test

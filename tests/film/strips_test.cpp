@@ -1,7 +1,6 @@
 #include "film/strips.hpp"
 
 #include "film/words.hpp"
-#include "render/pixels.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -105,18 +104,23 @@ TEST(Strips, WhenTheyDivergedStandsAtItsLine) {
         const auto layout = make_layout(scene);
         const auto words = label_of(labels_of(scene, sample), "diverged");
         ASSERT_TRUE(words) << film;
-        const auto composer = composed(scene, sample);
-        double since = 0;
         Outcome outcome;
-        for_each_snapshot(scene, sample, [&](const Snapshot& seen) {
-            outcome.add(scene.time(seen.pair.sample), seen.pair);
-            since = outcome.divergence.since().value_or(0);
-        });
+        for_each_snapshot(scene, sample,
+                          [&](const Snapshot& seen) { outcome.add(scene.time(seen.pair.sample), seen.pair); });
+        const double since = outcome.divergence.since().value_or(0);
         const auto& strip = layout.strips[0];
         const auto box = box_of(*words);
         EXPECT_TRUE(strip.area.contains(box)) << film << size;
         EXPECT_LT(std::abs(box.left - strip.time.at(since)), 14 * layout.text + 1) << film << size;
     }
+}
+
+/// The place in the list of the first item that passes the test; its size if there is none.
+template <class Kind, class Test>
+std::size_t place_of(const DisplayList& list, Test&& passes) {
+    std::size_t place = 0;
+    while (place < list.size() && items_in<Kind>({list[place]}, passes).empty()) ++place;
+    return place;
 }
 
 /// The curves in a strip, with their places in the list.
@@ -132,21 +136,18 @@ TEST(Strips, NoLineCrossesTheWordsOfMarks) {
     const auto scene = scene_of("single-and-double");
     const auto area = make_layout(scene).strips[0].area;
     const auto list = composed(scene, 12 * 120)->frame();
-    const auto words = std::ranges::find_if(list, [](const auto& item) {
-        const auto* label = std::get_if<Label>(&item);
-        return label && label->text.starts_with("diverged");
-    });
-    ASSERT_NE(words, list.end());
+    const auto words = place_of<Label>(list, [](const Label& label) { return label.text.starts_with("diverged"); });
     const auto curves = curves_in(area, list);
     ASSERT_EQ(curves.size(), 1u);
-    EXPECT_GT(words - list.begin(), static_cast<std::ptrdiff_t>(curves[0].first));
+    ASSERT_LT(words, list.size());
+    EXPECT_GT(words, curves[0].first);
     // the cursor, a line of the strip's height
-    const auto cursor = std::ranges::find_if(list, [&](const auto& item) {
-        const auto* box = std::get_if<Box>(&item);
-        return box && box->color == themes[0].cursor && box->top == area.top && box->bottom == area.bottom;
-    });
-    ASSERT_NE(cursor, list.end());
-    EXPECT_LT(cursor, words);
+    EXPECT_LT(place_of<Box>(list,
+                            [&](const Box& box) {
+                                return box.color == themes[0].cursor && box.top == area.top &&
+                                       box.bottom == area.bottom;
+                            }),
+              words);
 }
 
 TEST(Strips, CurvesAreSeenBehindTheWordsOfMarks) {
@@ -154,28 +155,20 @@ TEST(Strips, CurvesAreSeenBehindTheWordsOfMarks) {
     const auto list = composed(scene, 20 * 120)->frame();
     const auto curves = curves_in(make_layout(scene).strips[0].area, list);
     ASSERT_EQ(curves.size(), 1u);
-    const auto background = std::ranges::find_if(list, [](const auto& item) {
-        const auto* box = std::get_if<Box>(&item);
-        return box && box->color == themes[0].background.with_alpha(0.85f);
-    });
-    const auto words = std::ranges::find_if(list, [](const auto& item) {
-        const auto* label = std::get_if<Label>(&item);
-        return label && label->text.find("predictability") != std::string::npos;
-    });
-    ASSERT_NE(words, list.end());
-    const auto curve = static_cast<std::ptrdiff_t>(curves[0].first);
-    EXPECT_LT(background - list.begin(), curve);
-    EXPECT_LT(curve, words - list.begin());
+    const auto ground = themes[0].background.with_alpha(0.85f);
+    EXPECT_LT(place_of<Box>(list, [&](const Box& box) { return box.color == ground; }), curves[0].first);
+    const auto words = place_of<Label>(
+        list, [](const Label& label) { return label.text.find("predictability") != std::string::npos; });
+    EXPECT_LT(curves[0].first, words);
+    EXPECT_LT(words, list.size());
 }
 
 TEST(Strips, OfRodErrorsSayWhereThereAreNone) {
-    const auto has = [](const std::string& model) {
+    for (const std::string model : {"angles", "constraints"}) {
         const auto scene =
             scene_of("butterfly", {"system.model=" + model, "video.panels=[\"pendulums\", \"rod-error\"]"});
-        return label_of(labels_of(scene, 60), "none: angles keep the lengths").has_value();
-    };
-    EXPECT_TRUE(has("angles"));
-    EXPECT_FALSE(has("constraints"));
+        EXPECT_EQ(label_of(labels_of(scene, 60), "none: angles keep the lengths").has_value(), model == "angles");
+    }
 }
 
 TEST(Strips, DistancesHaveTwoDigits) {
@@ -184,15 +177,14 @@ TEST(Strips, DistancesHaveTwoDigits) {
 }
 
 TEST(Strips, NarrowHeadingsKeepTheNumber) {
-    const auto labels = labels_of(scene_of("fan", {"video.size=[320, 180]"}), 0);
-    EXPECT_TRUE(label_of(labels, "120°"));
-    EXPECT_TRUE(label_of(labels, "120.1°"));
-    const auto noted =
-        labels_of(scene_of("kapitza", {"video.size=[320, 180]", "a.note=\"a b = the end of a long note\""}), 0);
-    EXPECT_TRUE(label_of(noted, "a b"));
-    const auto springs = labels_of(scene_of("springs", {"video.size=[320, 180]"}), 0);
-    EXPECT_TRUE(label_of(springs, "… in place"));
-    EXPECT_TRUE(label_of(springs, "… 1 mm to"));
+    const auto labels = [](const char* film, std::vector<std::string> keys = {}) {
+        keys.emplace_back("video.size=[320, 180]");
+        return labels_of(scene_of(film, keys), 0);
+    };
+    for (const auto& [film, words] :
+         {std::pair("fan", "120°"), {"fan", "120.1°"}, {"springs", "… in place"}, {"springs", "… 1 mm to"}})
+        EXPECT_TRUE(label_of(labels(film), words)) << words;
+    EXPECT_TRUE(label_of(labels("kapitza", {"a.note=\"a b = the end of a long note\""}), "a b"));
 }
 
 TEST(Strips, ACurveBeginsWhereItEntersItsAxis) {
@@ -291,15 +283,14 @@ TEST(Strips, OneSideDoesNotCoverTheOther) {
     for (const char* panel : {"angles", "rates", "rod-force", "total-energy", "rod-error"}) {
         const auto scene = scene_of("butterfly", {fmt::format("video.panels=[\"pendulums\", \"{}\"]", panel),
                                                   "system.model=\"constraints\"", "scene.duration_s=4"});
-        const auto picture = frame_of(scene, 240);
-        const auto strip = make_layout(scene).strips[0];
-        const int x = static_cast<int>(strip.time.at(1.3));
-        std::array<int, 2> seen{};
-        for (int y = static_cast<int>(strip.area.top) - 2; y < static_cast<int>(strip.area.bottom) + 3; ++y)
-            for (std::size_t side = 0; side < 2; ++side)
-                seen[side] += is_color(picture.at(x, y), themes[0].sides[side], 60);
-        EXPECT_GE(seen[0], 1) << panel;
-        EXPECT_GE(seen[1], 1) << panel;
+        const Drawn film(scene, 240);
+        const auto& strip = film.layout.strips[0];
+        for (const auto& color : themes[0].sides) {
+            int seen = 0;
+            for (float y = strip.area.top - 2; y < strip.area.bottom + 3; ++y)
+                seen += film.has({strip.time.at(1.3), y}, color, 60);
+            EXPECT_GE(seen, 1) << panel;
+        }
     }
 }
 

@@ -2,13 +2,11 @@
 
 #include "film/composer.hpp"
 #include "film/recording.hpp"
-#include "integrate/motion_batch.hpp"
 #include "output/sink.hpp"
-#include "render/renderer.hpp"
+#include "render/pixels.hpp"
 #include "scene/support.hpp"
 
 #include <memory>
-#include <optional>
 
 namespace doppel {
 
@@ -22,15 +20,15 @@ inline Layout make_layout(const Scene& scene) {
 /// Calls visit(snapshot) for the samples 0 … last.
 template <class Visit>
 void for_each_snapshot(const Scene& scene, long last, Visit&& visit) {
-    PairRun pair(scene);
-    std::optional<MotionBatch> members;
-    if (!scene.members.empty()) members.emplace(scene.members, 1);
-    for (long n = 0; n <= last; ++n) {
-        Snapshot snapshot{pair.next(never_stopped), {}};
-        if (members && n > 0) members->advance(never_stopped);
-        for (std::size_t k = 0; members && k < members->size(); ++k) snapshot.members.push_back(members->bobs(k));
-        visit(snapshot);
-    }
+    Recording(scene, {last + 1}, !scene.members.empty(), never_stopped).play([&](const Snapshot& snapshot) {
+        if (snapshot.pair.share == 0) visit(snapshot);
+    });
+}
+
+inline PairState state_at(const Scene& scene, long sample) {
+    PairState last;
+    for_each_snapshot(scene, sample, [&](const Snapshot& seen) { last = seen.pair; });
+    return last;
 }
 
 /// A scene from a preset x.toml with this text.
@@ -59,11 +57,21 @@ inline std::unique_ptr<Composer> composed(const Scene& scene, long last, Picture
     return composer;
 }
 
-/// The picture of one sample.
+/// Of one sample.
 inline Picture frame_of(const Scene& scene, long sample) {
     const auto composer = composed(scene, sample);
     Renderer renderer(scene.preset.video.size, composer->backdrop(), Gl::automatic, false, scene.preset.video.typeface);
     return renderer.draw(composer->frame());
 }
+
+/// A preset, its layout, and the picture of one sample.
+struct Drawn {
+    Scene scene;
+    Layout layout = make_layout(scene);
+    Picture picture;
+
+    explicit Drawn(const Scene& of, long sample = 0) : scene(of), picture(frame_of(scene, sample)) {}
+    bool has(Point at, Color color, int slack = 3) const { return is_color(picture, at, color, slack); }
+};
 
 }  // namespace doppel

@@ -1,5 +1,4 @@
 #include "film/runs.hpp"
-#include "render/pixels.hpp"
 #include "scene/captions.hpp"
 
 #include <gtest/gtest.h>
@@ -43,9 +42,7 @@ TEST(UnlikeSides, TheSingleOneComesBackAfterTheExactPeriodAndTheDoubleOneDoesNot
 
 TEST(UnlikeSides, AreComparedByTheirLastMasses) {
     for (const auto& scene : {scene_of("single-and-double"), scene_of_text(chain_and_spring)}) {
-        PairRun pair(scene);
-        PairState state;
-        for (int n = 0; n < 100; ++n) state = pair.next(never);
+        const auto state = state_at(scene, 99);
         const auto &a = state.a.bobs.back(), &b = state.b.bobs.back();
         const double squares = std::pow(a.mass - b.mass, 2) + std::pow(a.x - b.x, 2) + std::pow(a.y - b.y, 2) +
                                std::pow(a.vx - b.vx, 2) + std::pow(a.vy - b.vy, 2);
@@ -76,12 +73,11 @@ TEST(UnlikeSides, AreDrawnInEveryLayoutThatTakesThem) {
             const auto scene = scene_of_text(text + fmt::format("[video]\nlayout = \"{}\"\nsize = [180, 320]", layout));
             const auto picture = frame_of(scene, 20);
             const auto panels = make_layout(scene).panels;
-            PairState last;
-            for_each_snapshot(scene, 20, [&](const Snapshot& snapshot) { last = snapshot.pair; });
+            const auto last = state_at(scene, 20);
             for (const std::size_t side : {0, 1}) {
                 const auto& bob = (side == 0 ? last.a : last.b).bobs.back();
-                const auto at = panels[panels.size() == 1 ? 0 : side].at(bob.x, bob.y);
-                EXPECT_TRUE(is_color(picture.at(static_cast<int>(at.x), static_cast<int>(at.y)), themes[0].sides[side]))
+                const auto& panel = panels[panels.size() == 1 ? 0 : side];
+                EXPECT_TRUE(is_color(picture, panel.at(bob.x, bob.y), themes[0].sides[side]))
                     << layout << ", side " << side;
             }
         }

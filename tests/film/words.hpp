@@ -19,11 +19,24 @@ inline Area box_of(const Label& label, const Typeface& type = {}) {
     return {left, label.anchor.y - 0.73f * label.size, left + width, label.anchor.y + 0.24f * label.size};
 }
 
+/// The items of a kind that pass the test, in order.
+template <class Kind, class Test>
+std::vector<Kind> items_in(const DisplayList& list, Test&& passes) {
+    std::vector<Kind> items;
+    for (const auto& item : list)
+        if (const auto* one = std::get_if<Kind>(&item); one && passes(*one)) items.push_back(*one);
+    return items;
+}
+template <class Kind>
+std::vector<Kind> items_in(const DisplayList& list) {
+    return items_in<Kind>(list, [](const Kind&) { return true; });
+}
+
 inline std::vector<Label> labels_in(const std::vector<DisplayList>& lists) {
     std::vector<Label> labels;
     for (const auto& list : lists)
-        for (const auto& item : list)
-            if (const auto* label = std::get_if<Label>(&item); label && !label->text.empty()) labels.push_back(*label);
+        std::ranges::move(items_in<Label>(list, [](const Label& one) { return !one.text.empty(); }),
+                          std::back_inserter(labels));
     return labels;
 }
 
@@ -53,10 +66,7 @@ inline void expect_apart(const std::vector<Label>& labels, Size size, const std:
 }
 
 inline bool says(const DisplayList& list, const std::string& words) {
-    return std::any_of(list.begin(), list.end(), [&](const auto& item) {
-        const auto* label = std::get_if<Label>(&item);
-        return label && label->text.find(words) != std::string::npos;
-    });
+    return !items_in<Label>(list, [&](const Label& one) { return one.text.find(words) != std::string::npos; }).empty();
 }
 
 }  // namespace doppel

@@ -97,8 +97,8 @@ TEST(Gl, BothShareOneThread) {
         EXPECT_EQ(egl.draw(lists[1]).rgba, alone[1].rgba) << round;
         osmesa.draw(lists[1]);
         egl.draw(lists[0]);
-        EXPECT_EQ(egl.description().rfind("EGL", 0), 0u);
-        EXPECT_EQ(osmesa.description().rfind(library_of_osmesa_or_egl(), 0), 0u);
+        EXPECT_TRUE(egl.description().starts_with("EGL"));
+        EXPECT_TRUE(osmesa.description().starts_with(library_of_osmesa_or_egl()));
     }
 }
 

@@ -15,23 +15,22 @@ int over(int color, int opacity, int ground) {
 TEST(Matte, FindsTheColourAndOpacityThatWereLaidOver) {
     Picture black({256, 3}), white({256, 3}), found({256, 3});
     constexpr int color[3][3] = {{255, 166, 64}, {0, 0, 0}, {200, 200, 200}};
-    for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 256; ++x)
-            for (int k = 0; k < 4; ++k) {
-                black.at(x, y)[k] = static_cast<std::uint8_t>(k == 3 ? 255 : over(color[y][k], x, 0));
-                white.at(x, y)[k] = static_cast<std::uint8_t>(k == 3 ? 255 : over(color[y][k], x, 255));
-            }
-    matte(black, white, {0, 0, 256, 3}, found);
-    for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 256; ++x) {
-            const auto* pixel = found.at(x, y);
-            EXPECT_NEAR(pixel[3], x, 1) << y;  // measured 1: three roundings of three channels
-            for (int k = 0; k < 3; ++k) {
-                // the viewer's result on both backgrounds
-                EXPECT_NEAR(over(pixel[k], pixel[3], 0), black.at(x, y)[k], 1);
-                EXPECT_NEAR(over(pixel[k], pixel[3], 255), white.at(x, y)[k], 2);
-            }
+    for_each_pixel(found, [&](int x, int y) {
+        for (int k = 0; k < 4; ++k) {
+            black.at(x, y)[k] = static_cast<std::uint8_t>(k == 3 ? 255 : over(color[y][k], x, 0));
+            white.at(x, y)[k] = static_cast<std::uint8_t>(k == 3 ? 255 : over(color[y][k], x, 255));
         }
+    });
+    matte(black, white, {0, 0, 256, 3}, found);
+    for_each_pixel(found, [&](int x, int y) {
+        const auto* pixel = found.at(x, y);
+        EXPECT_NEAR(pixel[3], x, 1) << y;  // measured 1: three roundings of three channels
+        for (int k = 0; k < 3; ++k) {
+            // the viewer's result on both backgrounds
+            EXPECT_NEAR(over(pixel[k], pixel[3], 0), black.at(x, y)[k], 1);
+            EXPECT_NEAR(over(pixel[k], pixel[3], 255), white.at(x, y)[k], 2);
+        }
+    });
 }
 
 TEST(Matte, TouchesNothingOutsideItsRectangle) {

@@ -25,13 +25,9 @@ TEST(Stroke, IsAsOpaqueAtItsJointsAndCrossingsAsElsewhere) {
     }
     const Picture picture = drawn(size, {stroke(points, 9, white.with_alpha(0.4f))});
     int maximum = 0;
-    for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) maximum = std::max<int>(maximum, picture.at(x, y)[0]);
-    }
+    for_each_pixel(picture, [&](int x, int y) { maximum = std::max<int>(maximum, picture.at(x, y)[0]); });
     EXPECT_EQ(maximum, 102);  // 0.4 · 255
-    EXPECT_EQ(picture.at(80, 60)[0], 102);
-    EXPECT_EQ(picture.at(138, 98)[0], 102);
-    EXPECT_EQ(picture.at(140, 60)[0], 102);
+    for (const auto& [x, y] : {std::pair(80, 60), {138, 98}, {140, 60}}) EXPECT_EQ(picture.at(x, y)[0], 102) << x;
 }
 
 TEST(Stroke, OfOneVertexIsADisc) {
@@ -93,9 +89,8 @@ TEST(Stroke, FollowsACircleInFewPieces) {
         EXPECT_LE(pieces.vertices.size(), 17u);  // measured 15; 64 with straight pieces
         const Picture bent = drawn(size, {pieces}), round = drawn(size, {Ring{{80, 60}, 50, 4, white}});
         int maximum = 0;
-        for (int y = 0; y < size.height; ++y)
-            for (int x = 0; x < size.width; ++x)
-                maximum = std::max(maximum, std::abs(bent.at(x, y)[0] - round.at(x, y)[0]));
+        for_each_pixel(
+            bent, [&](int x, int y) { maximum = std::max(maximum, std::abs(bent.at(x, y)[0] - round.at(x, y)[0])); });
         EXPECT_LE(maximum, 20);  // measured 11: 0.04 px
     }
 }
@@ -163,12 +158,9 @@ TEST(Stroke, DoesNotChangeOthersOrTheBackdrop) {
     const Color color = rgb(0x4fb0ff);
     const Picture picture =
         drawn(size, {filled(size, color), stroke({{20, 20}, {60, 20}}, 6), stroke({{20, 40}, {60, 40}}, 6, black)});
-    for (const int y : {10, 30, 50}) {
-        EXPECT_EQ(picture.at(40, y)[0], 0x4f);
-        EXPECT_EQ(picture.at(40, y)[2], 0xff);
-    }
-    EXPECT_EQ(picture.at(40, 20)[0], 255);
-    EXPECT_EQ(picture.at(40, 40)[2], 0);
+    for (const float y : {10.f, 30.f, 50.f}) EXPECT_TRUE(is_color(picture, {40, y}, color, 0)) << y;
+    EXPECT_TRUE(is_color(picture, {40, 20}, white, 0));
+    EXPECT_TRUE(is_color(picture, {40, 40}, black, 0));
 }
 
 }  // namespace doppel::strokes_test
