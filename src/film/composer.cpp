@@ -12,7 +12,6 @@
 #include <utility>
 
 namespace doppel {
-
 namespace {
 
 constexpr float leading = 1.55f;  // times the text size

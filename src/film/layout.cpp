@@ -35,11 +35,6 @@ Color color_of(const Members& members, std::size_t k, const Theme& theme) {
     return members.releases[k].color.value_or(theme.palette[k % theme.palette.size()]);
 }
 
-bool is_dark(const Theme& theme) {
-    const auto& color = theme.background;
-    return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b < 0.5f;
-}
-
 /// The part of the plane shown in the pendulums' panels, m.
 struct View {
     double x = 0, y = 0;   // centre
@@ -388,7 +383,9 @@ float size_of_many(std::size_t pendulums) {
 
 Color member_color(const Theme& theme, double share) {
     // leaves out the end of the scale with too little contrast to the background
-    return is_dark(theme) ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
+    const auto& ground = theme.background;
+    const bool is_dark = 0.2126f * ground.r + 0.7152f * ground.g + 0.0722f * ground.b < 0.5f;
+    return is_dark ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
 }
 
 double ShownPendulum::least_bob() const {

@@ -10,7 +10,6 @@
 #include <cmath>
 
 namespace doppel {
-
 namespace {
 
 /// Calls cell(of, name, number, value) for each cell of some bobs; `{}` in the name stands for the number of a bob, from

@@ -18,7 +18,6 @@
 #include <utility>
 
 namespace doppel {
-
 namespace {
 
 /// For example "14", "6.8": at most microseconds, without trailing zeros.

@@ -47,18 +47,6 @@ std::string strip_title(StripKind kind, const Scene& scene) {
     return differ_in_kind(a, b) ? title + ", of the last masses" : title;
 }
 
-/// A curve for each link or rod; for many, the first and the last one. The inner ones are paler.
-template <class Value>
-void add_links(std::vector<StripCurve>& curves, const std::string& side, std::size_t count, const Value& value,
-               Color color, Color pale, double width) {
-    constexpr std::size_t maximum = 3;
-    const float paleness = count < 2 ? 0 : 0.6f;
-    for (std::size_t k = 0; k < count; ++k)
-        if (count <= maximum || k == 0 || k + 1 == count)
-            curves.push_back(
-                {value(k), mixed(color, pale, k + 1 == count ? 0 : paleness), width, fmt::format("{}{}", side, k + 1)});
-}
-
 /// A part of a caption. With `room` > 0 it is not broken, and has that width in px whatever its text.
 struct Piece {
     std::string text;
@@ -151,9 +139,14 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
         const auto color = theme.sides[is_a ? 0 : 1];
         // the first is drawn first and is wider, so that both are visible where they coincide
         const double of_side = (scene.is_single() ? 1 : is_a ? 1.5 : 0.6) * width;
+        // a curve for each link or rod; for many, the first and the last one; the inner ones are paler
         const auto add_all = [&](std::size_t count, const auto& value) {
-            add_links(curves, side_name(scene, is_a) + (scene.members.empty() ? "" : " "), count, value, color,
-                      theme.text, of_side);
+            constexpr std::size_t maximum = 3;
+            for (std::size_t k = 0; k < count; ++k)
+                if (const bool is_last = k + 1 == count; count <= maximum || k == 0 || is_last)
+                    curves.push_back(
+                        {value(k), mixed(color, theme.text, is_last ? 0 : 0.6f), of_side,
+                         fmt::format("{}{}{}", side_name(scene, is_a), scene.members.empty() ? "" : " ", k + 1)});
         };
         switch (kind) {
             case StripKind::rod_error:

@@ -9,7 +9,6 @@
 #include <utility>
 
 namespace doppel {
-
 namespace {
 
 /// The regions in groups to draw at once. Large pictures are drawn in bands, so that a stop takes effect soon.
