@@ -193,8 +193,7 @@ TEST(Chart, CallsOrbitsRegularIfTheirExponentIsKnown) {
         const auto figure =
             figure_of("fig2-right", {"grid.quantity=\"exponent\"", "grid.x.from=10", "grid.x.to=30", "grid.x.step=20",
                                      fmt::format("grid.exponent_duration_s={}", seconds)});
-        Figure page;
-        figure.experiment->draw(computed(figure), page);
+        const auto page = page_of(figure);
         return page.captions.at(0);
     };
     const std::string band = ". The band is the 68 % interval of the exponent.";

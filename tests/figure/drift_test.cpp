@@ -109,8 +109,7 @@ TEST(Drift, HasNoRodErrorForMethodsThatPreserveRods) {
 TEST(Drift, SummarisesTheResultInOneLine) {
     const auto caption = [](const std::string& methods) {
         const auto figure = short_drift(100, {"series.projected=[]", "series.methods=" + methods});
-        Figure page;
-        figure.experiment->draw(computed(figure), page);
+        const auto page = page_of(figure);
         EXPECT_EQ(page.captions.size(), 1u);
         return page.captions.front();
     };
@@ -120,22 +119,6 @@ TEST(Drift, SummarisesTheResultInOneLine) {
         "failed run.");
     EXPECT_EQ(caption("[\"gauss4\"]"), "The error of the energy stays bounded for 100 s with gauss4.");
     EXPECT_EQ(caption("[\"rk4\"]"), "No method keeps the error of the energy bounded; ∝ tells how the others grow.");
-}
-
-TEST(Drift, RefusesImpossibleSettings) {
-    const auto expect_error_text = [](const std::string& argument, const std::string& words) {
-        const auto [code, message] = error_of([&] { figure_of("drift", {argument}); });
-        EXPECT_EQ(code, ExitCode::bad_input) << argument;
-        EXPECT_NE(message.find(words), std::string::npos) << message;
-    };
-    expect_error_text("series.methods=[]", "must name at least one");
-    expect_error_text("series.methods=[\"rk5\"]", "it is \"rk5\"; did you mean \"rk4\"?");
-    expect_error_text("series.projected=[\"gauss4\"]", "\"gauss4\" does not");
-    expect_error_text("series.points_per_decade=0", "points_per_decade");
-    expect_error_text("series.duration_s=5", "must be from 10 to");
-    expect_error_text("series.evaluations_per_s=1", "must be from 10 to");
-    expect_error_text("series.points=3", "points_per_decade");
-    expect_error_text("system.step_s=0.1", "step_s");
 }
 
 }  // namespace doppel::drift_test

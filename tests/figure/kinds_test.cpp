@@ -138,8 +138,7 @@ SectionPage section_page(const std::string& energy_J, int orbits, const std::str
         figure_of("poincare", {fmt::format("section.energy_J=[{}]", energy_J), fmt::format("section.orbits={}", orbits),
                                "section.crossings=4", "section.exponent_duration_s=" + seconds,
                                "system.gravity_m_per_s2=" + gravity});
-    Figure page;
-    figure.experiment->draw(computed(figure), page);
+    const auto page = page_of(figure);
     SectionPage made{.caption = page.captions.front(), .note = page.panels[0].note};
     const auto& curves = page.panels[0].curves;
     for (std::size_t i = 0; i < curves.size(); ++i)
@@ -277,8 +276,7 @@ film_column = "b_kinetic_J"
         EXPECT_EQ(row[4], state.b.kinetic_energy);
     }
     EXPECT_NEAR(table.rows[0][2], pi / 6, 1e-15);
-    Figure page;
-    figure.experiment->draw(computed(figure), page);
+    const auto page = page_of(figure);
     EXPECT_EQ(page.panels.at(0).y.label, "θ₂, rad (a); kinetic, J (b)");
     EXPECT_EQ(figure.subtitle, "two links in angles; explicit Euler, 1/30 000 s");
     // each column of the film's table is a number
@@ -299,8 +297,7 @@ TEST(Curves, CheckToleranceShowsUntilWhenTheyAgree) {
                                              "system.tolerance=1e-10", "series.check_tolerance=1e-12"};
     const auto figure = figure_of("fig2-left", short_run);
     EXPECT_EQ(findings_of(figure).at("agrees_until_s_log_ratio"), 2);
-    Figure page;
-    figure.experiment->draw(computed(figure), page);
+    const auto page = page_of(figure);
     EXPECT_EQ(page.captions.back(), "Converged: at tolerance 10⁻¹² the values are the same within 1 %: until 2.0 s.");
     EXPECT_EQ(header_line(figure_of("fig2-left", {"system.integrator=\"dop853\"", "system.tolerance=1e-10",
                                                   "series.check_tolerance=1e-12"})),

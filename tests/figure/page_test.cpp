@@ -19,9 +19,9 @@ const std::string sweep_text =
 
 using test::data_of;
 
-std::string page_of(const FigurePreset& figure) {
-    Figure drawn{.title = figure.title, .subtitle = figure.subtitle};
-    figure.experiment->draw(computed(figure), drawn);
+std::string html_of(const FigurePreset& figure) {
+    auto drawn = page_of(figure);
+    drawn.title = figure.title, drawn.subtitle = figure.subtitle;
     return figure_page(figure, drawn, themes[0]);
 }
 
@@ -34,7 +34,7 @@ std::vector<double> numbers_in(const std::string& text) {
 
 TEST(FigurePage, HoldsTheNumbersOfTheTable) {
     const auto figure = figure_from(sweep_text);
-    const auto data = data_of(page_of(figure));
+    const auto data = data_of(html_of(figure));
     ASSERT_EQ(data["panels"].size(), 1u);
     const auto& curve = data["panels"][0]["curves"][0];
     const auto x = numbers_in(curve["x"]), y = numbers_in(curve["y"]);
@@ -59,9 +59,8 @@ TEST(FigurePage, ReleasesOnlyWhatItsFormCanSet) {
 
 TEST(FigurePage, HoldsTheCellsOfAMapFromTheLowerLeft) {
     const auto figure = figure_from(map_text);
-    Figure drawn;
-    figure.experiment->draw(computed(figure), drawn);
-    const auto data = data_of(page_of(figure));
+    const auto drawn = page_of(figure);
+    const auto data = data_of(html_of(figure));
     const auto& panel = data["panels"][0];
     const auto& map = panel["map"];
     EXPECT_EQ(map["columns"], 12);
@@ -110,7 +109,7 @@ TEST(FigurePage, AxesAreWhereThePictureHasThem) {
 
 TEST(FigurePage, TellsItsPlayerTheKeysOfReleases) {
     const auto keys = [](const std::string& text, const std::vector<std::string>& sets = {}) {
-        return data_of(page_of(figure_from(text, sets)))["release"];
+        return data_of(html_of(figure_from(text, sets)))["release"];
     };
     EXPECT_EQ(keys(map_text), (Json{"system.angle_deg[0]", "system.angle_deg[1]"}));
     EXPECT_EQ(keys(sweep_text), (Json{"system.angle_deg[0]"}));

@@ -79,12 +79,7 @@ TEST(Schema, RefusesWhatTheReaderRefusesOfOneKey) {
     for (const auto& preset : refused_presets) refused.emplace_back(preset.text, preset.message);
     for (const auto& preset : refused_video_keys)
         refused.emplace_back(std::string("[video]\n") + preset.text, preset.message);
-    for (const auto& list : {refused_figures_sweep, refused_figures_values, refused_figures_chart,
-                             refused_figures_series, refused_figures_others})
-        for (const auto& figure : list) {
-            const auto text = "[scene]\nkind = \"" + figure.kind + "\"\n" + figure.text;
-            refused.emplace_back(text, refusal_of(text));
-        }
+    for (const auto& figure : refused_figures()) refused.emplace_back(figure.text, refusal_of(figure.text));
     int caught = 0;
     for (const auto& [text, message] : refused) {
         if (message.find("Error while parsing") != std::string::npos) continue;

@@ -96,15 +96,12 @@ TEST(Stability, HasWholeStepsNearThoseAskedFor) {
 
 TEST(Stability, SharesItsAxes) {
     EXPECT_EQ(figure_of("stability").experiment->trials(), 12u * 100);
-    const auto page_of = [](const std::string& methods) {
-        const auto figure = figure_of(
-            "stability", {"grid.x.points=2", "grid.y.points=2", "scene.duration_s=1", "grid.panel.values=" + methods});
-        Figure page;
-        figure.experiment->draw(computed(figure), page);
-        return page;
+    const auto page_of_methods = [](const std::string& methods) {
+        return page_of(figure_of(
+            "stability", {"grid.x.points=2", "grid.y.points=2", "scene.duration_s=1", "grid.panel.values=" + methods}));
     };
     // nine with fixed steps, three with a tolerance: rows of three of one sort
-    const auto all = page_of(
+    const auto all = page_of_methods(
         "[\"euler\", \"semi-implicit-euler\", \"midpoint\", \"rk4\", \"adams\", \"gauss4\", "
         "\"gauss6\", \"rattle\", \"rattle6\", \"dopri5\", \"dop853\", \"taylor\"]");
     EXPECT_TRUE(all.shares_axes);
@@ -118,7 +115,7 @@ TEST(Stability, SharesItsAxes) {
     EXPECT_NE(all.panels[0].x, all.panels[9].x);
     EXPECT_TRUE(all.panels[3].note.starts_with("limit 0."));  // of rk4
     EXPECT_EQ(all.panels[6].note, "");                        // Gauss collocation has no limit
-    EXPECT_EQ(page_of("[\"rk4\", \"taylor\"]").columns, 0);
+    EXPECT_EQ(page_of_methods("[\"rk4\", \"taylor\"]").columns, 0);
 }
 
 }  // namespace doppel::stability_test

@@ -33,6 +33,19 @@ inline KnownTrials computed(const FigurePreset& figure, int jobs = 2) {
     return computation.take_all();
 }
 
+/// Its panels and captions.
+inline Figure page_of(const FigurePreset& figure) {
+    Figure page;
+    figure.experiment->draw(computed(figure), page);
+    return page;
+}
+
+/// Expects an error of the input whose message contains `words`.
+template <class Action>
+void expect_refused(const std::vector<std::string>& words, const Action& action) {
+    test::expect_error(ExitCode::bad_input, words, action);
+}
+
 /// The number of its pairs, orbits …
 inline double units_of(const FigurePreset& figure) {
     double all = 0;

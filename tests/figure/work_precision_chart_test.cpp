@@ -8,12 +8,6 @@ namespace doppel::work_precision_chart_test {
 
 // Which methods a work-precision chart colours.
 
-Figure page_of(const FigurePreset& figure) {
-    Figure page;
-    figure.experiment->draw(computed(figure), page);
-    return page;
-}
-
 std::set<std::string> labels_of(const Plot& plot) {
     std::set<std::string> labels;
     for (const auto& curve : plot.curves)

@@ -78,8 +78,7 @@ TEST(LibraryChart, HasTheirFiveBestAndDoppelsBest) {
         libraries.push_back(resting(fmt::format("at {}", cost), 1, cost, false));
     const auto figure = chart("[1e-7, 0]", "methods = [\"rk4\", \"taylor\", \"euler\"]\n", libraries,
                               {"work_precision.most_evaluations=5000", "work_precision.models=[\"angles\"]"});
-    Figure page;
-    figure.experiment->draw(computed(figure), page);
+    const auto page = page_of(figure);
     std::set<std::string> labels;
     for (const auto& curve : page.panels[0].curves) labels.insert(curve.label);
     labels.erase("");
