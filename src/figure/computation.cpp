@@ -1,7 +1,6 @@
 #include "figure/computation.hpp"
 
 #include "base/embedded.hpp"
-#include "base/machine.hpp"
 #include "base/threads.hpp"
 #include "output/written.hpp"
 #include "scene/resolved.hpp"
@@ -65,9 +64,6 @@ fs::path new_part_path(fs::path path) {
 
 constexpr double record_after_s = 2, flush_every_s = 0.5;
 
-double now() {
-    return seconds_of(CLOCK_MONOTONIC);
-}
 /// CPU time of this thread, s.
 double cpu_now() {
     return seconds_of(CLOCK_THREAD_CPUTIME_ID);
@@ -204,8 +200,7 @@ fs::path Computation::publish_shard() {
     return shard();
 }
 
-/// Trials that others require come first. The others are in an order in which any first ones are spread evenly, so that
-/// the time of the rest can be estimated.
+/// Trials that others require come first. Any first ones of the others are spread evenly, for estimates.
 void Computation::find_unknown() {
     for (std::size_t trial = header_.first(); trial < header_.last(); ++trial)
         if (known_[trial].empty()) unknown_.push_back(trial);
@@ -221,7 +216,7 @@ bool Computation::compute(std::size_t trial, const std::atomic<bool>& stop) {
         throw_if_set(stop);
         {
             const std::lock_guard lock(mutex_);
-            if (start_s_ == 0) start_s_ = flushed_s_ = now();
+            if (start_s_ == 0) start_s_ = flushed_s_ = seconds_of(CLOCK_MONOTONIC);
         }
         const double cpu_start = cpu_now();
         auto numbers = figure_.experiment->compute(trial, stop);
@@ -245,13 +240,10 @@ Error Computation::with_record(const Error& error) {
 bool Computation::keep(std::size_t trial, TrialNumbers numbers, double cpu_s) {
     const std::lock_guard lock(mutex_);
     known_[trial] = std::move(numbers);
-    const double units = figure_.experiment->units(trial);
+    const double units = figure_.experiment->units(trial), time = seconds_of(CLOCK_MONOTONIC);
     cpu_s_ += cpu_s;
-    ++computed_;
-    const double time = now();
-    const bool is_last = computed_ == unknown_.size();
-    const bool pays = time - start_s_ > record_after_s && !is_last;
-    if (!writer_ && pays && folder_) {
+    const bool is_last = ++computed_ == unknown_.size();
+    if (!writer_ && folder_ && !is_last && time - start_s_ > record_after_s) {
         writer_.emplace(record_, header_, known_);
         has_record_ = true;
     } else if (writer_) {
@@ -310,20 +302,16 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
         cut_s = cpu_now() - from;
     }
     double seconds = computation.cpu_s() - needed_s, done = computation.computed_units();
-    // a trial that takes longer than all others before counts as done
-    estimate.at_least = cut_s > seconds;
+    estimate.at_least = cut_s > seconds;  // a trial that takes longer than all others before counts as done
     if (estimate.at_least) seconds += cut_s, done += units(*trial);
     estimate.cpu_s = needed_s + (done > 0 ? seconds * computation.total_units() / done : 0);
     double numbers = 0;
-    const bool is_whole = trial == trials.end();
-    if (const auto all_s = is_whole ? std::nullopt : extrapolated_s(*figure.experiment, numbers, stop))
+    if (const auto all_s = trial == trials.end() ? std::nullopt : extrapolated_s(*figure.experiment, numbers, stop))
         estimate.cpu_s = *all_s, estimate.at_least = false;
     estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), parallel);
     double trials_done = 0, numbers_done = 0;
-    for (const auto& known : computation.take_all()) {
-        trials_done += known.empty() ? 0 : 1;
-        numbers_done += static_cast<double>(known.size());
-    }
+    for (const auto& known : computation.take_all())
+        trials_done += known.empty() ? 0 : 1, numbers_done += static_cast<double>(known.size());
     // of a row of the table, of a number in it, and of a pixel drawn and as PNG; measured
     constexpr double row_bytes = 6, text_bytes = 18, drawn_bytes = 8, png_bytes = 0.15;
     const auto size = layout_of(figure.chart).picture;

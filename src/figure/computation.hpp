@@ -74,9 +74,8 @@ private:
     BlockFile file_;
 };
 
-/// Merges the results of a figure's shards in `folder`. Each must exist once, complete and of this figure. Throws
-/// Error: exit 75 if shards are missing, exit 2 for duplicates or shards of other figures, exit 4 if one is unreadable
-/// or damaged, exit 130 soon after `stop` is set.
+/// The results of a figure's shards in `folder`. Throws Error: exit 75 if shards are missing, exit 2 for duplicates or
+/// shards of other figures, exit 4 if one is unreadable or damaged, exit 130 soon after `stop` is set.
 KnownTrials merged_parts(const FigurePreset& figure, const std::filesystem::path& folder,
                          const std::atomic<bool>& stop);
 
@@ -96,18 +95,16 @@ struct FigureReport {
 /// file (resume_name). If it is destroyed before it is complete, the file stays.
 class Computation {
 public:
-    /// Reads the known trials from a finished shard in `folder`, or otherwise from the record, up to a damaged
-    /// one. The figure's `number` is only used in messages. Throws Error (exit 4) if the record is something else; it is
-    /// then left unchanged.
+    /// Reads the known trials from a finished shard in `folder`, or else from the record, up to a damaged one. `number`
+    /// = the figure's in `report`. Throws Error (exit 4) if the record is something else; it is then left unchanged.
     Computation(const FigurePreset& figure, const PartHeader& header, std::optional<std::filesystem::path> folder,
                 FigureReport report, std::size_t number = 0);
 
     /// The unknown trials, in the order in which they are best computed.
     const std::vector<std::size_t>& unknown() const { return unknown_; }
     double total_units() const { return total_units_; }
-    /// Computes an unknown trial on the calling thread; each must be computed once. Returns true for the last one: then
-    /// all trials are known. Throws Error: that of the trial, with the path of the record; exit 3 if its numbers are
-    /// invalid.
+    /// Computes an unknown trial, each once; whether it was the last. Throws Error: that of the trial, with_record();
+    /// exit 3 if its numbers are invalid.
     bool compute(std::size_t trial, const std::atomic<bool>& stop);
     KnownTrials take_all() { return std::move(known_); }
     /// The same error, with the share of results kept in the record and its path.
@@ -117,8 +114,8 @@ public:
     std::filesystem::path publish_shard();
     const std::filesystem::path& record() const { return record_; }
     double computed_units() const { return computed_units_; }  // without those read from files
-    double cpu_s() const { return cpu_s_; }                    // of the threads during computation
-    double start_s() const { return start_s_; }                // start of the first trial, by CLOCK_MONOTONIC
+    double cpu_s() const { return cpu_s_; }
+    double start_s() const { return start_s_; }  // of the first trial, by CLOCK_MONOTONIC
 
 private:
     bool take(const std::filesystem::path& path, bool must_be);

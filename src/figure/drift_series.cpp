@@ -4,7 +4,6 @@
 
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <numeric>
 
 namespace doppel {
@@ -51,6 +50,7 @@ public:
         trials_ = runs_.size();
         own_ = numbers_in<DriftCost>;
         each_ = 2;  // errors of the energy, and of the rods
+        are_finite_ = {false};
         shown_ = each_ * trials_;
         settings_ = resolved_release(release_) + settings_text(keys);
         unit_ = "motions";

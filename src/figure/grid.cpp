@@ -1,11 +1,9 @@
 #include "figure/grid.hpp"
 
 #include "integrate/flips.hpp"
-#include "scene/captions.hpp"
 #include "scene/method_choice.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

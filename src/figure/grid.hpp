@@ -18,8 +18,8 @@ inline constexpr auto names_of<Overlay> = std::to_array<std::string_view>({"none
                                                                            "linear-limit"});
 
 /// A quantity of pairs over the values of one to four keys: curves over x, in several colours; maps over x and y;
-/// panels of either. A trial is some adjacent points of a curve, or cells of a map, that are best computed together. If
-/// the map has a mirror symmetry, only its lower half is computed.
+/// panels of either. A trial is some adjacent points or cells that are best computed together; of a map with a mirror
+/// symmetry, those in its lower half.
 class Grid final : public Experiment {
 public:
     static constexpr std::string_view table_key = "grid";
@@ -50,7 +50,6 @@ private:
         std::size_t group, row, column;
     };
 
-    // Reading.
     void check(const TomlReader& table) const;
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();

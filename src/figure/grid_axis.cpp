@@ -3,7 +3,6 @@
 #include "scene/side_keys.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace doppel {

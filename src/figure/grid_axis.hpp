@@ -57,8 +57,7 @@ struct GridAxis {
     /// `table` = that of the axis. Throws Error (exit 2) if the pair has no such key, or cannot take a value.
     void find(FigureReader& reader, const TomlReader& table, const Preset& pair);
 
-    /// For key "setting": chooses the values for the methods of this pair. Step sizes divide its duration; tolerances
-    /// are within its precision.
+    /// For key "setting": step sizes that divide the pair's duration, or tolerances within its precision.
     void settle(const Preset& pair);
 
     const Quad& value(std::size_t i) const { return numbers_[i]; }
@@ -97,8 +96,7 @@ private:
     void find_even_values(const TomlReader& table);
     void find_settings(const TomlReader& table, const Preset& pair);
     Quad even_value(std::size_t i) const;
-    /// Of a map: whether `values`, or whole numbers from `from` to `to`, are the centres of its cells. Otherwise `from`
-    /// and `to` are its edges.
+    /// Of a map: whether its values are the centres of its cells. Otherwise `from` and `to` are its edges.
     bool are_centers() const { return values || is_whole(); }
     /// Throws Error (exit 2) at the table's key `of` unless the values of a map increase by equal steps or ratios.
     void find_spacing(const TomlReader& table, std::string_view of);

@@ -1,8 +1,5 @@
 #include "figure/kinds.hpp"
 
-#include <algorithm>
-#include <array>
-
 namespace doppel {
 
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {

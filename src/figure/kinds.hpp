@@ -94,9 +94,8 @@ struct MapCells {
     std::size_t panels, numbers;
 };
 
-/// What a figure computes and shows: independent trials, and the table, picture and findings made from their numbers.
-/// Trials may be computed in any order, by any thread, in several runs on several machines; their numbers are
-/// identical.
+/// What a figure computes and shows: independent trials, and the table, picture and findings made from their numbers,
+/// which are identical in any order, on any thread and machine.
 class Experiment {
 public:
     virtual ~Experiment() = default;
@@ -108,21 +107,18 @@ public:
     const std::string& unit() const { return unit_; }
     virtual double units(std::size_t /*trial*/) const { return 1; }
 
-    /// Computes a trial. Throws Error: exit 3 if a method fails and nothing can be shown, exit 130 soon after `stop` is
-    /// set.
+    /// Throws Error: exit 3 if a method fails and nothing can be shown, exit 130 soon after `stop` is set.
     virtual TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const = 0;
 
-    /// A part for estimates: the same over a shorter time.
+    /// For estimates, the same over about `share` of the time; nothing if it cannot be shortened.
     struct Part {
         std::shared_ptr<const Experiment> experiment;
         double share;         // of the time that the whole takes to compute
         std::size_t numbers;  // of all trials of the whole
     };
-    /// Over about `share` of the time; nothing if it cannot be shortened.
     virtual std::optional<Part> part(double /*share*/) const { return std::nullopt; }
 
-    /// Whether the numbers are valid for the trial: their count, and infinity or NaN only where allowed. It checks
-    /// numbers that were read and those that were computed.
+    /// Whether numbers, read or computed, are valid for the trial: their count, and infinity or NaN only where allowed.
     virtual bool fits(std::size_t trial, std::span<const double> numbers) const = 0;
 
     /// The columns of the table, and its rows from the numbers of all trials.
@@ -143,32 +139,30 @@ public:
     /// For map figures, in which each panel shows one map; otherwise nothing.
     const std::optional<MapCells>& map() const { return map_; }
 
-    /// For a map or a sweep over release angles of chains of one to three ideal links: the keys of the axes, x first, and one
-    /// pair of the figure.
+    /// For maps and sweeps over release angles of one to three ideal links: the keys of the axes, x first, and a pair.
     struct Releases {
         std::vector<std::string> keys;
         Preset pair;
     };
     virtual std::optional<Releases> releases() const { return std::nullopt; }
 
-    /// All settings that the numbers depend on, as tables of the preset (TOML).
+    /// All settings that the numbers depend on, as tables of the preset (TOML); the last one is [chart].
     const std::string& resolved() const { return settings_; }
-    /// The keys of [chart] that the numbers depend on.
-    const std::string& resolved_chart() const { return chart_settings_; }
 
 protected:
     // set by constructors
-    std::string unit_ = "trials", subtitle_, settings_, chart_settings_;
+    std::string unit_ = "trials", subtitle_, settings_;
     std::vector<std::string> columns_;
     std::optional<MapCells> map_;
 };
 
-/// The kind's own table with all its keys, TOML.
+/// The kind's own table and [chart] with all its keys, TOML.
 template <class Kind>
 std::string settings_text(Kind& kind) {
-    TomlWriter writer{std::string(Kind::table_key)};
-    kind.fields(writer);
-    return fmt::format("\n[{}]\n{}", Kind::table_key, writer.text());
+    TomlWriter own{std::string(Kind::table_key)}, chart;
+    kind.fields(own);
+    if constexpr (requires { kind.further_fields(chart); }) kind.further_fields(chart);
+    return fmt::format("\n[{}]\n{}\n[chart]\n{}", Kind::table_key, own.text(), chart.text());
 }
 
 /// A preset being read: each kind of figure reads its own tables.
@@ -209,9 +203,8 @@ struct FigureKind {
     void (*list)(KeyVisitor&);  // visits the kind's own tables, with their defaults
 };
 
-/// A kind is a class constructed from a FigureReader; with only_keys, the constructor returns when it has read all keys.
-/// `table_key` is the name of the table with its own keys. fields(visit) visits each with its member, as in
-/// scene/preset_fields.hpp; further_fields(visit), those that it has in [chart].
+/// A kind is a class constructed from a FigureReader; with only_keys, the constructor returns when it has read all keys:
+/// those of its own table `table_key`, which fields(visit) visits, and those of further_fields(visit) in [chart].
 template <class Kind>
 constexpr FigureKind kind_of(std::string_view name) {
     return {name,

@@ -91,7 +91,7 @@ std::string body_of(const FigurePreset& figure, const HeatMap& map) {
 
 }  // namespace
 
-std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& theme) {
+std::string figure_page(const FigurePreset& figure, Figure drawn) {
     std::string heading, captions;
     if (!drawn.title.empty())
         heading = fmt::format("<header><h1 dir=\"auto\">{}</h1><p dir=\"auto\">{}</p></header>\n", markup(drawn.title),
@@ -99,7 +99,7 @@ std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& t
     for (const auto& caption : drawn.captions) captions += fmt::format("<p dir=\"auto\">{}</p>\n", markup(caption));
     drawn.title = drawn.subtitle = "";  // they are text of the page
     drawn.captions.clear();
-    const auto page = compose_chart(figure.chart, drawn, theme);
+    const auto page = compose_chart(figure.chart, drawn);
     const auto [width, height] =
         std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
     HtmlPage whole{.kind = "figure"};
@@ -141,9 +141,10 @@ void require_map(const FigurePreset& figure) {
         throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
 }
 
-Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
+Json write_tiles(const FigurePreset& figure, const Figure& page, Transaction& files, int jobs,
                  const std::atomic<bool>& stop) {
     require_map(figure);
+    const auto& theme = figure.chart.colors();
     const auto& plot = page.panels.front();
     const auto name = figure.name + ".tiles", html = figure.name + ".html";
     const auto folder = files.directory(name);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "figure/preset.hpp"
-#include "image/color.hpp"
 #include "output/transaction.hpp"
 #include "scene/resolved.hpp"
 
@@ -9,15 +8,14 @@
 
 namespace doppel {
 
-/// A page (HTML) of the figure `drawn`: its picture, SVG or PNG of twice its size, whichever is smaller. It shows the
-/// numbers of the cell or point under the pointer. A click in a map or sweep over release angles, of chains of one to
-/// three ideal links, opens the release in a player.
-std::string figure_page(const FigurePreset& figure, Figure drawn, const Theme& theme);
+/// A page (HTML) of the figure `drawn`: its picture, SVG or PNG of twice its size, whichever is smaller, and the numbers
+/// of the cell or point under the pointer. A click in a figure with releases() opens the release in a player.
+std::string figure_page(const FigurePreset& figure, Figure drawn);
 
 /// Writes the map that `page` shows: NAME.tiles/, a pyramid of tiles of 256 × 256 pixels, LEVEL-ROW-COLUMN.png from the
 /// top left; level 0 has one tile, the last level one pixel per cell. Also writes NAME.html, a viewer for mouse, touch
 /// and keys without network. Returns its manifest entry. Throws Error: exit 4; 130 soon after `stop` is set.
-Json write_tiles(const FigurePreset& figure, const Figure& page, const Theme& theme, Transaction& files, int jobs,
+Json write_tiles(const FigurePreset& figure, const Figure& page, Transaction& files, int jobs,
                  const std::atomic<bool>& stop);
 /// Throws Error (exit 2) if the figure is not a single map, or if its own format writes a page.
 void require_map(const FigurePreset& figure);

@@ -1,6 +1,5 @@
 #include "figure/preset.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -94,7 +93,7 @@ ChartLayout layout_of(const ChartSpec& chart, double growth) {
     return layout;
 }
 
-Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& theme) {
+Page compose_chart(const ChartSpec& chart, const Figure& figure) {
     constexpr float readable_panel = 90, readable_text = 16;  // px, where labels have 20
     const auto is_small = [](const PageItem& item) {
         const auto* text = std::get_if<Label>(&item);
@@ -103,7 +102,7 @@ Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& th
     std::optional<Page> with_small_text;
     for (double growth = 1;; growth += 0.1) {
         const auto layout = layout_of(chart, growth);
-        auto made = compose(figure, layout.picture, theme, layout.scale, layout.unit);
+        auto made = compose(figure, layout.picture, chart.colors(), layout.scale, layout.unit);
         const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
         const bool has_all = made.notes.empty() && smallest_side(made.panels) >= readable_panel;
         if (has_all && std::ranges::none_of(made.items, is_small)) return made;
@@ -169,8 +168,7 @@ FigurePreset read_once(const PresetText& source, const TomlDocument& document, K
 }  // namespace
 
 std::string FigurePreset::resolved_work() const {
-    return fmt::format("[scene]\nkind = {}\n{}\n[chart]\n{}", toml_text(kind), experiment->resolved(),
-                       experiment->resolved_chart());
+    return fmt::format("[scene]\nkind = {}\n{}", toml_text(kind), experiment->resolved());
 }
 
 std::string FigurePreset::resolved() const {

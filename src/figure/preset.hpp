@@ -1,10 +1,12 @@
 #pragma once
 
 #include "figure/kinds.hpp"
+#include "image/color.hpp"
 #include "plot/plot.hpp"
 #include "scene/preset.hpp"
 #include "scene/toml_reader.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +23,8 @@ struct ChartSpec {
     double font_pt = 8;
     int dpi = 300;
     ChosenText title, captions;
+
+    const Theme& colors() const { return *std::ranges::find(themes, theme, &Theme::name); }
 };
 
 /// How a chart is laid out (plot/plot.hpp) and written.
@@ -32,12 +36,11 @@ struct ChartLayout {
 };
 
 /// With a size on paper, labels are `font_pt` high and a PNG has `dpi` pixels per inch. Otherwise a layout pixel is 3/4
-/// pt. Output made of paths is laid out on a grid too fine to see. A height that is not given is `growth` times that in
-/// proportion.
+/// pt. A height that is not given is `growth` times that in proportion.
 ChartLayout layout_of(const ChartSpec& chart, double growth = 1);
 /// The figure in this layout. Without a height of its own, it is as high on paper as all its texts need, and panels that
 /// can be read.
-Page compose_chart(const ChartSpec& chart, const Figure& figure, const Theme& theme);
+Page compose_chart(const ChartSpec& chart, const Figure& figure);
 
 /// The keys of [chart] common to all figures.
 void chart_fields(KeyVisitor& visit, ChartSpec& chart);

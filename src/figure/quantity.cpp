@@ -7,7 +7,6 @@
 #include "scene/captions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

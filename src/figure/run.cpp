@@ -39,10 +39,6 @@ Figure page_of(const FigurePreset& figure, const KnownTrials& trials) {
     return page;
 }
 
-const Theme& theme_named(const std::string& name) {
-    return *std::ranges::find_if(themes, [&](const auto& theme) { return theme.name == name; });
-}
-
 /// Throws Error if the map cells of the trials in `header` exceed the memory or what a page holds (exit 2), or the disk
 /// space of `folder` (exit 75). Other figures need no check.
 void require_room(const FigurePreset& figure, const PartHeader& header, bool tiles, const fs::path& folder) {
@@ -71,11 +67,10 @@ void require_room(const FigurePreset& figure, const PartHeader& header, bool til
     if (!unknown && table > free) throw refuse(ExitCode::try_again, "disk", table, free);
 }
 
-/// Times of the run for the manifest.
+/// Times of the run for the manifest; those of computing may include other figures'.
 struct FigureRecord {
     int jobs = 1;
-    double compute_wall_s = 0, compute_cpu_s = 0;  // may include time in which other figures were computed
-    double draw_cpu_s = 0;                         // for picture and table
+    double compute_wall_s = 0, compute_cpu_s = 0, draw_cpu_s = 0;
 };
 
 /// `tiles` = the description of a pyramid, otherwise null.
@@ -111,7 +106,7 @@ std::vector<std::string> write_picture(const FigurePreset& figure, const KnownTr
     const auto place = files.file(name);
     std::vector<std::string> notes;
     if (format == PictureFormat::html) {
-        write_file(place, figure_page(figure, page_of(figure, trials), theme_named(figure.chart.theme)));
+        write_file(place, figure_page(figure, page_of(figure, trials)));
     } else {
         const auto drawn = compose_figure(figure, trials);
         const double width_pt = layout_of(figure.chart).width_pt;
@@ -135,8 +130,7 @@ RunResult write_figure(const FigurePreset& figure, const KnownTrials& trials, Fi
         const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
         Json tiles;
         if (as_tiles) {
-            tiles =
-                write_tiles(figure, page_of(figure, trials), theme_named(figure.chart.theme), files, record.jobs, stop);
+            tiles = write_tiles(figure, page_of(figure, trials), files, record.jobs, stop);
         } else {
             result.warnings = write_picture(figure, trials, files, stop);
             throw_if_set(stop);
@@ -159,7 +153,7 @@ RunResult write_figure(const FigurePreset& figure, const KnownTrials& trials, Fi
 }  // namespace
 
 Page compose_figure(const FigurePreset& figure, const KnownTrials& trials) {
-    return compose_chart(figure.chart, page_of(figure, trials), theme_named(figure.chart.theme));
+    return compose_chart(figure.chart, page_of(figure, trials));
 }
 
 std::vector<std::string> figure_files(const FigurePreset& figure, const FigureOptions& options) {
@@ -176,8 +170,9 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     if (options.merge) {
         for (std::size_t k = 0; k < figures.size(); ++k) {
             const double start = seconds_of(CLOCK_MONOTONIC);
-            const auto trials = merged_parts(figures[k], options.out / figures[k].name, stop);
-            Transaction files(options.out / figures[k].name, "run", kind, options.replacing);
+            const auto folder = options.out / figures[k].name;
+            const auto trials = merged_parts(figures[k], folder, stop);
+            Transaction files(folder, "run", kind, options.replacing);
             auto result = write_figure(figures[k], trials, {.jobs = jobs}, options.tiles, files, stop);
             result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
             report.done(k, result);
@@ -212,9 +207,8 @@ void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& 
     const auto write = [&](std::size_t k) {
         const std::lock_guard lock(writing);
         auto& computation = *computations[k];
-        FigureRecord record{.jobs = jobs, .compute_cpu_s = computation.cpu_s()};
-        const double start = computation.start_s() > 0 ? computation.start_s() : seconds_of(CLOCK_MONOTONIC);
-        record.compute_wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+        const double now = seconds_of(CLOCK_MONOTONIC), start = computation.start_s() > 0 ? computation.start_s() : now;
+        const FigureRecord record{.jobs = jobs, .compute_wall_s = now - start, .compute_cpu_s = computation.cpu_s()};
         RunResult result;
         try {
             if (options.shard)

@@ -19,12 +19,10 @@ struct FigureOptions {
 };
 
 /// Makes figures. Threads compute the trials, figure after figure; the one that completes a figure draws and writes it.
-/// The numbers and tables are identical for any number of threads and any register width. A figure that takes more than
-/// some seconds records its trials in a file (resume_name); after an interruption the same command resumes from it. With
-/// `shard`, this file becomes the shard for the merge; if the shard is already complete, nothing is done. The files of a
-/// figure appear complete or not at all; complete figures stay if a later one fails.
-/// Throws Error: exit 2 if shards belong to something else, 75 if one is missing, 3, 4, or 130 soon after `stop` is
-/// set.
+/// The numbers are identical for any number of threads and any register width. After an interruption the same command
+/// resumes from the record of a Computation; with `shard`, this file becomes the shard. The files of a figure appear
+/// complete or not at all; complete figures stay if a later one fails. Throws Error: exit 2 if shards belong to
+/// something else, 75 if one is missing, 3, 4, or 130 soon after `stop` is set.
 void run_figures(const std::vector<FigurePreset>& figures, const FigureOptions& options, const std::atomic<bool>& stop,
                  const FigureReport& report);
 

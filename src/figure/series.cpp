@@ -8,8 +8,6 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -108,6 +106,7 @@ public:
             if (check_tolerance_ && !(curve.pair.a.tolerance && curve.pair.b.tolerance))
                 throw table.error("check_tolerance", "needs adaptive methods on both sides");
             labels_.push_back(curve.label);
+            are_finite_.push_back(curve.film_column == "distance");
         }
         if (!differ)
             throw table.error("quantity", "\"{}\" compares the two sides, which are the same; let [b] differ from [a]",
@@ -139,10 +138,6 @@ public:
     }
 
 private:
-    bool may_be_none(std::size_t trial) const override {
-        return curves_[trial % curves_.size()].film_column != "distance";
-    }
-
     std::string caption(std::span<const TrialNumbers> numbers) const override {
         if (!check_tolerance_) return "";
         std::string words;
@@ -164,13 +159,13 @@ private:
 
     std::string resolved_settings(const std::string& own) const {
         const auto& base = curves_.front().pair;
-        auto text = fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n{}", base.duration_s.text(),
-                                base.sample_hz.text(), own);
+        auto text =
+            fmt::format("duration_s = \"{}\"\nsample_hz = \"{}\"\n", base.duration_s.text(), base.sample_hz.text());
         for (const auto& curve : curves_)
             text += fmt::format("\n[[curve]]\ncolumn = {}\nlabel = {}\nfilm_column = {}\n{}", toml_text(curve.column),
                                 toml_text(curve.label), toml_text(*curve.film_column),
                                 resolved_sides(curve.pair, "curve."));
-        return text;
+        return text + own;
     }
 
     /// First the curves, then the same pairs at the finer tolerance.
@@ -240,6 +235,7 @@ public:
                               release_.links());
         settings_ = resolved_release(release_) + settings_text(keys);
         unit_ = "spectra";
+        are_finite_ = {true};
         columns_ = {"time_s"};
         for (std::size_t i = 1; i <= 2 * release_.links(); ++i) {
             columns_.push_back(fmt::format("exponent{}_per_s", i));
@@ -262,7 +258,6 @@ public:
     }
 
 private:
-    bool may_be_none(std::size_t /*trial*/) const override { return false; }
     bool preserves_volume() const { return physical_of(release_).friction.is_none(); }
 
     /// The exponents at the end.

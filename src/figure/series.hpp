@@ -4,7 +4,6 @@
 #include "figure/kinds.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace doppel {
 
@@ -84,7 +83,7 @@ public:
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
         return numbers.size() == own_ + each_ * times_s_.size() && finite_or_none(numbers) &&
-               (may_be_none(trial) || all_finite(numbers));
+               (!are_finite_[trial % are_finite_.size()] || all_finite(numbers));
     }
 
     /// A row for each time, with all quantities.
@@ -114,8 +113,6 @@ public:
     }
 
 protected:
-    /// Whether numbers may be missing.
-    virtual bool may_be_none(std::size_t /*trial*/) const { return true; }
     virtual std::string caption(std::span<const TrialNumbers> numbers) const = 0;
 
     /// Quantity k of all trials, at all times.
@@ -138,6 +135,7 @@ protected:
     // set by constructors
     std::vector<double> times_s_;  // ascending, at least two
     std::size_t trials_ = 1, own_ = 0, each_ = 1;
+    std::vector<bool> are_finite_;     // of each curve: no number may be missing
     std::size_t shown_ = 0;            // quantities in the table
     std::vector<std::string> labels_;  // of the curves, the first quantities
     Plot axes_;                        // without curves

@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -254,9 +253,6 @@ public:
         const auto* error = has_angles() ? "angle_error_rad" : "place_error";
         columns_ = {"problem",      "model",          "method",      "setting",     error,
                     "energy_error", "length_error_m", "cpu_seconds", "evaluations", "steps"};
-        TomlWriter chart;
-        further_fields(chart);
-        chart_settings_ = chart.text();
         check_distinct(table, "methods", methods_);
         std::set<std::string_view> used;  // methods and models
         for (std::size_t p = 0; p < problems.size(); ++p)

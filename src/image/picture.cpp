@@ -1,14 +1,11 @@
 #include "image/picture.hpp"
 
-#include "image/color.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstddef>
 
 namespace doppel {
 

@@ -52,8 +52,8 @@ struct Picture {
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Recovers colours and opacity (not premultiplied) within the rectangle, from the same picture drawn on black and on
-/// white. Laid over black in sRGB, the result is exact; over white, it is exact where the channels agree on the
-/// opacity. Edges that were blended in linear light become slightly darker there. All pictures have one size.
+/// white; all have one size. Laid over black in sRGB, the result is exact; over white, where the channels agree on the
+/// opacity: edges that were blended in linear light become slightly darker there.
 void matte(const Picture& black, const Picture& white, const Rect& within, Picture& into);
 
 /// The picture at half the size. Each new pixel is the mean of the four that it covers, in linear light, weighted by

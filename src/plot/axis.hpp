@@ -54,11 +54,10 @@ struct TickLabels {
     float length(const std::string& text) const;
 };
 
-/// Ticks of a chart, ascending, with distinct labels at least `gap` apart. They are multiples of `every` (or of twice,
-/// four times … as much) if it is given and two of them fit; otherwise of 1, 2 or 5 times a power of ten. A logarithmic
-/// axis always has decades, with unlabelled ticks inside; over less than two decades also 2 and 5, or 3, times a
-/// decade. Labels have the digits of the step, a true minus sign, and the form "1.5 × 10⁻⁷" below 0.0001 and from a
-/// million on. None if doubles cannot distinguish neighbouring ticks.
+/// Ticks of a chart, ascending, with distinct labels at least `gap` apart: multiples of `every` (or of twice, four times …
+/// as much) if it is given and two of them fit; otherwise of 1, 2 or 5 times a power of ten. A logarithmic axis has
+/// decades; over less than two also 2 and 5, or 3, times a decade. Labels have the digits of the step, and the form
+/// "1.5 × 10⁻⁷" below 0.0001 and from a million on. None if doubles cannot distinguish neighbouring ticks.
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every = {});
 
 /// The ticks with the spacing of figures and films: labels of `em` px below a chart (`across`) or beside it. `own` = the

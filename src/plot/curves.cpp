@@ -1,9 +1,6 @@
 #include "plot/panel.hpp"
 #include "render/stroke.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace doppel {
 namespace {
 

@@ -1,11 +1,5 @@
-#include "image/color.hpp"
-#include "plot/axis.hpp"
 #include "plot/labels.hpp"
 #include "plot/panel.hpp"
-#include "render/typeface.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace doppel {
 namespace {

@@ -1,12 +1,10 @@
 #include "plot/labels.hpp"
 
 #include "base/text.hpp"
-#include "render/typeface.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -126,9 +124,11 @@ void draw_sample(const Curve& curve, float left, float right, float y, const Pan
 // dimensions of a legend, em
 constexpr float row_em = 1.4f, pad_em = 0.5f, sample_em = 1.7f, gap_em = 0.5f;
 
-float legend_width(const std::vector<Curve>& curves, const std::vector<std::size_t>& which, float size) {
+/// Its width for these curves, or for all, px.
+float legend_width(const std::vector<Curve>& curves, const std::vector<std::size_t>* which, float size) {
     float widest = 0;
-    for (const std::size_t i : which) widest = std::max(widest, text_width(curves[i].label, size));
+    for (std::size_t i = 0; i < curves.size(); ++i)
+        if (!which || std::ranges::count(*which, i) > 0) widest = std::max(widest, text_width(curves[i].label, size));
     return (2 * pad_em + sample_em + gap_em) * size + widest;
 }
 /// Its height, em.
@@ -139,23 +139,15 @@ float legend_rows(std::size_t count) {
 /// Placed where nothing is drawn, away from all labels, preferably in a corner; nothing if there is no such place.
 std::optional<Legend> fitted_legend(const std::vector<Curve>& curves, std::vector<std::size_t> which, float size,
                                     const LabelPlacer& placer) {
-    const float width = legend_width(curves, which, size);
-    const float height = legend_rows(which.size()) * size;
+    const float width = legend_width(curves, &which, size), height = legend_rows(which.size()) * size;
     const auto at = empty_place(width, height, 0.5f * size, placer);
     if (!at) return {};
     return Legend{std::move(which), {at->x, at->y, at->x + width, at->y + height}, size};
 }
 
-/// Width that the names of all curves take beside a panel, px.
-float legend_gutter(const std::vector<Curve>& curves, float size) {
-    std::vector<std::size_t> all(curves.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    return legend_width(curves, all, size);
-}
-
 /// In the upper left corner of `area`, with text of at most `size` px per em.
 Legend legend_in(const Area& area, const std::vector<Curve>& curves, std::vector<std::size_t> which, float maximum) {
-    const float width = legend_width(curves, which, 1), height = legend_rows(which.size());
+    const float width = legend_width(curves, &which, 1), height = legend_rows(which.size());
     const float size = std::min({maximum, area.width() / width, area.height() / height});
     return {std::move(which), {area.left, area.top, area.left + width * size, area.top + height * size}, size};
 }
@@ -212,24 +204,20 @@ void write(const Label& label, const Panel& panel) {
     panel.list.push_back(label);
 }
 
-/// Candidate points of the curve, from its right end on, each with its distance from that end, 0…1.
+/// Candidate points of the curve, from its right end on.
 std::vector<Point> places(const DrawnCurve& curve) {
     std::vector<Point> all;
-    for (const auto& line : curve.lines) {
+    for (const auto& line : curve.lines)
         for (std::size_t i = 0; i < line.size(); ++i) {
-            if (i > 0) {
-                // long straight pieces have candidates inside
-                const float length = distance(line[i], line[i - 1]);
-                const int parts = static_cast<int>(std::min(length / 24, 40.0f));
-                for (int k = 1; k < parts; ++k) {
-                    const float part = static_cast<float>(k) / static_cast<float>(parts);
-                    all.push_back(
-                        {std::lerp(line[i - 1].x, line[i].x, part), std::lerp(line[i - 1].y, line[i].y, part)});
-                }
+            const Point from = line[i == 0 ? 0 : i - 1], to = line[i];
+            // long straight pieces have candidates inside
+            const int parts = static_cast<int>(std::min(distance(to, from) / 24, 40.0f));
+            for (int k = 1; k < parts; ++k) {
+                const float part = static_cast<float>(k) / static_cast<float>(parts);
+                all.push_back({std::lerp(from.x, to.x, part), std::lerp(from.y, to.y, part)});
             }
-            all.push_back(line[i]);
+            all.push_back(to);
         }
-    }
     if (curve.lines.empty()) all = curve.points;
     if (all.empty()) return {};
     // a few of many, evenly spaced, always with both ends
@@ -470,8 +458,8 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
     // prefers small labels at all curves to a legend, and labels on the curves to a legend that covers them
     if (!dense && !made.left_out.empty()) {
         PlacedLabels fine = tried(small, placer);
-        const auto legend = fitted_legend(curves, made.left_out, size, placer);
-        dense = !fine.left_out.empty() && (panel.plot.needs_no_legend || !legend);
+        dense = !fine.left_out.empty() &&
+                (panel.plot.needs_no_legend || !fitted_legend(curves, made.left_out, size, placer));
         if (dense) fine = tried(small, placer);
         if (dense || fine.left_out.empty()) made = std::move(fine), size = small, is_small = true;
     }
@@ -486,11 +474,11 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
     }
     if (legend) draw_legend(*legend, panel);
     const Color background = (panel.is_map() ? rgb(0x0b0e13) : style.theme.background).with_alpha(0.88f);
-    for (const Area& g : made.backgrounds)
-        list.push_back(Box{g.left, g.top, g.right, g.bottom, 0.2f * size, background});
-    for (const Capsule& leader : made.leaders) list.push_back(leader);
+    for (const auto& [left, top, right, bottom] : made.backgrounds)
+        list.push_back(Box{left, top, right, bottom, 0.2f * size, background});
+    list.insert(list.end(), made.leaders.begin(), made.leaders.end());
     for (const Label& label : made.labels) write(label, panel);
-    return {given.small || is_small, others.empty() || legend ? 0 : legend_gutter(curves, style.text)};
+    return {given.small || is_small, others.empty() || legend ? 0 : legend_width(curves, nullptr, style.text)};
 }
 
 void label_rules(const Panel& panel, LabelPlacer& placer) {

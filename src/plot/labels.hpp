@@ -39,9 +39,8 @@ private:
 void label_rules(const Panel& panel, LabelPlacer& placer);
 
 /// Labels the curves: beside each curve where the label touches nothing, smaller if necessary, otherwise in a legend
-/// that covers nothing. If there are many curves or no place for a legend, labels are on the curves. Curve i has number i
-/// in `placer`. Returns the space that the labels need. If a legend at the right of the panel is `given`, it has all
-/// names.
+/// that covers nothing; on the curves if they are many or there is no place for a legend. Curve i has number i in
+/// `placer`. Returns the space that the labels need. A legend `given` at the right of the panel has all names.
 LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& given, const LabelPlacer& placer,
                         const Panel& panel);
 

@@ -144,8 +144,8 @@ void add_line(cairo_t* to, const std::vector<Point>& line) {
     for (std::size_t i = 0; i < line.size(); ++i) (i == 0 ? cairo_move_to : cairo_line_to)(to, line[i].x, line[i].y);
 }
 
-/// Draws the items of a page. Circles are Cairo's arcs. A stroke of constant opacity and width is one path; others have
-/// a path for each part. Glows are stacks of wide faint paths.
+/// Draws the items of a page. A stroke has a path for each part of constant opacity and width; glows are stacks of wide
+/// faint paths.
 class PagePainter {
 public:
     PagePainter(cairo_t* to, const Page& page, bool pixels)
@@ -256,8 +256,7 @@ public:
     }
 
     void operator()(const Image& image) {
-        if (!(image.right > image.left && image.bottom > image.top) || !image.pixels || image.pixels->rgba.empty())
-            return;
+        if (!(image.right > image.left && image.bottom > image.top && image.pixels)) return;
         const auto whole = [&](float at) { return std::round(at * scale_) / scale_; };  // whole pixels, as in a picture
         paint(*image.pixels, {whole(image.left), whole(image.top), whole(image.right), whole(image.bottom)},
               CAIRO_FILTER_NEAREST);

@@ -59,9 +59,9 @@ struct Page {
 /// exhausted, 130 soon after `stop` is set.
 Picture picture_of(const Page& page, const std::atomic<bool>& stop = false);
 
-/// The page as a PDF 1.5 or, for any other format, an SVG, `width_pt` (1/72 inch) wide: paths as paths, images unscaled, glows as rings. A PDF
-/// contains the glyphs it needs, and its text can be searched; in an SVG letters are paths. Of the metadata, both store
-/// title, comment and encoder. Throws Error (exit 4) if memory is exhausted.
+/// The page as a PDF 1.5 or, for any other format, an SVG, `width_pt` (1/72 inch) wide. A PDF contains the glyphs it
+/// needs, and its text can be searched; in an SVG letters are paths. Of the metadata, both store title, comment and
+/// encoder. Throws Error (exit 4) if memory is exhausted.
 std::string page_file(const Page& page, PictureFormat format, double width_pt, const Metadata& metadata);
 
 /// The library for the manifest: "Cairo 1.16.0".

@@ -1,20 +1,15 @@
 #include "plot/panel.hpp"
 
-#include "plot/axis.hpp"
 #include "plot/labels.hpp"
 #include "render/typeface.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace doppel {
 namespace {
 
-Axis placed(Axis axis, float from, float to) {
-    axis.from = from;
-    axis.to = to;
-    return axis;
+Axis placed(const Axis& axis, float from, float to) {
+    return {axis.low, axis.high, from, to, axis.logarithmic};
 }
 
 constexpr float label_line = 1.4f;  // em of a label above the panel

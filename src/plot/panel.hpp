@@ -76,9 +76,8 @@ struct Gutters {
 Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const AxisWords& words,
                 const PlotStyle& style);
 
-/// Draws the panel in its cell, with the space `given` for the labels of curves. Returns the space that these labels
-/// need. Draws nothing if the axis labels leave no space. Sets the pixels of the axes in
-/// `ranges`.
+/// Draws the panel in its cell, with the space `given` for the labels of curves, unless the axis labels leave no space.
+/// Returns the space that these labels need. Sets the pixels of the axes in `ranges`.
 LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, const Gutters& around,
                       const AxisWords& words, const LabelNeeds& given, const PlotStyle& style, PageList& list);
 
@@ -86,8 +85,7 @@ LabelNeeds draw_panel(const Plot& plot, PlotRanges& ranges, const Area& cell, co
 struct DrawnCurve {
     std::vector<std::vector<Point>> lines;  // connected pieces
     std::vector<Point> points;              // positions of marks
-    std::size_t marks_in_panel =
-        0;  // marks of all curves of the same kind (quiet or not); many marks are drawn smaller
+    std::size_t marks_in_panel = 0;  // of all curves of the same kind (quiet or not); many marks are drawn smaller
 };
 
 /// Of the points in each half pixel column, keeps the first, last, lowest and highest: the picture is the same.

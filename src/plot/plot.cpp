@@ -65,7 +65,6 @@ private:
 /// zero).
 PlotRanges fitted_ranges(const Plot& plot) {
     Extent x(plot.x.logarithmic), y(plot.y.logarithmic), right(plot.right && plot.right->logarithmic);
-    bool spread = !plot.map.has_value();
     for (const Curve& curve : plot.curves) {
         Extent& values = curve.right && plot.right ? right : y;
         for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -78,7 +77,7 @@ PlotRanges fitted_ranges(const Plot& plot) {
         }
     }
     for (const Rule& rule : plot.rules) (rule.orientation == Rule::Orientation::vertical ? x : y).add(rule.at);
-    PlotRanges ranges{x.range(plot.x, spread ? 0.015 : 0), y.range(plot.y, spread ? 0.05 : 0), {}};
+    PlotRanges ranges{x.range(plot.x, plot.map ? 0 : 0.015), y.range(plot.y, plot.map ? 0 : 0.05), {}};
     if (plot.right) ranges.right = right.range(*plot.right, 0.05);
     return ranges;
 }
@@ -87,7 +86,7 @@ struct PanelGrid {
     int columns, rows;
 };
 
-/// The map whose colour bar is shared by all panels; null if each has its own.
+/// The map whose colour bar all panels share, or null.
 const HeatMap* shared_map(const Figure& figure) {
     const auto found =
         std::ranges::find_if(figure.panels, [](const Plot& plot) { return plot.map && plot.map->shares_bar; });

@@ -97,10 +97,9 @@ Color none_color(const HeatMap& map, const Theme& theme);
 /// A picture of the map alone, one pixel per cell, the first row at the bottom.
 Picture cell_picture(const HeatMap& map, const Theme& theme);
 
-/// Lays out a figure for a picture of `size` px. With `scale` = 2 every length has twice as many pixels: the layout of
-/// a picture of half the size, for print. Labels have 20 px times `unit` and scale; other text is in proportion.
-/// Without `unit` the size decides. Text never overlaps. What does not fit is shrunk in all panels alike, moved to the
-/// legend, which covers no data, or left out (tick labels).
+/// Lays out a figure for a picture of `size` px, with `scale` px for each of the layout. Labels have 20 px times `unit`
+/// and scale, other text is in proportion; without `unit` the size decides. Text never overlaps. What does not fit is
+/// shrunk in all panels alike, moved to the legend, which covers no data, or left out (tick labels).
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale = 1, std::optional<float> unit = {});
 
 /// Smaller panels are not drawn, px.

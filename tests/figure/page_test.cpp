@@ -22,7 +22,7 @@ using test::data_of;
 std::string html_of(const FigurePreset& figure) {
     auto drawn = page_of(figure);
     drawn.title = figure.title, drawn.subtitle = figure.subtitle;
-    return figure_page(figure, drawn, themes[0]);
+    return figure_page(figure, drawn);
 }
 
 std::vector<double> numbers_in(const std::string& text) {
@@ -127,7 +127,7 @@ TEST(FigurePage, TitlesAndLabelsOfAnyLettersAreText) {
     Figure drawn{.title = hostile, .subtitle = hostile, .captions = {hostile}};
     drawn.panels.push_back({.title = hostile, .x = {.label = hostile}, .y = {.label = hostile}});
     drawn.panels[0].curves.push_back({.label = hostile, .x = {1, 2}, .y = {1, NAN}});
-    const auto page = figure_page(figure, drawn, themes[0]);
+    const auto page = figure_page(figure, drawn);
     const auto panel = data_of(page)["panels"][0];
     for (const auto& text : {panel["title"], panel["x"]["label"], panel["curves"][0]["label"]})
         EXPECT_EQ(text, hostile);

@@ -168,7 +168,7 @@ TEST(TilePage, TakesAnyNames) {
                                         {"θ\xff", "%CE%B8%FF.tiles"}}) {
         figure.name = name;
         Transaction files(out);
-        write_tiles(figure, drawn, themes[0], files, 1, never_stopped);
+        write_tiles(figure, drawn, files, 1, never_stopped);
         const auto page = test::bytes_of(files.folder() / ".doppel-run" / (figure.name + ".html"));
         const auto map = test::data_of(page);
         EXPECT_EQ(map["folder"], address);

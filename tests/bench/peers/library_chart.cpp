@@ -25,7 +25,6 @@ public:
         subtitle_ = own_->subtitle();
         columns_ = own_->columns();
         settings_ = own_->resolved();
-        chart_settings_ = own_->resolved_chart();
     }
 
     std::size_t trials() const override { return own_->trials() + rounds() * studies_.size(); }
