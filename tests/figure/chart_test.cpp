@@ -2,16 +2,15 @@
 #include "figure/run.hpp"
 #include "figure/support.hpp"
 #include "output/png.hpp"
+#include "plot/plot_figures.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace doppel::chart_test {
 
 using test::bytes_of;
-using test::expect_error;
 using test::fresh_folder;
 
 std::string file_of(const FigurePreset& figure, const std::string& ending) {
@@ -59,9 +58,8 @@ TEST(Chart, APngOnPaperHasItsResolution) {
 
 std::vector<std::string> labels_of(const FigurePreset& figure) {
     std::vector<std::string> labels;
-    const auto page = compose_figure(figure, computed(figure));
-    for (const auto& item : page.items)
-        if (const auto* text = std::get_if<Label>(&item)) labels.push_back(text->text);
+    for (const auto& label : items_of<Label>(compose_figure(figure, computed(figure)).items))
+        labels.push_back(label.text);
     return labels;
 }
 
@@ -69,20 +67,21 @@ TEST(Chart, TextsCanBeRemovedOrReplaced) {
     const auto has = [](const std::vector<std::string>& all, std::string_view start) {
         return std::any_of(all.begin(), all.end(), [&](const auto& text) { return text.starts_with(start); });
     };
-    const auto as_is = labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5"}));
+    const auto labels = [](std::vector<std::string> sets) {
+        sets.insert(sets.end(), {"grid.x.to=9", "scene.duration_s=0.5"});
+        return labels_of(figure_of("fig2-right", sets));
+    };
+    const auto as_is = labels({});
     EXPECT_TRUE(has(as_is, "Mean divergence of a pair"));
     EXPECT_TRUE(has(as_is, "two links"));
     EXPECT_TRUE(has(as_is, "Erratum"));
-    const auto bare = labels_of(
-        figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=false", "chart.captions=false"}));
+    const auto bare = labels({"chart.title=false", "chart.captions=false"});
     EXPECT_FALSE(has(bare, "Mean divergence of a pair") || has(bare, "two links") || has(bare, "Erratum"));
     EXPECT_EQ(bare.size(), as_is.size() - 3);
-    const auto own = labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=\"Mine\"",
-                                                        "chart.captions=[\"One\", \"Two\"]"}));
+    const auto own = labels({"chart.title=\"Mine\"", "chart.captions=[\"One\", \"Two\"]"});
     EXPECT_TRUE(has(own, "Mine") && has(own, "One") && has(own, "Two"));
     EXPECT_FALSE(has(own, "two links") || has(own, "Erratum"));
-    const auto both =
-        labels_of(figure_of("fig2-right", {"grid.x.to=9", "scene.duration_s=0.5", "chart.title=[\"A\", \"B\"]"}));
+    const auto both = labels({"chart.title=[\"A\", \"B\"]"});
     EXPECT_TRUE(std::ranges::find(both, "A") != both.end() && std::ranges::find(both, "B") != both.end());
 }
 
@@ -90,7 +89,7 @@ TEST(Chart, AnotherQuantityFromTheCommandLineDropsTheKeysOfTheFiles) {
     const std::string text = "[scene]\nkind = \"grid\"\n[grid]\nquantity = \"exponent\"\nexponent_duration_s = 99\n";
     const PresetText preset{"x", "x.toml", text, "x.toml"};
     EXPECT_NO_THROW(read_figure(preset, {parse_set("grid.quantity=flip_time")}));
-    expect_error(ExitCode::bad_input, {"--set grid.exponent_duration_s", "is only for exponent"}, [&] {
+    expect_refused({"--set grid.exponent_duration_s", "is only for exponent"}, [&] {
         read_figure(preset, {parse_set("grid.quantity=flip_time"), parse_set("grid.exponent_duration_s=3")});
     });
     const auto flips = figure_of("fig2-right", {"grid.quantity=flip_time"});
@@ -102,31 +101,26 @@ TEST(Chart, AnotherQuantityFromTheCommandLineDropsTheKeysOfTheFiles) {
 
 TEST(Chart, KeysOfPaperNeedItsWidth) {
     for (const auto* key : {"height_cm=5", "font_pt=9", "dpi=600"})
-        expect_error(ExitCode::bad_input, {"it needs width_cm"}, [&] { small_sweep({fmt::format("chart.{}", key)}); });
-    expect_error(ExitCode::bad_input, {"with width_cm, dpi sets it"}, [] {
-        small_sweep({"chart.width_cm=8.6", "chart.scale=2"});
-    });
-    expect_error(ExitCode::bad_input, {"chart.size", "width_cm and height_cm set it"}, [] {
+        expect_refused({"it needs width_cm"}, [&] { small_sweep({fmt::format("chart.{}", key)}); });
+    expect_refused({"with width_cm, dpi sets it"}, [] { small_sweep({"chart.width_cm=8.6", "chart.scale=2"}); });
+    expect_refused({"chart.size", "width_cm and height_cm set it"}, [] {
         small_sweep({"chart.width_cm=8.6", "chart.height_cm=6"});
     });
-    expect_error(ExitCode::bad_input, {"is too large for a chart of 3 cm width; at most 7 pt is possible; it is 40"},
-                 [] {
-                     small_sweep({"chart.width_cm=3", "chart.font_pt=40"});
-                 });
-    expect_error(ExitCode::bad_input, {"a chart of 5×2.82 cm; at most 7.9 pt is possible; it is 8"}, [] {
+    expect_refused({"is too large for a chart of 3 cm width; at most 7 pt is possible; it is 40"}, [] {
+        small_sweep({"chart.width_cm=3", "chart.font_pt=40"});
+    });
+    expect_refused({"a chart of 5×2.82 cm; at most 7.9 pt is possible; it is 8"}, [] {
         figure_of("fig2-right", {"chart.width_cm=5", "chart.height_cm=2.82"});
     });
     // without a height of its own, it is higher where its texts need it
     const auto narrow = small_sweep({"chart.width_cm=5"});
     const auto page = compose_figure(narrow, computed(narrow));
     EXPECT_GT(page.size.height, layout_of(narrow.chart).picture.height);
-    expect_error(ExitCode::bad_input, {"must leave a picture of 16 to 16384 px a side"}, [] {
+    expect_refused({"must leave a picture of 16 to 16384 px a side"}, [] {
         small_sweep({"chart.width_cm=200", "chart.dpi=1200"});
     });
-    expect_error(ExitCode::bad_input, {"must be true, false, text or a list of text"},
-                 [] { small_sweep({"chart.title=3"}); });
-    expect_error(ExitCode::bad_input, {"\"png\", \"pdf\", \"svg\" or \"html\""},
-                 [] { small_sweep({"chart.format=\"eps\""}); });
+    expect_refused({"must be true, false, text or a list of text"}, [] { small_sweep({"chart.title=3"}); });
+    expect_refused({"\"png\", \"pdf\", \"svg\" or \"html\""}, [] { small_sweep({"chart.format=\"eps\""}); });
 }
 
 TEST(Chart, ResolvedReadsBackToTheSame) {
@@ -135,13 +129,6 @@ TEST(Chart, ResolvedReadsBackToTheSame) {
                                  "chart.title=false", "chart.captions=[\"One\"]", "chart.format=\"svg\""});
     const PresetText source{"fig2-right", "again.toml", figure.resolved(), "again.toml"};
     EXPECT_EQ(read_figure(source).resolved(), figure.resolved());
-}
-
-std::vector<Label> texts_of(const Page& page) {
-    std::vector<Label> texts;
-    for (const auto& item : page.items)
-        if (const auto* text = std::get_if<Label>(&item)) texts.push_back(*text);
-    return texts;
 }
 
 /// A journal's column.
@@ -161,7 +148,7 @@ TEST(Chart, OnPaperAllFormatsHaveTheSameTextsAndNoneIsLeftOut) {
         const auto png = drawn("png"), pdf = drawn("pdf");
         EXPECT_TRUE(png.notes.empty()) << name;
         EXPECT_GE(smallest_side(png.panels), 90) << name;
-        const auto texts = texts_of(png), of_pdf = texts_of(pdf);
+        const auto texts = items_of<Label>(png.items), of_pdf = items_of<Label>(pdf.items);
         const auto is_of_x = [](const Label& text) {
             return text.text == "time, s" || text.text.starts_with("release angle θ");
         };

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 namespace doppel::drift_test {
 
 const std::string kind = "[scene]\nkind = \"series\"\n";
@@ -14,27 +12,6 @@ FigurePreset short_drift(int seconds, const std::vector<std::string>& more = {})
     arguments.insert(arguments.end(), more.begin(), more.end());
     return figure_of("drift", arguments);
 }
-
-/// The findings of one figure by key.
-struct Found {
-    std::map<std::string, double> numbers;
-    std::map<std::string, std::string> words;
-
-    explicit Found(const FigurePreset& figure) {
-        const auto findings = figure.experiment->findings(computed(figure));
-        for (const auto& [key, value] : findings.items())
-            if (value.is_number())
-                numbers[key] = value;
-            else
-                words[key] = value;
-    }
-    double number(const std::string& key) const {
-        const auto found = numbers.find(key);
-        if (found != numbers.end()) return found->second;
-        ADD_FAILURE() << "no finding " << key;
-        return std::nan("");
-    }
-};
 
 TEST(Drift, EulerGainsEnergyByTheClosedForm) {
     // a pendulum of small amplitude: E + m g l grows by 1 + z² a step, z² = h² g/l; E0 = −m g l cos A
@@ -56,38 +33,37 @@ TEST(Drift, EulerGainsEnergyByTheClosedForm) {
 }
 
 TEST(Drift, EveryMethodTakesItsEvaluations) {
-    const Found found(short_drift(40));
+    const auto found = findings_of(short_drift(40));
     int counted = 0;
-    for (const auto& [key, value] : found.numbers) {
+    for (const auto& [key, value] : found.items()) {
         if (!key.ends_with("_evaluations_per_s")) continue;
         ++counted;
         if (key.starts_with("taylor")) {
             EXPECT_LT(value, 500) << key;  // 446: even the smallest tolerance needs no more evaluations
-            EXPECT_EQ(found.number(key.substr(0, key.find("_eval")) + "_setting"), 8.89e-16);
+            EXPECT_EQ(found.at(key.substr(0, key.find("_eval")) + "_setting"), 8.89e-16);
         } else {
             EXPECT_NEAR(value, 500, 5) << key;  // measured 499.6 … 501.8
         }
     }
     EXPECT_EQ(counted, 10 + 10 + 1);
-    EXPECT_EQ(found.number("rk4_angles_setting"), 1 / 125.0);
-    EXPECT_EQ(found.number("adams_angles_setting"), 1 / 250.0);
+    EXPECT_EQ(found.at("rk4_angles_setting"), 1 / 125.0);
+    EXPECT_EQ(found.at("adams_angles_setting"), 1 / 250.0);
 }
 
 TEST(Drift, FindsTheLawOfGrowth) {
-    const Found found(
+    const auto found = findings_of(
         short_drift(200, {"series.methods=[\"euler\", \"rk4\", \"dopri5\", \"gauss6\", \"rattle\", \"rattle6\"]"}));
     for (const char* name : {"gauss6_angles", "rattle_constraints", "rattle6_constraints"})
-        EXPECT_NEAR(found.number(std::string(name) + "_energy_exponent"), 0, 0.2) << name;  // measured 0.16, 0.09, 0.03
+        EXPECT_NEAR(found.at(std::string(name) + "_energy_exponent"), 0, 0.2) << name;  // measured 0.16, 0.09, 0.03
     for (const char* name : {"rk4_angles", "dopri5_angles", "rk4_projected_constraints"})
-        EXPECT_NEAR(found.number(std::string(name) + "_energy_exponent"), 1, 0.12)
-            << name;  // measured 0.91, 1.00, 0.96
+        EXPECT_NEAR(found.at(std::string(name) + "_energy_exponent"), 1, 0.12) << name;  // measured 0.91, 1.00, 0.96
     for (const char* name : {"rk4_constraints", "dopri5_constraints"})
-        EXPECT_NEAR(found.number(std::string(name) + "_rods_exponent"), 2, 0.05) << name;  // measured 2.01
-    EXPECT_EQ(found.words.at("rk4_angles_energy_growth"), "grows linearly");
-    EXPECT_EQ(found.words.at("rk4_constraints_rods_growth"), "grows like t²");
-    EXPECT_EQ(found.words.at("gauss6_angles_energy_growth"), "stays bounded");
-    EXPECT_EQ(found.words.at("euler_angles_energy_growth"), "fails");
-    EXPECT_NEAR(found.number("euler_angles_broken_at_s"), 87, 1);  // measured 87.25
+        EXPECT_NEAR(found.at(std::string(name) + "_rods_exponent"), 2, 0.05) << name;  // measured 2.01
+    EXPECT_EQ(found.at("rk4_angles_energy_growth"), "grows linearly");
+    EXPECT_EQ(found.at("rk4_constraints_rods_growth"), "grows like t²");
+    EXPECT_EQ(found.at("gauss6_angles_energy_growth"), "stays bounded");
+    EXPECT_EQ(found.at("euler_angles_energy_growth"), "fails");
+    EXPECT_NEAR(found.at("euler_angles_broken_at_s"), 87, 1);  // measured 87.25
 }
 
 TEST(Drift, HasNoRodErrorForMethodsThatPreserveRods) {

@@ -3,19 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 
 namespace doppel::kinds_test {
 
 // What the figures must show, independent of their layout.
-
-std::map<std::string, double> findings_of(const FigurePreset& figure) {
-    std::map<std::string, double> found;
-    const auto findings = figure.experiment->findings(computed(figure));
-    for (const auto& [key, value] : findings.items())
-        if (value.is_number()) found[key] = value;
-    return found;
-}
 
 TEST(Convergence, FallsByThePowerOfTheOrder) {
     const auto found = findings_of(

@@ -23,7 +23,8 @@ protected:
     }
     fs::path part(int i) const { return folder_ / fmt::format("fig2-right.{}-of-3.shard", i); }
 
-    void expect_refused(ExitCode code, const std::vector<std::string>& words, const FigurePreset& figure) const {
+    void expect_refused(ExitCode code, const std::vector<std::string>& words,
+                        const FigurePreset& figure = small_sweep()) const {
         const auto before = names_in(folder_);
         expect_error(code, words, [&] { run_figure(figure, {.out = out_, .merge = true}); });
         EXPECT_EQ(names_in(folder_), before);
@@ -70,11 +71,11 @@ TEST_F(Merge, TakesFinishedPartsAsTheyAre) {
 
 TEST_F(Merge, NamesThePartsThatAreMissing) {
     fs::remove(part(2));
-    expect_refused(ExitCode::try_again, {"missing", "2/3"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"missing", "2/3"});
     fs::remove(part(3));
-    expect_refused(ExitCode::try_again, {"missing", "2/3, 3/3"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"missing", "2/3, 3/3"});
     fs::remove(part(1));
-    expect_refused(ExitCode::try_again, {"contains no shard of fig2-right", "--shard"}, small_sweep());
+    expect_refused(ExitCode::try_again, {"contains no shard of fig2-right", "--shard"});
 }
 
 TEST_F(Merge, NamesTheFirstOfManyMissing) {
@@ -90,17 +91,16 @@ TEST_F(Merge, NamesTheFirstOfManyMissing) {
 TEST_F(Merge, RefusesAPartThatIsThereTwice) {
     const auto copy = folder_ / "fig2-right.1-of-3 (copy).shard";
     fs::copy_file(part(1), copy);
-    expect_refused(ExitCode::bad_input, {part(1).string(), copy.string(), "both shard 1/3"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(1).string(), copy.string(), "both shard 1/3"});
     fs::remove(copy);
     fs::copy_file(part(1), part(2), fs::copy_options::overwrite_existing);
-    expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both shard 1/3"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(1).string(), part(2).string(), "both shard 1/3"});
 }
 
 TEST_F(Merge, RejectsAChangedDigit) {
     const auto bytes = bytes_of(part(2));
     const auto expect_damaged = [&] {
-        expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged or incomplete", "--shard 2/3"},
-                       small_sweep());
+        expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged or incomplete", "--shard 2/3"});
     };
     auto digit = bytes;
     const auto start = bytes.find('\n') + 1, number = start + 16 + 16;  // after the block's head, trial and size
@@ -124,26 +124,26 @@ TEST_F(Merge, RefusesPartsOfAnotherPreset) {
 
 TEST_F(Merge, RefusesPartsOfAnotherVersionOrRevision) {
     edit(2, "\"version\":\"", "\"version\":\"9");
-    expect_refused(ExitCode::bad_input, {part(2).string(), "another version: 9", "--shard 2/3"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(2).string(), "another version: 9", "--shard 2/3"});
     edit(2, "\"version\":\"9", "\"version\":\"");
     edit(3, "\"revision\":\"", "\"revision\":\"x");
-    expect_refused(ExitCode::bad_input, {part(3).string(), "another revision: x", "--shard 3/3"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(3).string(), "another revision: x", "--shard 3/3"});
     edit(3, "\"revision\":\"x", "\"revision\":\"");
     edit(3, "\"figure\":\"fig2", "\"figure\":\"fig4");
-    expect_refused(ExitCode::bad_input, {part(3).string(), "another figure: fig4-right"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {part(3).string(), "another figure: fig4-right"});
 }
 
 TEST_F(Merge, RefusesPartsOfDifferentNumbers) {
     run_figure(small_sweep(), {.out = out_, .shard = Shard{2, 4}});
-    expect_refused(ExitCode::bad_input, {"fig2-right.2-of-4.shard", "remove those that do not belong"}, small_sweep());
+    expect_refused(ExitCode::bad_input, {"fig2-right.2-of-4.shard", "remove those that do not belong"});
 }
 
 TEST_F(Merge, RefusesAPartThatIsCut) {
     const auto bytes = bytes_of(part(2));
     write_bytes(part(2), bytes.substr(0, bytes.size() - 1));
-    expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged or incomplete", "--shard 2/3"}, small_sweep());
+    expect_refused(ExitCode::io_failed, {part(2).string(), "is damaged or incomplete", "--shard 2/3"});
     write_bytes(part(2), "my diary");
-    expect_refused(ExitCode::io_failed, {part(2).string()}, small_sweep());
+    expect_refused(ExitCode::io_failed, {part(2).string()});
 }
 
 TEST_F(Merge, IgnoresPartsOfOtherNames) {

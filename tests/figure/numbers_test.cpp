@@ -10,15 +10,9 @@ namespace doppel::numbers_test {
 
 constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
 
-struct Case {
-    const char* name;
-    std::vector<std::string> sets;
+struct Case : PresetCase {
     bool may_be_none;  // whether the first trial may have no number
 };
-
-void PrintTo(const Case& c, std::ostream* out) {
-    *out << c.name;
-}
 
 class Numbers : public testing::TestWithParam<Case> {};
 
@@ -69,11 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
              {"grid.x.points=3", "grid.y.points=3", "scene.duration_s=2",
               "grid.panel.values=[\"rk4\", \"gauss4\", \"dop853\"]"},
              true}),
-    [](const auto& parameter) {
-        std::string name = fmt::format("{}_{}", parameter.param.name, parameter.index);
-        std::replace(name.begin(), name.end(), '-', '_');
-        return name;
-    });
+    [](const auto& parameter) { return name_of_case(parameter.param, parameter.index); });
 
 TEST(NumbersOfWork, AreThoseOfWholeSettings) {
     const auto figure = figure_of(

@@ -115,29 +115,20 @@ TEST(PartFile, StopsAtAnInvalidBlock) {
     expect_same_bits(trials_in(path)[2], {1});
 }
 
-TEST(PartFile, RejectsAChangedByte) {
+/// Of other bytes: Computation.ResumesFromARecordTruncatedOrDamagedAtAnyByte.
+TEST(PartFile, WithAChangedHeaderIsOfAnotherRunOrRefused) {
     const auto path = fresh_folder() / "some.resume";
-    const KnownTrials trials{{1.25, -2e-300}, {none, 12345}, {infinite, 3}};
-    PartWriter(path, some_header(3), trials).finish();
+    PartWriter(path, some_header(3), {{1.25, -2e-300}}).finish();
     const auto bytes = bytes_of(path);
-    const std::size_t start = bytes.find('\n') + 1, block = 16 + 16 + 16;
-    for (std::size_t at = 0; at < bytes.size(); ++at)
+    for (std::size_t at = 0; at <= bytes.find('\n'); ++at)
         for (const int change : {1, 2, 4, 8, 0x20, 0x80}) {
             auto changed = bytes;
             changed[at] = static_cast<char>(changed[at] ^ change);
             write_bytes(path, changed);
             try {
-                const auto part = read_part_file(path);
-                if (at < start) {
-                    EXPECT_FALSE(part.header == some_header(3)) << at;
-                    continue;
-                }
-                EXPECT_TRUE(part.is_damaged) << at;
-                EXPECT_EQ(part.trials.size(), std::min<std::size_t>((at - start) / block, 3)) << at;
-                for (const auto& trial : part.trials) expect_same_bits(trial.numbers, trials[trial.number]);
+                EXPECT_FALSE(read_part_file(path).header == some_header(3)) << at;
             } catch (const Error& error) {
                 EXPECT_EQ(error.code(), ExitCode::io_failed);
-                EXPECT_LT(at, start) << error.what();
             }
         }
 }
@@ -167,11 +158,11 @@ TEST(PartFile, ReadsRegularFilesAlone) {
     fmt::format_to_n(address.sun_path, sizeof address.sun_path - 1, "{}", (fs::relative(folder) / "socket").string());
     const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
     EXPECT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0) << address.sun_path;
-    for (const auto& [name, why] : std::vector<std::pair<const char*, const char*>>{{"link", "is a symbolic link"},
-                                                                                    {"endless", "is a symbolic link"},
-                                                                                    {"pipe", "is not a regular file"},
-                                                                                    {"folder", "is not a regular file"},
-                                                                                    {"socket", "cannot be read"}})
+    for (const auto& [name, why] : {std::pair("link", "is a symbolic link"),
+                                    {"endless", "is a symbolic link"},
+                                    {"pipe", "is not a regular file"},
+                                    {"folder", "is not a regular file"},
+                                    {"socket", "cannot be read"}})
         expect_error(ExitCode::io_failed, {(folder / name).string(), why}, [&] { read_part_file(folder / name); });
     close(listener);
 }
@@ -183,47 +174,41 @@ TEST(PartFile, ReadsNoEndlessHeader) {
     expect_error(ExitCode::io_failed, {path.string(), "is no file of trials"}, [&] { read_part_file(path); });
 }
 
-/// A header's JSON with one key changed.
-std::string with_key(const std::string& key, const std::string& value) {
-    std::string text;
-    for (const auto& [name, usual] : std::vector<std::pair<std::string, std::string>>{{"file", "\"doppel trials\""},
-                                                                                      {"format", "3"},
-                                                                                      {"figure", "\"some\""},
-                                                                                      {"version", "\"0.1.0\""},
-                                                                                      {"revision", "\"abc\""},
-                                                                                      {"preset_sha256", "\"cafe\""},
-                                                                                      {"trials", "3"},
-                                                                                      {"shard", "1"},
-                                                                                      {"of", "1"}})
-        if (name != key || !value.empty())
-            text += fmt::format("{}\"{}\":{}", text.empty() ? "{" : ",", name, name == key ? value : usual);
-    return text + "}\n";
+/// A header's JSON with one key changed, or left out.
+std::string with_key(const std::string& key, const Json& value) {
+    Json header{{"file", "doppel trials"},
+                {"format", 3},
+                {"figure", "some"},
+                {"version", "0.1.0"},
+                {"revision", "abc"},
+                {"preset_sha256", "cafe"},
+                {"trials", 3},
+                {"shard", 1},
+                {"of", 1}};
+    header[key] = value;
+    if (value.is_null()) header.erase(key);
+    return header.dump() + "\n";
 }
 
 TEST(PartFile, RefusesWhatIsSomethingElse) {
     const auto path = fresh_folder() / "some.resume";
-    write_bytes(path, with_key("", ""));
+    write_bytes(path, with_key("trials", 3));
     EXPECT_EQ(read_part_file(path).header, some_header(3));
-    const std::vector<std::string> others{"",
-                                          "\n",
-                                          "sample,time_s\r\n0,0\r\n",
-                                          "[]\n",
-                                          "3\n",
-                                          "null\n",
-                                          "{}\n",
-                                          "{\"file\":\"a table\"}\n",
-                                          "\x89PNG\r\n\x1a\n",
-                                          with_key("file", ""),
-                                          with_key("file", "\"doppel film shard\""),
-                                          with_key("figure", ""),
-                                          with_key("figure", "3"),
-                                          with_key("trials", "\"many\""),
-                                          with_key("trials", "null"),
-                                          with_key("format", "\"3\""),
-                                          with_key("format", "2"),
-                                          with_key("format", ""),
-                                          with_key("preset_sha256", "")};
+    std::vector<std::string> others{"", "\n", "sample,time_s\r\n0,0\r\n", "[]\n", "3\n", "null\n", "{}\n"};
+    others.insert(others.end(), {"{\"file\":\"a table\"}\n", "\x89PNG\r\n\x1a\n"});
+    for (const auto* key : {"file", "figure", "format", "preset_sha256", "trials"})
+        others.push_back(with_key(key, nullptr));
+    const std::initializer_list<std::pair<const char*, std::vector<Json>>> changed{
+        {"file", {"doppel film shard"}},
+        {"figure", {3}},
+        {"format", {"3", 2}},
+        {"of", {0, -2, 4294967297, 100001}},
+        {"shard", {0, 2, -1, 1.5, true}},
+        {"trials", {"many", Json::array(), -1, 0, 1e300, 1000000000000000}}};
+    for (const auto& [key, values] : changed)
+        for (const auto& value : values) others.push_back(with_key(key, value));
     for (const auto& other : others) {
+        SCOPED_TRACE(other);
         write_bytes(path, other);
         expect_error(ExitCode::io_failed, {path.string()}, [&] { read_part_file(path); });
     }
@@ -231,26 +216,6 @@ TEST(PartFile, RefusesWhatIsSomethingElse) {
     expect_error(ExitCode::io_failed, {path.string()}, [&] { read_part_file(path); });
     fs::create_directory(path);
     expect_error(ExitCode::io_failed, {path.string()}, [&] { read_part_file(path); });
-}
-
-TEST(PartFile, RefusesImpossibleParts) {
-    const auto path = fresh_folder() / "some.shard";
-    for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"of", "0"},
-                                                                                     {"of", "-2"},
-                                                                                     {"shard", "0"},
-                                                                                     {"shard", "2"},
-                                                                                     {"shard", "-1"},
-                                                                                     {"shard", "1.5"},
-                                                                                     {"shard", "true"},
-                                                                                     {"of", "4294967297"},
-                                                                                     {"of", "100001"},
-                                                                                     {"trials", "-1"},
-                                                                                     {"trials", "0"},
-                                                                                     {"trials", "1e300"},
-                                                                                     {"trials", "1000000000000000"}}) {
-        write_bytes(path, with_key(key, value));
-        expect_error(ExitCode::io_failed, {path.string()}, [&] { read_part_file(path); });
-    }
 }
 
 TEST(PartFile, ReportsWhereItCannotBeWritten) {

@@ -13,14 +13,7 @@ using test::fresh_folder;
 
 // A figure's numbers are bit-identical for every number of threads, groups and parts.
 
-struct Case {
-    const char* name;
-    std::vector<std::string> sets;
-};
-
-void PrintTo(const Case& c, std::ostream* out) {
-    *out << c.name;
-}
+using Case = PresetCase;
 
 class SameNumbers : public testing::TestWithParam<Case> {
 protected:
@@ -114,11 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"stability-mass",
              {"grid.x.points=300", "grid.y.points=2", "scene.duration_s=1", "scene.sample_hz=50",
               "grid.panel.values=[\"euler\", \"dopri5\"]"}}),
-    [](const auto& parameter) {
-        std::string name = fmt::format("{}_{}", parameter.param.name, parameter.index);
-        std::replace(name.begin(), name.end(), '-', '_');
-        return name;
-    });
+    [](const auto& parameter) { return name_of_case(parameter.param, parameter.index); });
 
 /// A mirrored row is not computed. With a zero impulse every row is computed, and the numbers are the same.
 TEST(FlipMap, MirroredRowsAreThoseComputed) {

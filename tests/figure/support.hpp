@@ -46,11 +46,29 @@ void expect_refused(const std::vector<std::string>& words, const Action& action)
     test::expect_error(ExitCode::bad_input, words, action);
 }
 
+inline Json findings_of(const FigurePreset& figure) {
+    return figure.experiment->findings(computed(figure));
+}
+
 /// The number of its pairs, orbits …
 inline double units_of(const FigurePreset& figure) {
     double all = 0;
     for (std::size_t i = 0; i < figure.experiment->trials(); ++i) all += figure.experiment->units(i);
     return all;
+}
+
+/// A preset with changes, as a parameter of tests.
+struct PresetCase {
+    const char* name;
+    std::vector<std::string> sets;
+};
+inline void PrintTo(const PresetCase& c, std::ostream* out) {
+    *out << c.name;
+}
+inline std::string name_of_case(const PresetCase& c, std::size_t index) {
+    auto name = fmt::format("{}_{}", c.name, index);
+    std::ranges::replace(name, '-', '_');
+    return name;
 }
 
 /// The text of the table's file.

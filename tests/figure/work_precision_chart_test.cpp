@@ -16,17 +16,17 @@ std::set<std::string> labels_of(const Plot& plot) {
 }
 
 long faint_ones(const Plot& plot) {
-    return std::count_if(plot.curves.begin(), plot.curves.end(),
-                         [](const Curve& curve) { return curve.background == Background::line; });
+    return std::ranges::count(plot.curves, Background::line, &Curve::background);
 }
 
-const std::vector<std::string> quick{"chart.cost=\"evaluations\"", "work_precision.most_evaluations=5000",
-                                     "work_precision.models=[\"angles\"]"};
+Figure quick_page(std::vector<std::string> sets) {
+    sets.insert(sets.end(), {"chart.cost=\"evaluations\"", "work_precision.most_evaluations=5000",
+                             "work_precision.models=[\"angles\"]"});
+    return page_of(figure_of("speed-accuracy", sets));
+}
 
 TEST(WorkPrecisionChart, HasFiveInColour) {
-    auto arguments = quick;
-    arguments.emplace_back("work_precision.problems=[\"P1\", \"P3\"]");
-    const auto page = page_of(figure_of("speed-accuracy", arguments));
+    const auto page = quick_page({"work_precision.problems=[\"P1\", \"P3\"]"});
     ASSERT_EQ(page.panels.size(), 2u);
     for (const auto& plot : page.panels) {
         // the same five in every panel, and the study's point; the others of ten methods in angles are faint
@@ -44,18 +44,14 @@ TEST(WorkPrecisionChart, HasFiveInColour) {
 }
 
 TEST(WorkPrecisionChart, NamesAllOnDemand) {
-    auto arguments = quick;
-    arguments.insert(arguments.end(), {"work_precision.problems=[\"P1\"]", "chart.names=\"all\""});
-    const auto page = page_of(figure_of("speed-accuracy", arguments));
+    const auto page = quick_page({"work_precision.problems=[\"P1\"]", "chart.names=\"all\""});
     EXPECT_EQ(faint_ones(page.panels[0]), 0);
     EXPECT_EQ(labels_of(page.panels[0]).size(), 10u + 1);  // methods in angles, and the study's point
 }
 
 TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
-    auto arguments = quick;
-    arguments.insert(arguments.end(),
-                     {"work_precision.problems=[\"P3\"]", "work_precision.methods=[\"rk4\", \"midpoint\"]"});
-    const auto page = page_of(figure_of("speed-accuracy", arguments));
+    const auto page =
+        quick_page({"work_precision.problems=[\"P3\"]", "work_precision.methods=[\"rk4\", \"midpoint\"]"});
     EXPECT_EQ(faint_ones(page.panels[0]), 0);
     EXPECT_TRUE(labels_of(page.panels[0]).contains("midpoint"));
     EXPECT_TRUE(page.captions[0].starts_with("Each method in its best model;")) << page.captions[0];

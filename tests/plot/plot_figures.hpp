@@ -133,11 +133,19 @@ inline Picture picture(const Figure& figure, Size size, const Theme& theme) {
     return picture_of(compose(figure, size, theme));
 }
 
+/// All items of this type in a list.
+template <class T>
+std::vector<T> items_of(const PageList& list) {
+    std::vector<T> all;
+    for (const PageItem& item : list)
+        if (const auto* one = std::get_if<T>(&item)) all.push_back(*one);
+    return all;
+}
+
 /// How often each text occurs in a list.
 inline std::map<std::string, int> words_in(const PageList& list) {
     std::map<std::string, int> counts;
-    for (const PageItem& item : list)
-        if (const auto* label = std::get_if<Label>(&item)) ++counts[label->text];
+    for (const auto& label : items_of<Label>(list)) ++counts[label.text];
     return counts;
 }
 
