@@ -17,7 +17,7 @@ bool is_half_turns(const Quad& angle_deg) {
 }  // namespace
 
 void Grid::fields(KeyVisitor& visit) {
-    visit({"quantity", quantity_help}, quantity_);
+    visit({"quantity", "what is computed for each pair; docs/figures.md explains each"}, quantity_);
     visit({.key = "right", .help = "a second quantity of curves, on an axis at the right", .names = names_of<Quantity>},
           right_);
     visit({"difference", "difference between the two pendulums of a pair in the key of x"}, difference_);
@@ -289,7 +289,8 @@ void Grid::visit_columns(const Cell& cell, std::size_t row, std::span<const doub
     panel_.visit(cell.group / color_.count, add);
     if (words().drawn == 0) groups_[cell.group].x.visit(cell.column, add);
     y_.visit(cell.row, add);
-    if (!words().counted.empty()) add(words().counted, words().first_row + static_cast<long>(row));
+    if (quantity_ == Quantity::stroboscopic)
+        add("period", options_.stroboscope.transient_periods + 1 + static_cast<long>(row));
     std::vector<std::pair<std::string_view, double>> last;
     for (const auto& measurement : measurements()) {
         const auto& [columns, last_column] = std::tie(measurement.words().columns, measurement.words().last_column);

@@ -1,18 +1,20 @@
 #include "analysis/stability.hpp"
 #include "figure/grid.hpp"
-#include "scene/captions.hpp"
-#include "scene/side_keys.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
-// Plots and captions of a grid.
-
 namespace doppel {
 namespace {
 
+/// Where a vertically oscillating pivot stabilises one link upright, and destabilises it: its amplitude a, m, over the
+/// frequency, Hz. With l = J/(m c) the length of the equivalent simple pendulum, and ν = 2π f:
+///     Kapitza    a² ν² = 2 g l ,    for a much less than l
+///     Mathieu    −4 g / (l ν²) = a₀(q) and b₁(q) ,   q = 2 a / l ,
+/// from the power series of the characteristic values. The error of a₀ is 1e-3 at q = 1 and 5e-3 at q = 1.2; that of b₁
+/// is below 1e-3.  Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
 std::vector<Curve> stability_curves(Overlay overlay, const PhysicalPendulum<double>& p) {
     const double mass = p.chain.mass[0], center = p.center[0], gravity = p.chain.gravity;
     const double length = (p.inertia[0] + mass * center * center) / (mass * center);
@@ -40,6 +42,8 @@ std::vector<Curve> stability_curves(Overlay overlay, const PhysicalPendulum<doub
     return curves;
 }
 
+/// Where a double pendulum released at rest has just enough energy for a flip: θ2 over θ1, degrees, with
+///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
 Curve energy_bound(const Pendulum<double>& p) {
     const double w1 = p.gravity * p.length[0] * (p.mass[0] + p.mass[1]), w2 = p.gravity * p.length[1] * p.mass[1];
     const double bound = w1 + w2 - 2 * std::min(w1, w2);
@@ -56,19 +60,6 @@ Curve energy_bound(const Pendulum<double>& p) {
     return outline;
 }
 
-/// `kapitza`, `mathieu`: where a vertically oscillating pivot stabilises one link upright, and where it destabilises
-/// it. The curves are the amplitude a, m, over the frequency, Hz. With l = J/(m c) the length of the equivalent simple
-/// pendulum, and ν = 2π f:
-///     Kapitza    a² ν² = 2 g l ,    for a much less than l
-///     Mathieu    −4 g / (l ν²) = a₀(q) and b₁(q) ,   q = 2 a / l ,
-/// from the power series of the characteristic values. The error of a₀ is 1e-3 at q = 1 and 5e-3 at q = 1.2; that of b₁
-/// is below 1e-3.
-/// `energy_bound`: where a double pendulum released at rest has just enough energy for a flip: θ2 over θ1, degrees,
-/// with
-///     Σ W_i cosθ_i = Σ W_i − 2 min W_i    (integrate/flips.hpp).
-/// `linear_limit`: for each panel, the step size at which small oscillations diverge in linear theory
-/// (analysis/stability.hpp); it depends on the grid, which draws it.
-/// Source  Landau & Lifshitz, Mechanics, §30; Abramowitz & Stegun, 20.2.25.
 std::vector<Curve> overlay_curves(Overlay overlay, const SideSpec& side) {
     if (overlay == Overlay::none || overlay == Overlay::linear_limit) return {};
     if (overlay == Overlay::energy_bound) return {energy_bound(chain_of(side).cast<double>())};
@@ -302,13 +293,14 @@ void Grid::finish_maps(std::span<const TrialNumbers> numbers, Figure& figure) co
     }
     const auto& plot = figure.panels.front();
     const bool has_outline = overlay_ == Overlay::energy_bound && shows(plot, plot.curves.front());
+    const std::string outline = has_outline ? "Inside the line no rod has the energy to flip." : "";
     if (spec)
-        figure.captions.push_back(fmt::format(
-            "{} × {} releases{}.{} Taylor series of order 16 in SIMD lanes at tolerance {}.", x_.count, y_.count,
-            is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "",
-            has_outline ? " Inside the line no rod has the energy to flip." : "", scientific(spec->tolerance)));
+        figure.captions.push_back(
+            fmt::format("{} × {} releases{}.{}{} Taylor series of order 16 in SIMD lanes at tolerance {}.", x_.count,
+                        y_.count, is_zero(pair_.a.omega_deg_per_s) ? " from rest" : "", has_outline ? " " : "", outline,
+                        scientific(spec->tolerance)));
     else if (has_outline)
-        figure.captions.emplace_back("Inside the line no rod has the energy to flip.");
+        figure.captions.push_back(outline);
     if (broken > 0)
         figure.captions.push_back(
             fmt::format("{} of the releases failed (no step of 10⁻⁹ s met the tolerance): their cells are empty, as "

@@ -46,7 +46,6 @@ template <>
 inline constexpr auto names_of<Quantity> = std::to_array<std::string_view>(
     {"divergence", "exponent", "flip_time", "distance_at_end", "greatest_distance", "energy_error", "parting_time",
      "deviation", "period", "stroboscopic", "step_cost", "stability", "convergence"});
-inline constexpr std::string_view quantity_help = "what is computed for each pair; docs/figures.md explains each";
 
 /// Whether it compares the two pendulums by their distance; otherwise it depends on side a alone.
 constexpr bool is_of_distance(Quantity quantity) {
@@ -63,12 +62,10 @@ struct QuantityWords {
     bool logarithmic = false;
     std::string none = "run failed";  // label of cells without a number
     bool none_is_bad = none == "run failed";
-    std::string method = {};       // by which it is found, if not by the preset's
-    std::string short_label = {};  // beside a curve of another quantity
-    std::string last_column = {};  // of one more number, after those of all quantities
-    std::size_t rows = 1;          // rows of the table per pair, each with its own numbers
-    std::string counted = {};      // the column that numbers these rows
-    long first_row = 0;
+    std::string method = {};          // by which it is found, if not by the preset's
+    std::string short_label = {};     // beside a curve of another quantity
+    std::string last_column = {};     // of one more number, after those of all quantities
+    std::size_t rows = 1;             // rows of the table per pair, each with its own numbers
     std::size_t drawn = 0;            // index of the drawn number; if it is not 0, it is drawn over number 0
     std::optional<Range> range = {};  // of the colour scale of a map
 };
@@ -93,11 +90,10 @@ struct InCommon {
 /// Returns pair i; it stays valid until the next call.
 using PairAt = std::function<const Preset&(std::size_t i)>;
 
-/// Computes one quantity of pairs. If possible, pairs are integrated in SIMD lanes: the mean, distances and energies of
-/// chains of two or three links in double by Euler or RK4; flips of two links by Taylor series, whatever the
-/// integrator. Other pairs are integrated one by one. The numbers of a pair: the quantity; for an exponent also its
-/// uncertainty; for a stroboscope angle and rate, row by row. NaN if the motion failed or the pair never diverges;
-/// infinite if there is no flip.
+/// Computes one quantity of pairs, if possible in SIMD lanes: the mean, distances and energies of chains of two or three
+/// links in double by Euler or RK4; flips of two links by Taylor series, whatever the integrator. The numbers of a pair:
+/// the quantity; for an exponent also its uncertainty; for a stroboscope angle and rate, row by row. NaN if the motion
+/// failed or the pair never diverges; infinite if there is no flip.
 class Measurement {
 public:
     /// For pairs like the first and the last one. Throws Error (exit 2) at the table's `key` if the quantity is not defined

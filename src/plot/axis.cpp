@@ -159,15 +159,6 @@ std::vector<Tick> multiples_of_decades(double low, double high, std::span<const 
     return ticks;
 }
 
-/// The given multiples of each decade, with labels.
-std::vector<Tick> subdivided(double low, double high, const std::vector<long long>& factors) {
-    return multiples_of_decades(low, high, factors, [&](long long factor, int exponent) {
-        if (low >= 1e-4 && high < 1e6) return decimal(factor, exponent);
-        const auto power = power_of_ten(exponent);
-        return factor == 1 ? power : fmt::format("{} × {}", factor, power);
-    });
-}
-
 /// Ticks at all decades, with a label at every n-th; if there is space, also unlabelled ticks inside the decades.
 std::vector<Tick> decades(const Axis& axis, double low, double high, int every) {
     constexpr std::array<long long, 9> inside{1, 2, 3, 4, 5, 6, 7, 8, 9};
@@ -179,21 +170,25 @@ std::vector<Tick> decades(const Axis& axis, double low, double high, int every) 
                                 });
 }
 
-std::size_t named(const std::vector<Tick>& ticks) {
-    return static_cast<std::size_t>(std::ranges::count_if(ticks, [](const Tick& tick) { return !tick.text.empty(); }));
-}
-
 std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels) {
     const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
     if (!(low > 0 && low < high)) return {};
     const double span = std::log10(high) - std::log10(low);
+    const auto subdivided = [&](const std::vector<long long>& factors) {
+        return multiples_of_decades(low, high, factors, [&](long long factor, int exponent) {
+            if (low >= 1e-4 && high < 1e6) return decimal(factor, exponent);
+            const auto power = power_of_ten(exponent);
+            return factor == 1 ? power : fmt::format("{} × {}", factor, power);
+        });
+    };
     std::vector<std::vector<Tick>> all;  // in the order of preference
-    if (span < 2) all.push_back(subdivided(low, high, {1, 2, 5}));
+    if (span < 2) all.push_back(subdivided({1, 2, 5}));
     for (const int n : {1, 2, 3, 5, 10, 20, 30, 50, 100, 200})
         if (span >= 1) all.push_back(decades(axis, low, high, n));
-    if (span < 2) all.push_back(subdivided(low, high, {1, 3}));
+    if (span < 2) all.push_back(subdivided({1, 3}));
+    const auto is_named = [](const Tick& tick) { return !tick.text.empty(); };
     for (auto& ticks : all)
-        if (named(ticks) >= 2 && fits(ticks, axis, labels)) return std::move(ticks);
+        if (std::ranges::count_if(ticks, is_named) >= 2 && fits(ticks, axis, labels)) return std::move(ticks);
     return linear_ticks(axis, labels);
 }
 
