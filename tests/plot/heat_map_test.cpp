@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace doppel::heat_map_test {
 
@@ -87,16 +86,11 @@ TEST(HeatMap, ShowsWhatIsBadInItsColor) {
     }
     map.none_label = "blow-up";
     Figure figure{.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map}}};
-    int swatches = 0, cells = 0;
-    for (const auto& item : composed(figure, {800, 450}, themes[1])) {
-        if (const auto* box = std::get_if<Box>(&item)) swatches += box->color == themes[1].bad;
-        if (const auto* map_cells = std::get_if<CellImage>(&item)) {
-            EXPECT_TRUE(is_color(map_cells->pixels->at(1, 0), themes[1].bad, 1));
-            ++cells;
-        }
-    }
-    EXPECT_EQ(swatches, 1);
-    EXPECT_EQ(cells, 1);
+    const auto list = composed(figure, {800, 450}, themes[1]);
+    EXPECT_EQ(std::ranges::count(items_of<Box>(list), themes[1].bad, &Box::color), 1);
+    const auto cells = items_of<CellImage>(list);
+    ASSERT_EQ(cells.size(), 1u);
+    EXPECT_TRUE(is_color(cells[0].pixels->at(1, 0), themes[1].bad, 1));
 }
 
 TEST(HeatMap, SharesItsBar) {
@@ -106,19 +100,14 @@ TEST(HeatMap, SharesItsBar) {
         map.none_label = "blow-up";
         map.shares_bar = shared;
         figure.panels.assign(4, {.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map});
-        int bars = 0;
         float right = 0, panels_right = 0, bar_left = 1e9f;
         const auto list = composed(figure, {1600, 900}, themes[1]);
-        for (const auto& item : list) {
-            if (const auto* bar = std::get_if<Image>(&item)) {
-                ++bars;
-                bar_left = std::min(bar_left, bar->left), right = std::max(right, bar->right);
-            } else if (const auto* panel = std::get_if<CellImage>(&item)) {
-                panels_right = std::max(panels_right, panel->within.right);
-            }
-        }
+        const auto bars = items_of<Image>(list);
+        for (const auto& bar : bars) bar_left = std::min(bar_left, bar.left), right = std::max(right, bar.right);
+        for (const auto& panel : items_of<CellImage>(list)) panels_right = std::max(panels_right, panel.within.right);
         auto words = words_in(list);
-        for (const int count : {words["blow-up"], words["an error"], bars}) EXPECT_EQ(count, shared ? 1 : 4) << shared;
+        for (const int count : {words["blow-up"], words["an error"], static_cast<int>(bars.size())})
+            EXPECT_EQ(count, shared ? 1 : 4) << shared;
         EXPECT_LT(right, 1600);
         EXPECT_EQ(bar_left > panels_right, shared);
     }

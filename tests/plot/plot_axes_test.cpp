@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace doppel::plot_axes_test {
@@ -30,9 +31,7 @@ Figure four_maps(bool shares_axes, bool split) {
 /// The areas of the four maps, px².
 std::vector<float> areas(const PageList& list) {
     std::vector<float> all;
-    for (const PageItem& item : list)
-        if (const auto* cells = std::get_if<CellImage>(&item))
-            all.push_back(cells->within.width() * cells->within.height());
+    for (const auto& cells : items_of<CellImage>(list)) all.push_back(cells.within.width() * cells.within.height());
     return all;
 }
 
@@ -97,12 +96,8 @@ float line_width(std::size_t points) {
         curve.x.push_back(static_cast<double>(i));
         curve.y.push_back(static_cast<double>(i % 7));
     }
-    const auto list = composed({.panels = {{.curves = {curve}}}}, {1600, 900}, light);
-    const Polylines* longest = nullptr;
-    for (const PageItem& item : list)
-        if (const auto* stroke = std::get_if<Polylines>(&item))
-            if (!longest || stroke->lines[0].size() > longest->lines[0].size()) longest = stroke;
-    return longest->width;
+    const auto lines = items_of<Polylines>(composed({.panels = {{.curves = {curve}}}}, {1600, 900}, light));
+    return std::ranges::max_element(lines, {}, [](const auto& line) { return line.lines[0].size(); })->width;
 }
 
 TEST(Plot, LinesOfManyPointsAreThin) {

@@ -52,26 +52,19 @@ Figure fan(int count) {
     return {.panels = {plot}};
 }
 
-TEST(Plot, LabelsOfManyCurvesAreOnTheCurves) {
-    constexpr int count = 16;
-    const auto list = composed(fan(count), size, light);
-    const auto words = words_in(list);
-    std::vector<const Label*> labels;
-    for (const PageItem& item : list)
-        if (const auto* label = std::get_if<Label>(&item); label && label->text.starts_with("method "))
-            labels.push_back(label);
-    ASSERT_EQ(labels.size(), static_cast<std::size_t>(count));
-    // in the curves' colours: in a legend they would have the text's colour
-    for (const auto* label : labels) EXPECT_NE(label->color, light.text) << label->text;
-}
-
 /// The labels of curves that start with `begin`.
 std::vector<Label> labels_of(const PageList& list, std::string_view begin) {
-    std::vector<Label> labels;
-    for (const PageItem& item : list)
-        if (const auto* label = std::get_if<Label>(&item); label && label->text.starts_with(begin))
-            labels.push_back(*label);
+    auto labels = items_of<Label>(list);
+    std::erase_if(labels, [&](const Label& label) { return !label.text.starts_with(begin); });
     return labels;
+}
+
+TEST(Plot, LabelsOfManyCurvesAreOnTheCurves) {
+    constexpr int count = 16;
+    const auto labels = labels_of(composed(fan(count), size, light), "method ");
+    ASSERT_EQ(labels.size(), static_cast<std::size_t>(count));
+    // in the curves' colours: in a legend they would have the text's colour
+    for (const auto& label : labels) EXPECT_NE(label.color, light.text) << label.text;
 }
 
 TEST(Plot, LabelsHaveOneSizeInAllPanels) {
@@ -104,8 +97,7 @@ TEST(Plot, ALegendCoversNoDataAndHasAllNames) {
     const auto names = labels_of(list, "one orbit");
     ASSERT_EQ(names.size(), 4u);
     float right = 0;
-    for (const PageItem& item : list)
-        if (const auto* image = std::get_if<Image>(&item)) right = std::max(right, image->right);
+    for (const auto& image : items_of<Image>(list)) right = std::max(right, image.right);
     ASSERT_GT(right, 0);
     for (const auto& name : names) EXPECT_GT(name.anchor.x, right) << name.text;
     // a second panel, which has space for its label, has it beside the panel as well
@@ -123,15 +115,12 @@ TEST(Plot, ALegendCoversNoDataAndHasAllNames) {
 TEST(Plot, ARuleOverAMapIsSeenOnAllColors) {
     Figure figure = map(false);
     figure.panels[0].rules = {{Rule::Orientation::vertical, 60, ""}};
-    std::vector<const Polylines*> upright;
-    const auto list = composed(figure, size, light);
-    for (const PageItem& item : list)
-        if (const auto* line = std::get_if<Polylines>(&item); line && line->lines[0].size() == 2)
-            upright.push_back(line);
+    auto upright = items_of<Polylines>(composed(figure, size, light));
+    std::erase_if(upright, [](const Polylines& line) { return line.lines[0].size() != 2; });
     ASSERT_EQ(upright.size(), 2u);
-    EXPECT_EQ(upright[0]->dash, 0);  // dark, below the white dashes
-    EXPECT_LT(upright[0]->color.r, 0.1f);
-    EXPECT_GT(upright[1]->dash, 0);
+    EXPECT_EQ(upright[0].dash, 0);  // dark, below the white dashes
+    EXPECT_LT(upright[0].color.r, 0.1f);
+    EXPECT_GT(upright[1].dash, 0);
 }
 
 TEST(Plot, AMarkAmongManyCurvesHasALeaderLine) {
@@ -141,10 +130,8 @@ TEST(Plot, AMarkAmongManyCurvesHasALeaderLine) {
     curves.insert(curves.begin(), {.label = "where the others stand", .x = {5}, .y = {0.9}, .mark = Mark::points});
     const auto list = composed(figure, size, light);
     EXPECT_EQ(words_in(list).count("where the others stand"), 1u);
-    const auto thin = std::count_if(list.begin(), list.end(), [](const PageItem& item) {
-        const auto* capsule = std::get_if<Capsule>(&item);
-        return capsule && capsule->from.y != capsule->to.y && capsule->from.x == capsule->to.x &&
-               capsule->radius <= 0.5f;
+    const auto thin = std::ranges::count_if(items_of<Capsule>(list), [](const Capsule& capsule) {
+        return capsule.from.y != capsule.to.y && capsule.from.x == capsule.to.x && capsule.radius <= 0.5f;
     });
     EXPECT_EQ(thin, 1);
 }

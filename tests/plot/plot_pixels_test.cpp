@@ -29,9 +29,7 @@ Figure with_curves(std::vector<Curve> curves) {
 
 /// The area of a map's panel.
 Area area_of(const PageList& list) {
-    for (const PageItem& item : list)
-        if (const auto* cells = std::get_if<CellImage>(&item)) return cells->within;
-    return {};
+    return items_of<CellImage>(list).at(0).within;
 }
 
 void expect_color(const Picture& picture, float x, float y, Color color, int tolerance = 1) {
@@ -80,15 +78,13 @@ struct Reach {
 /// The extent of all strokes in a colour, px.
 Reach reach(const PageList& list, Color color) {
     Reach all;
-    for (const PageItem& item : list) {
-        const auto* stroke = std::get_if<Polylines>(&item);
-        if (!stroke || !(stroke->color == color)) continue;
-        for (const auto& line : stroke->lines)
+    for (const auto& stroke : items_of<Polylines>(list))
+        for (const auto& line : stroke.lines)
             for (const Point at : line) {
+                if (!(stroke.color == color)) continue;
                 all.left = std::min(all.left, at.x), all.right = std::max(all.right, at.x);
                 all.top = std::min(all.top, at.y), all.bottom = std::max(all.bottom, at.y);
             }
-    }
     return all;
 }
 
@@ -136,11 +132,9 @@ TEST(Plot, ReducingManyPointsDoesNotChangeThePicture) {
         }
         sparse.panels[0].curves.push_back(piece);
     }
-    const PageList list = composed(dense, size, light);
     std::size_t vertices = 0;
-    for (const PageItem& item : list)
-        if (const auto* stroke = std::get_if<Polylines>(&item))
-            for (const auto& line : stroke->lines) vertices += line.size();
+    for (const auto& stroke : items_of<Polylines>(composed(dense, size, light)))
+        for (const auto& line : stroke.lines) vertices += line.size();
     EXPECT_LT(vertices, 8u * 400 + 10);
     const Picture thin = picture(dense, size, light), full = picture(sparse, size, light);
     int differ = 0;
@@ -151,14 +145,11 @@ TEST(Plot, ReducingManyPointsDoesNotChangeThePicture) {
 TEST(Plot, WhatIsNoNumberInterruptsTheLine) {
     auto figure = with_curves({{.x = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .y = {.1, .1, -1, .1, .1, std::nan(""), .1, 0, .1}}});
     figure.panels[0].y = {.low = 1e-3, .high = 1, .logarithmic = true};
+    const auto list = composed(figure, size, light);
     std::size_t pieces = 0;
-    int dots = 0;
-    for (const PageItem& item : composed(figure, size, light)) {
-        if (std::holds_alternative<Capsule>(item)) ++dots;
-        if (const auto* lines = std::get_if<Polylines>(&item)) pieces += lines->lines.size();
-    }
+    for (const auto& stroke : items_of<Polylines>(list)) pieces += stroke.lines.size();
     EXPECT_EQ(pieces, 2u);
-    EXPECT_EQ(dots, 2) << "what stands alone between gaps shows as a dot";
+    EXPECT_EQ(items_of<Capsule>(list).size(), 2u) << "what stands alone between gaps shows as a dot";
 }
 
 TEST(Plot, ABandIsTintedBetweenItsEdges) {
@@ -176,11 +167,9 @@ TEST(Plot, ABandIsTintedBetweenItsEdges) {
 TEST(Plot, ColorsRepeatDashed) {
     std::vector<Curve> curves;
     for (int hue = 0; hue < 10; ++hue) curves.push_back({.x = {0, 10}, .y = {0.1 * hue, 0.1 * hue}, .hue = hue});
-    std::vector<float> dashes;
-    for (const auto& item : composed(with_curves(curves), {800, 450}, themes[1]))
-        if (const auto* line = std::get_if<Polylines>(&item)) dashes.push_back(line->dash);
-    ASSERT_EQ(dashes.size(), curves.size());
-    for (std::size_t i = 0; i < dashes.size(); ++i) EXPECT_EQ(dashes[i] > 0, i >= 8) << i;
+    const auto lines = items_of<Polylines>(composed(with_curves(curves), {800, 450}, themes[1]));
+    ASSERT_EQ(lines.size(), curves.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_EQ(lines[i].dash > 0, i >= 8) << i;
 }
 
 }  // namespace doppel::plot_pixels_test

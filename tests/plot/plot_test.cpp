@@ -21,14 +21,11 @@ struct Words {
 /// The areas of all texts of a list: from the top of a capital to the tail of a comma.
 std::vector<Words> words_of(const PageList& list) {
     std::vector<Words> all;
-    for (const PageItem& item : list) {
-        const auto* label = std::get_if<Label>(&item);
-        if (!label || label->text.empty()) continue;
-        const float width = text_width(label->text, label->size, label->weight);
-        const float before = label->align == Align::left ? 0 : label->align == Align::center ? width / 2 : width;
-        const float left = label->anchor.x - before;
-        all.push_back({left, label->anchor.y - 0.76f * label->size, left + width, label->anchor.y + 0.23f * label->size,
-                       label->text});
+    for (const auto& [text, anchor, size, align, weight, color] : items_of<Label>(list)) {
+        if (text.empty()) continue;
+        const float width = text_width(text, size, weight);
+        const float left = anchor.x - (align == Align::left ? 0 : align == Align::center ? width / 2 : width);
+        all.push_back({left, anchor.y - 0.76f * size, left + width, anchor.y + 0.23f * size, text});
     }
     return all;
 }
@@ -145,8 +142,7 @@ TEST(Plot, TextOnPaperIsAsHighAsAskedFor) {
     const auto page = compose(sweep(), {609, 343}, light, 1, 1.0f);
     EXPECT_EQ(page.scale, 1);
     float minimum = 1e9f;
-    for (const auto& item : page.items)
-        if (const auto* label = std::get_if<Label>(&item)) minimum = std::min(minimum, label->size);
+    for (const auto& label : items_of<Label>(page.items)) minimum = std::min(minimum, label.size);
     EXPECT_GE(minimum, 0.72f * 20 - 0.01f);  // the label of a grey curve in little space; all others are larger
 }
 
@@ -157,12 +153,8 @@ TEST(Plot, ManyPanelsInASmallPictureKeepTheirCurves) {
                                  .x = {.label = "x"},
                                  .y = {.label = "y"},
                                  .curves = {Curve{.x = {0, 1, 2}, .y = {0, 1, 0}}}});
-    for (const Size size : {Size{1600, 900}, Size{480, 270}, Size{320, 180}}) {
-        const auto list = composed(figure, size, themes[1]);
-        const auto curves = std::count_if(list.begin(), list.end(),
-                                          [](const PageItem& item) { return std::holds_alternative<Polylines>(item); });
-        EXPECT_EQ(curves, 12) << size.width;
-    }
+    for (const Size size : {Size{1600, 900}, Size{480, 270}, Size{320, 180}})
+        EXPECT_EQ(items_of<Polylines>(composed(figure, size, light)).size(), 12u) << size.width;
 }
 
 }  // namespace doppel::plot_test

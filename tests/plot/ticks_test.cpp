@@ -89,15 +89,18 @@ TEST(ChartTicks, AreValidForAnyRange) {
     }
 }
 
-std::vector<std::string> texts(const Axis& axis, std::optional<double> every = {},
-                               TickLabels words = {.across = false}) {
-    std::vector<std::string> all;
-    for (const Tick& tick : chart_ticks(axis, words, every))
+using Texts = std::vector<std::string>;
+
+Texts texts_of(const std::vector<Tick>& ticks) {
+    Texts all;
+    for (const Tick& tick : ticks)
         if (!tick.text.empty()) all.push_back(tick.text);
     return all;
 }
 
-using Texts = std::vector<std::string>;
+Texts texts(const Axis& axis, std::optional<double> every = {}, TickLabels words = {.across = false}) {
+    return texts_of(chart_ticks(axis, words, every));
+}
 
 TEST(ChartTicks, ReadAsPeopleWrite) {
     EXPECT_EQ(texts({0, 0.5, 0, 300}), (Texts{"0.0", "0.1", "0.2", "0.3", "0.4", "0.5"}));
@@ -140,20 +143,16 @@ TEST(ChartTicks, TakeTheSmallestStepThatLeavesTheSpacing) {
 }
 
 /// The labels beside a strip of a film, 216 px high.
-std::vector<std::string> beside_strip(double low, double high, bool logarithmic) {
-    std::vector<std::string> labels;
-    for (const auto& tick : spaced_ticks({low, high, 0, 216, logarithmic}, false, 27))
-        if (!tick.text.empty()) labels.push_back(tick.text);
-    return labels;
+Texts beside_strip(double low, double high, bool logarithmic) {
+    return texts_of(spaced_ticks({low, high, 0, 216, logarithmic}, false, 27));
 }
 
 TEST(ChartTicks, OfAFewDecadesAreEnoughToReadValuesBy) {
-    using Labels = std::vector<std::string>;
-    EXPECT_EQ(beside_strip(0.7, 7.1, true), (Labels{"1", "2", "5"}));
-    EXPECT_EQ(beside_strip(0.2, 5, true), (Labels{"0.2", "0.5", "1", "2", "5"}));
-    EXPECT_EQ(beside_strip(0.15, 9, true), (Labels{"0.3", "1", "3"}));
-    EXPECT_EQ(beside_strip(1e-24, 30, true), (Labels{"10⁻²⁰", "10⁻¹⁰", "1"}));
-    EXPECT_EQ(beside_strip(-170, 220, false), (Labels{"−100", "0", "100", "200"}));
+    EXPECT_EQ(beside_strip(0.7, 7.1, true), (Texts{"1", "2", "5"}));
+    EXPECT_EQ(beside_strip(0.2, 5, true), (Texts{"0.2", "0.5", "1", "2", "5"}));
+    EXPECT_EQ(beside_strip(0.15, 9, true), (Texts{"0.3", "1", "3"}));
+    EXPECT_EQ(beside_strip(1e-24, 30, true), (Texts{"10⁻²⁰", "10⁻¹⁰", "1"}));
+    EXPECT_EQ(beside_strip(-170, 220, false), (Texts{"−100", "0", "100", "200"}));
 }
 
 TEST(ChartTicks, AreTwoWhereOneRoundNumberWouldBeAlone) {
@@ -167,9 +166,7 @@ TEST(ChartTicks, AreTheGivenOnesWhereTheirLabelsFit) {
     std::vector<Tick> own;
     for (const double value : {0.25, 0.5, 1.0, 2.0, 4.0}) own.push_back(tick_at(value));
     const auto beside = [&](float length) {
-        Texts all;
-        for (const auto& tick : spaced_ticks({0.2, 5, 0, length, true}, false, 18, {}, own)) all.push_back(tick.text);
-        return all;
+        return texts_of(spaced_ticks({0.2, 5, 0, length, true}, false, 18, {}, own));
     };
     EXPECT_EQ(beside(300), (Texts{"0.25", "0.5", "1", "2", "4"}));
     EXPECT_EQ(beside(90), (Texts{"0.3", "1", "3"}));
