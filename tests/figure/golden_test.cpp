@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace doppel::golden_test {
 
 /// A figure that does not depend on the last bit: nothing chaotic beyond 3 s, no measured times.
@@ -66,10 +64,6 @@ INSTANTIATE_TEST_SUITE_P(
                {"grid.y.to=30", "grid.y.points=18", "grid.x.points=24", "scene.duration_s=2", "scene.sample_hz=50",
                 "grid.x.from=0.01", "grid.x.to=0.7",
                 "grid.panel.values=[\"euler\", \"semi-implicit-euler\", \"rk4\", \"rattle6\"]"}}),
-    [](const auto& parameter) {
-        std::string name = parameter.param.name;
-        std::replace(name.begin(), name.end(), '-', '_');
-        return name;
-    });
+    [](const auto& parameter) { return underscored(parameter.param.name); });
 
 }  // namespace doppel::golden_test

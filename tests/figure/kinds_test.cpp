@@ -277,10 +277,10 @@ film_column = "b_kinetic_J"
                                                        {fmt::format("series.film_column=\"{}\"", column)}))
                                       .rows.back()[2]))
             << column;
-    test::expect_error(ExitCode::bad_input, {"film_column", "must be one of a_theta1_rad", "\"a_theta3_rad\""},
-                       [&] { figure_from(text, {"series.film_column=\"a_theta3_rad\""}); });
-    test::expect_error(ExitCode::bad_input, {":19:1: [[curve]] 4 film_column must be one of a_theta1_rad", "\"speed\""},
-                       [&] { figure_from(text + "[[curve]]\ncolumn = \"d\"\n" + "film_column = \"speed\"\n"); });
+    expect_refused({"film_column", "must be one of a_theta1_rad", "\"a_theta3_rad\""},
+                   [&] { figure_from(text, {"series.film_column=\"a_theta3_rad\""}); });
+    expect_refused({":19:1: [[curve]] 4 film_column must be one of a_theta1_rad", "\"speed\""},
+                   [&] { figure_from(text + "[[curve]]\ncolumn = \"d\"\n" + "film_column = \"speed\"\n"); });
 }
 
 TEST(Curves, CheckToleranceShowsUntilWhenTheyAgree) {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace doppel::numbers_test {
 
 // Each kind of figure checks the numbers of its trials: impossible numbers in a file are rejected.

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace doppel::same_numbers_test {
 
 namespace fs = std::filesystem;

@@ -65,10 +65,13 @@ struct PresetCase {
 inline void PrintTo(const PresetCase& c, std::ostream* out) {
     *out << c.name;
 }
-inline std::string name_of_case(const PresetCase& c, std::size_t index) {
-    auto name = fmt::format("{}_{}", c.name, index);
+/// As names of tests may be.
+inline std::string underscored(std::string name) {
     std::ranges::replace(name, '-', '_');
     return name;
+}
+inline std::string name_of_case(const PresetCase& c, std::size_t index) {
+    return underscored(fmt::format("{}_{}", c.name, index));
 }
 
 /// The text of the table's file.
