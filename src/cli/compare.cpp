@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 
 struct CompareOptions : PresetOptions {
     std::string expected, actual, out = "out", junit, html;
-    std::string render, at, frames, size, gl = "auto";
+    std::string render, at, frames, size;
+    Gl gl = Gl::automatic;
     bool update = false, list_outputs = false;
 };
 
@@ -269,10 +270,10 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
     overrides.push_back({table + ".format", "\"png\"", "--render, which draws PNG"});
     if (is_chart && !(options.at + options.frames).empty())
         throw bad_input("--at and --frames are for films; {} is a figure", text.name);
-    ProgressReport progress(progress_style("auto"), text.name, is_chart ? "trials" : "frames");
+    ProgressReport progress(ProgressStyle::automatic, text.name, is_chart ? "trials" : "frames");
     const Report report = std::ref(progress);
     const Replacing replacing{.is_temporary = true};
-    const RunOptions run_options{.out = folder, .gl = value_named<Gl>(options.gl), .replacing = replacing};
+    const RunOptions run_options{.out = folder, .gl = options.gl, .replacing = replacing};
     std::vector<ComparedPicture> pairs;
     if (is_chart) {
         const auto figure = read_figure(text, overrides, task.stop);

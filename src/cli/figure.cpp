@@ -86,8 +86,7 @@ void make_figures(const FigureCommandOptions& options) {
     const auto tell = [&](std::size_t k, const auto& what) {
         const std::lock_guard lock(mutex);
         if (!reports[k])
-            reports[k].emplace(progress_style(options.progress), figures[k].name, figures[k].experiment->unit(),
-                               to.streamed);
+            reports[k].emplace(options.progress, figures[k].name, figures[k].experiment->unit(), to.streamed);
         what(*reports[k]);
     };
     ignore_sigpipe();
@@ -119,8 +118,9 @@ void add_figure(CLI::App& app) {
         "The same command resumes an interrupted figure.");
     add_run_options(command, *options, "Threads; default: one a core; same numbers for any N");
     add_value(command, "--size", options->size, "WxH", "Size of the layout, px");
-    add_choice(command, "--format", options->format, "FORMAT",
-               "Format of the picture; html: a page that tells the numbers", {"png", "pdf", "svg", "html"});
+    add_value(command, "--format", options->format, "FORMAT",
+              "Format of the picture; html: a page that tells the numbers")
+        ->check(CLI::IsMember(Choices{names_of<PictureFormat>.begin(), names_of<PictureFormat>.end()}));
     add_value(command, "--scale", options->scale, "N", "Scale: 2 draws four pixels for each pixel of the layout")
         ->check(CLI::Range(0.25, 8.0));
     add_value(command, "--shard", options->shard, "I/N", "Compute shard I of N only, for --merge");

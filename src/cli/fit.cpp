@@ -7,20 +7,20 @@
 #include <memory>
 
 namespace doppel {
+
+template <>
+inline constexpr auto names_of<Bodies> = std::to_array<std::string_view>({"auto", "point", "rigid"});
+
 namespace {
 
 struct FitCommandOptions : OutOptions {
     std::vector<std::string> tracks;
-    std::string model = "auto";
     double every_s = 0;
     FitOptions fit;
 };
 
 void fit(const FitCommandOptions& options) {
     auto fit_options = options.fit;
-    fit_options.bodies = options.model == "point"   ? Bodies::point
-                         : options.model == "rigid" ? Bodies::rigid
-                                                    : Bodies::automatic;
     fit_options.out = options.out;
     fit_options.force = options.force;
     if (options.every_s > 0) fit_options.every_s = options.every_s;
@@ -30,7 +30,7 @@ void fit(const FitCommandOptions& options) {
     if (options.list_outputs)
         return list_outputs(options, name,
                             {name + ".toml", name + ".residuals.csv", name + ".png", name + ".fit.json"});
-    ProgressReport report(progress_style(options.progress), name, "models");
+    ProgressReport report(options.progress, name, "models");
     const auto done = run_fit(files, fit_options, watch_interrupts(), std::ref(report));
     for (const auto& sentence : done.sentences) report.note(sentence);
     report.done(done.run);
@@ -55,8 +55,8 @@ void add_fit(CLI::App& app) {
         "  doppel fit piece-*.csv --every 5.334      each with a clock of its own, so many seconds apart\n"
         "  doppel fit swing.csv --gravity 9.81 --mass 0.138");
     command.add_option("TRACK", options->tracks, "CSV files, in the order of time")->required();
-    add_choice(command, "--model", options->model, "KIND",
-               "Bodies: auto, point (masses on massless rods) or rigid (bodies)", {"auto", "point", "rigid"});
+    add_choice(command, "--model", options->fit.bodies, "KIND",
+               "Bodies: auto, point (masses on massless rods) or rigid (bodies)");
     add_value(command, "--name", options->fit.name, "NAME", "Name of the results; default: that of the first file");
     add_value(command, "--every", options->every_s, "S", "Seconds from the beginning of a piece to that of the next")
         ->check(CLI::Range(1e-3, 1e6));

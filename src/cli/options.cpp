@@ -10,12 +10,6 @@
 
 namespace doppel {
 
-CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string& value, const std::string& type,
-                        const std::string& help, const std::vector<std::string>& choices) {
-    auto* option = add_value(command, names, value, type, help)->check(CLI::IsMember(choices));
-    return value.empty() ? option : option->capture_default_str();
-}
-
 CLI::Option* add_set_option(CLI::App& command, PresetOptions& options) {
     return add_value(command, "--set", options.sets, "KEY=VALUE",
                      "Another value for a key, in TOML; a word needs no quotes:\n"
@@ -42,8 +36,7 @@ void add_out_options(CLI::App& command, OutOptions& options) {
               "Folder for the results, DIR/NAME/; -: standard output, at the end")
         ->capture_default_str();
     command.add_flag("--list-outputs", options.list_outputs, "Only list the files that would be written, a line each");
-    add_choice(command, "--progress", options.progress, "STYLE", "How to show progress; warnings are always shown",
-               {"auto", "bar", "plain", "json", "none"});
+    add_choice(command, "--progress", options.progress, "STYLE", "How to show progress; warnings are always shown");
     command.add_flag("--force", options.force, "Replace files that were changed, or that another kind of run wrote");
 }
 
@@ -86,9 +79,8 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
     add_value(command, "-j,--jobs", options.jobs, "N", jobs)->check(CLI::Range(1, 1024));
 }
 
-CLI::Option* add_gl_option(CLI::App& command, std::string& gl) {
-    return add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing",
-                      {names_of<Gl>.begin(), names_of<Gl>.end()});
+CLI::Option* add_gl_option(CLI::App& command, Gl& gl) {
+    return add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing");
 }
 
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
@@ -125,8 +117,9 @@ Rational seconds_of_option(const std::string& option, const std::string& text) {
 }
 
 void add_quality_option(CLI::App& command, std::string& quality) {
-    add_choice(command, "--quality", quality, "QUALITY",
-               "draft: a quarter of the pixels; standard: as the preset; best: slow", {"draft", "standard", "best"});
+    add_value(command, "--quality", quality, "QUALITY",
+              "draft: a quarter of the pixels; standard: as the preset; best: slow")
+        ->check(CLI::IsMember(Choices{"draft", "standard", "best"}));
 }
 
 std::vector<Override> picture_overrides(const std::string& table, const std::string& size, const std::string& format,

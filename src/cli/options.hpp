@@ -25,7 +25,8 @@ struct PresetOptions {
 
 /// Options of commands that write files.
 struct OutOptions {
-    std::string out = "out", progress = "auto";
+    std::string out = "out";
+    ProgressStyle progress = ProgressStyle::automatic;
     bool force = false, list_outputs = false;
 };
 
@@ -41,9 +42,17 @@ CLI::Option* add_value(CLI::App& command, const std::string& names, T& value, co
                        const std::string& help) {
     return command.add_option(names, value, help)->type_name(type);
 }
-/// An option that takes one of some names; help shows the default, if there is one.
-CLI::Option* add_choice(CLI::App& command, const std::string& names, std::string& value, const std::string& type,
-                        const std::string& help, const std::vector<std::string>& choices);
+using Choices = std::vector<std::string>;
+/// An option that takes the name of a value of an enumeration; help shows the default.
+template <class T>
+CLI::Option* add_choice(CLI::App& command, const std::string& names, T& value, const std::string& type,
+                        const std::string& help, const Choices& choices = {names_of<T>.begin(), names_of<T>.end()}) {
+    const auto set = [&value](const std::string& name) { value = value_named<T>(name); };
+    return command.add_option_function<std::string>(names, set, help)
+        ->type_name(type)
+        ->check(CLI::IsMember(choices))
+        ->default_str(std::string(name_of(value)));
+}
 
 /// --set.
 CLI::Option* add_set_option(CLI::App& command, PresetOptions& options);
@@ -57,7 +66,7 @@ void add_out_options(CLI::App& command, OutOptions& options);
 void add_run_options(CLI::App& command, RunCommandOptions& options, const std::string& jobs);
 
 /// --gl: a name of Gl.
-CLI::Option* add_gl_option(CLI::App& command, std::string& gl);
+CLI::Option* add_gl_option(CLI::App& command, Gl& gl);
 
 /// Parses "A<separator>B" as two whole numbers; returns nothing otherwise.
 std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);
@@ -85,7 +94,7 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
 
 /// Calls work(scene, report) for each scene, with progress in `unit`. `streamed` as for ProgressReport.
-void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+void work_on_all(const std::vector<Scene>& scenes, ProgressStyle progress, const std::string& unit,
                  const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work);
 
 /// The values of --set, and `more` after them.

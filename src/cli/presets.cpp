@@ -28,38 +28,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Entry {
-    std::string title, kind;  // if the file cannot be read, the kind is empty and the title is the reason
-    std::string path;         // of a file in this folder; empty for a built-in preset
-};
-
-Entry entry_of(const PresetText& preset, const std::string& path) {
+/// Title and kind of a preset, and its path unless it is built in (null). If the file cannot be read, they are null,
+/// and "error" is the reason.
+Json entry_of(const PresetText& preset, const Json& path) {
+    Json entry{{"name", preset.name}, {"title", nullptr}, {"kind", nullptr}, {"path", path}};
     try {
         const auto kind = kind_of_preset(preset);
-        return {kind == pair_kind ? read_preset(preset).title : read_figure(preset).title, kind, path};
+        entry["title"] = kind == pair_kind ? read_preset(preset).title : read_figure(preset).title;
+        entry["kind"] = kind;
     } catch (const Error& error) {
-        if (path.empty() || error.code() != ExitCode::bad_input) throw;
-        return {error.what(), "", path};
+        if (path.is_null() || error.code() != ExitCode::bad_input) throw;
+        entry["error"] = error.what();
     }
+    return entry;
 }
 
 /// Presets by name: those in this folder, and built-in ones without a file here.
-std::map<std::string, Entry> all_presets() {
-    std::map<std::string, Entry> entries;
+std::map<std::string, Json> all_presets() {
+    std::map<std::string, Json> entries;
     for (const auto& path : preset_files_here()) {
         if (entries.contains(path.stem().string())) continue;
         const auto preset = find_preset(path.string(), &watch_interrupts());
         entries.emplace(preset.name, entry_of(preset, path.string()));
     }
     for (const auto& preset : builtin_presets())
-        if (!entries.contains(preset.name)) entries.emplace(preset.name, entry_of(preset, ""));
+        if (!entries.contains(preset.name)) entries.emplace(preset.name, entry_of(preset, nullptr));
     return entries;
 }
 
 void list_presets() {
     const auto all = all_presets();
-    const auto heading_of = [](const Entry& entry) {
-        return entry.kind.empty() ? "cannot be read:" : entry.kind == pair_kind ? "" : "figures, for doppel figure:";
+    const auto heading_of = [](const Json& entry) {
+        return entry.contains("error")      ? "cannot be read:"
+               : entry["kind"] == pair_kind ? ""
+                                            : "figures, for doppel figure:";
     };
     for (const std::string_view heading : {"", "figures, for doppel figure:", "cannot be read:"}) {
         std::size_t width = 0;
@@ -70,22 +72,15 @@ void list_presets() {
             print_line("{}", heading);
         }
         for (const auto& [name, entry] : all)
-            if (heading == heading_of(entry)) print_line("{:<{}}  {}", name, width, entry.title);
+            if (heading == heading_of(entry))
+                print_line("{:<{}}  {}", name, width,
+                           entry[entry.contains("error") ? "error" : "title"].get<std::string>());
     }
 }
 
 void list_as_json() {
     auto list = Json::array();
-    const auto or_null = [](bool has_it, const std::string& text) { return has_it ? Json(text) : Json(nullptr); };
-    for (const auto& [name, entry] : all_presets()) {
-        const auto& [title, kind, path] = entry;
-        const bool can_be_read = !kind.empty();
-        list.push_back({{"name", name},
-                        {"title", or_null(can_be_read, title)},
-                        {"kind", or_null(can_be_read, kind)},
-                        {"path", or_null(!path.empty(), path)}});
-        if (!can_be_read) list.back()["error"] = title;
-    }
+    for (const auto& [name, entry] : all_presets()) list.push_back(entry);
     print_json(list);
 }
 

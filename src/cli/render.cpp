@@ -17,12 +17,15 @@ namespace doppel {
 namespace {
 
 struct RenderOptions : RunCommandOptions {
-    std::string frames, from, to, size, format, quality, gl = "auto", shard;
+    std::string frames, from, to, size, format, quality, shard;
+    Gl gl = Gl::automatic;
     bool merge = false;
 };
 
 struct StillOptions : PresetOptions, OutOptions {
-    std::string at, size, format = "png", gl = "auto";
+    std::string at, size;
+    PictureFormat format = PictureFormat::png;
+    Gl gl = Gl::automatic;
 };
 
 void add_beside_option(CLI::App& command, PresetOptions& options) {
@@ -179,12 +182,11 @@ std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& pre
     return inputs;
 }
 
-void work_on_all(const std::vector<Scene>& scenes, const std::string& progress, const std::string& unit,
+void work_on_all(const std::vector<Scene>& scenes, ProgressStyle progress, const std::string& unit,
                  const std::string& streamed, const std::function<void(const Scene&, ProgressReport&)>& work) {
-    const auto style = progress_style(progress);
     ignore_sigpipe();
     for (const auto& scene : scenes) {
-        ProgressReport report(style, scene.preset.name, unit, streamed);
+        ProgressReport report(progress, scene.preset.name, unit, streamed);
         work(scene, report);
     }
 }
@@ -209,18 +211,16 @@ void add_render(CLI::App& app) {
     command.add_flag("--merge", options->merge, "Join the parts in DIR/NAME/ into the film");
     add_recording_option(command, options->recording, "Take the motion from simulate --recording FILE");
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px, even");
-    add_choice(command, "--format", options->format, "FORMAT",
-               "png: a sequence; html: a page to use in a browser; y4m, rgb: raw",
-               {format_names.begin(), format_names.end()});
+    add_value(command, "--format", options->format, "FORMAT",
+              "png: a sequence; html: a page to use in a browser; y4m, rgb: raw")
+        ->check(CLI::IsMember(Choices{format_names.begin(), format_names.end()}));
     add_quality_option(command, options->quality);
     add_beside_option(command, *options);
     add_columns_option(command, options->columns);
     add_gl_option(command, options->gl);
     command.callback([options] {
-        RunOptions run{.pictures = true,
-                       .jobs = options->jobs,
-                       .gl = value_named<Gl>(options->gl),
-                       .columns = columns_of_option(options->columns)};
+        RunOptions run{
+            .pictures = true, .jobs = options->jobs, .gl = options->gl, .columns = columns_of_option(options->columns)};
         set_range(*options, run);
         run.shard = shard_of_option(options->shard, options->merge);
         run.merge = options->merge;
@@ -255,19 +255,18 @@ void add_still(CLI::App& app) {
         const auto at = seconds_of_option("--at", options->at);
         auto more = picture_overrides("video", options->size);
         more.push_back({"video.format", "\"png\"", "--format of still, which draws PNG"});
-        const auto format = value_named<PictureFormat>(options->format);
         const auto scenes = read_scenes(*options, more);
-        const Destination to(*options, scenes.size(), "." + options->format);
+        const Destination to(*options, scenes.size(), fmt::format(".{}", name_of(options->format)));
         for (const auto& scene : scenes)
-            if (const auto name = still_name(scene, at, format); options->list_outputs)
+            if (const auto name = still_name(scene, at, options->format); options->list_outputs)
                 list_outputs(*options, scene.preset.name, {name});
         if (options->list_outputs) return;
         const RunOptions run{.out = to.folder,
-                             .gl = value_named<Gl>(options->gl),
+                             .gl = options->gl,
                              .replacing = {inputs_of(options->presets, scenes), options->force, options->out == "-"}};
         const auto& stop = watch_interrupts();
         work_on_all(scenes, options->progress, "samples", to.streamed, [&](const Scene& scene, auto& report) {
-            report.done(draw_still(scene, at, format, run, stop, std::ref(report)));
+            report.done(draw_still(scene, at, options->format, run, stop, std::ref(report)));
         });
     });
 }
@@ -293,7 +292,7 @@ void add_simulate(CLI::App& app) {
         run_all(scenes, *options, run);
         if (!file) return;
         file->parts.publish();
-        if (options->progress != "json" && options->out != "-") report_files(options->recording + "\n");
+        if (options->progress != ProgressStyle::json && options->out != "-") report_files(options->recording + "\n");
     });
 }
 

@@ -7,8 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -48,8 +46,8 @@ std::string bar(double share) {
 
 /// Prints to standard error; if nobody reads it, the run continues.
 template <class... Args>
-void print_to(std::FILE* to, fmt::format_string<Args...> format, Args&&... args) {
-    std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), to);
+void tell(fmt::format_string<Args...> format, Args&&... args) {
+    std::fputs(fmt::format(format, std::forward<Args>(args)...).c_str(), stderr);
 }
 
 /// "PATH (size)", or "FOLDER/"; sanitised for a terminal.
@@ -115,14 +113,10 @@ void report_files(std::string_view text) {
     if (error != EPIPE && error != EBADF) check_written(error);
 }
 
-ProgressStyle progress_style(const std::string& name) {
-    constexpr std::array<std::string_view, 4> names{"bar", "plain", "json", "none"};
-    if (const auto at = std::ranges::find(names, name); at != names.end()) return ProgressStyle(at - names.begin());
-    return isatty(STDERR_FILENO) ? ProgressStyle::bar : ProgressStyle::plain;
-}
-
 ProgressReport::ProgressReport(ProgressStyle style, std::string name, std::string unit, std::string streamed)
-    : style_(style),
+    : style_(style != ProgressStyle::automatic ? style
+             : isatty(STDERR_FILENO)           ? ProgressStyle::bar
+                                               : ProgressStyle::plain),
       name_(std::move(name)),
       unit_(std::move(unit)),
       streamed_(std::move(streamed)),
@@ -155,12 +149,12 @@ void ProgressReport::operator()(const Progress& progress) {
                      {"per_second", rate},
                      {"seconds_left", left}});
     } else if (style_ == ProgressStyle::bar) {
-        print_to(stderr, "\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share,
-                 progress.done, progress.total, unit_, rate, unit_, duration_text(left));
+        tell("\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share, progress.done,
+             progress.total, unit_, rate, unit_, duration_text(left));
         on_screen_ = true;
     } else {
-        print_to(stderr, "{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
-                 100 * share, rate, unit_, duration_text(left));
+        tell("{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
+             100 * share, rate, unit_, duration_text(left));
     }
 }
 
@@ -169,18 +163,18 @@ void ProgressReport::warn(const std::string& sentence) {
     if (style_ == ProgressStyle::json)
         write_event({{"event", "note"}, {"preset", name_}, {"text", sentence}});
     else
-        print_to(stderr, "{}: {}\n", name_, on_one_line(sentence));
+        tell("{}: {}\n", name_, on_one_line(sentence));
 }
 
 void ProgressReport::write_event(const nlohmann::ordered_json& event) {
     const auto line = event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    if (!streamed_.empty()) return print_to(stderr, "{}", line);
+    if (!streamed_.empty()) return tell("{}", line);
     const int error = write_error(line);
     if (error != 0 && error != EPIPE) write_error_ = error;  // the reader may close the pipe
 }
 
 void ProgressReport::clear() {
-    if (on_screen_) print_to(stderr, "\r\033[K");
+    if (on_screen_) tell("\r\033[K");
     on_screen_ = false;
 }
 
@@ -201,10 +195,10 @@ void ProgressReport::done(const RunResult& result) {
     }
     constexpr long few = 10;  // too few for a meaningful rate
     if (style_ != ProgressStyle::none && count < few)
-        print_to(stderr, "{}: done in {:.1f} s\n", name_, result.wall_s);
+        tell("{}: done in {:.1f} s\n", name_, result.wall_s);
     else if (style_ != ProgressStyle::none)
-        print_to(stderr, "{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
-                 static_cast<double>(count) / result.wall_s, unit_);
+        tell("{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
+             static_cast<double>(count) / result.wall_s, unit_);
     if (!streamed_.empty()) return;
     std::string lines;
     for (const auto& file : result.files) lines += file_line(file) + "\n";

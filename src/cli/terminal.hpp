@@ -3,10 +3,12 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "film/run.hpp"
+#include "scene/field.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json_fwd.hpp>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <optional>
@@ -38,10 +40,11 @@ void print_line(fmt::format_string<Args...> format, Args&&... args) {
     write_out(on_one_line(fmt::format(format, std::forward<Args>(args)...)) + "\n");
 }
 
-enum class ProgressStyle { bar, plain, json, none };
-
-/// "auto" is a bar on a terminal, and plain lines otherwise.
-ProgressStyle progress_style(const std::string& name);
+/// automatic: a bar on a terminal, and plain lines otherwise.
+enum class ProgressStyle { automatic, bar, plain, json, none };
+template <>
+inline constexpr auto names_of<ProgressStyle> = std::to_array<std::string_view>({"auto", "bar", "plain", "json",
+                                                                                 "none"});
 
 /// Shows the progress of a run: as a bar, as a line every few seconds, or as JSON lines for programs. JSON goes to
 /// standard output, the others to standard error.
