@@ -22,33 +22,31 @@ Csv::Csv(const std::filesystem::path& place, std::vector<std::string> columns, c
 }
 
 void Csv::add(long value) {
-    if (separate()) fmt::format_to(std::back_inserter(buffer_), "{}", value);
+    if (next_cell()) fmt::format_to(std::back_inserter(buffer_), "{},", value);
 }
 
 void Csv::add(double value) {
-    const bool is_written = separate();
+    const bool is_written = next_cell();
     if (!std::isfinite(value))
         throw method_failed("{}: {} of row {} would be {}; a table contains only finite numbers", file_.path().string(),
                             columns_[cell_ - 1], row_, value);
-    if (is_written) fmt::format_to(std::back_inserter(buffer_), "{}", value);
+    if (is_written) fmt::format_to(std::back_inserter(buffer_), "{},", value);
 }
 
 void Csv::add(std::string_view text) {
-    if (!separate()) return;
-    if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-        buffer_ += text;
-        return;
-    }
-    buffer_ += '"';
+    if (!next_cell()) return;
+    const std::string_view quote = text.find_first_of(",\"\r\n") == std::string_view::npos ? "" : "\"";
+    buffer_ += quote;
     for (const char c : text) buffer_.append(c == '"' ? 2 : 1, c);
-    buffer_ += '"';
+    buffer_ += quote;
+    buffer_ += ',';
 }
 
 void Csv::add(std::optional<double> value) {
     if (value)
         add(*value);
-    else
-        separate();
+    else if (next_cell())
+        buffer_ += ',';
 }
 
 void Csv::add_or_empty(double value) {
@@ -59,9 +57,9 @@ void Csv::end_row() {
     if (cell_ != columns_.size())
         throw std::logic_error(
             fmt::format("{}: a row of {} cells under {} columns", file_.path().string(), cell_, columns_.size()));
-    buffer_ += "\r\n";
+    buffer_.back() = '\r';  // in place of the last comma
+    buffer_ += '\n';
     cell_ = 0;
-    begins_row_ = true;
     ++row_;
     if (buffer_.size() >= std::size_t{1} << 16) {
         file_.write(buffer_);
@@ -74,12 +72,10 @@ void Csv::finish() {
     file_.close();
 }
 
-bool Csv::separate() {
+bool Csv::next_cell() {
     if (cell_ == columns_.size())
         throw std::logic_error(fmt::format("{}: more than {} cells in a row", file_.path().string(), columns_.size()));
-    if (!is_written_[cell_++]) return false;
-    if (!std::exchange(begins_row_, false)) buffer_ += ',';
-    return true;
+    return is_written_[cell_++];
 }
 
 }  // namespace doppel
