@@ -300,14 +300,6 @@ std::vector<ComparedPicture> draw(const CompareOptions& options, const PresetTex
     return pairs;
 }
 
-/// A requested report. Reserves its path before the work, so that an error is reported at once.
-/// `start`: the first bytes of such a report, which identify an older one.
-std::optional<SingleFile> place_of_report(const std::string& file, std::string_view start) {
-    if (file.empty()) return std::nullopt;
-    if (!fs::path(file).has_filename()) throw bad_input("{}: a report is a file, not a folder", file);
-    return std::optional<SingleFile>(std::in_place, file, start);
-}
-
 /// Throws Error (exit 2) if the arguments do not belong together.
 void check_arguments(const CompareOptions& options) {
     const char* const ci = std::getenv("CI");
@@ -336,8 +328,10 @@ bool compare(const CompareOptions& options) {
             if (!report.empty()) print_line("{}", report);
         return true;
     }
-    auto junit = place_of_report(options.junit, junit_start);
-    auto html = place_of_report(options.html, page_start("compare"));
+    // reserved before the work, so that an error is reported at once
+    std::optional<SingleFile> junit, html;
+    if (!options.junit.empty()) junit.emplace(options.junit, junit_start);
+    if (!options.html.empty()) html.emplace(options.html, page_start("compare"));
     Comparison comparison{options.expected, options.render + options.actual, {}};
     Task task{fs::path(options.out) / "compare", !options.render.empty(), options.update,
               options.render.empty() ? never_stopped : watch_interrupts()};

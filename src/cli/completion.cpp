@@ -122,27 +122,21 @@ void add_values(const CLI::Option& option, const std::string& command, const std
 Candidates candidates(CLI::App& app, const std::vector<std::string>& words) {
     Candidates all;
     const auto& word = words.back();
-    CLI::App* command = nullptr;
+    CLI::App* command = words.size() == 1 ? &app : nullptr;
     for (auto* each : app.get_subcommands({}))
         if (words.size() == 1)
             all.push_back({each->get_name(), each->get_description()});
         else if (each->get_name() == words[0])
             command = each;
-    if (words.size() == 1) command = &app;
     if (!command) return all;
-    const auto takes_value = [&](const std::string& name) -> const CLI::Option* {
-        const auto* option = name.starts_with('-') ? command->get_option_no_throw(name) : nullptr;
-        return option && option->get_items_expected_max() > 0 ? option : nullptr;
-    };
-    if (const auto* option = words.size() > 1 ? takes_value(words[words.size() - 2]) : nullptr) {
-        add_values(*option, words[0], words, word, "", all);
-        return all;
-    }
-    if (const auto equals = word.find('='); word.starts_with("--") && equals != std::string::npos) {
-        if (const auto* option = takes_value(word.substr(0, equals)))
-            add_values(*option, words[0], words, word, word.substr(0, equals + 1), all);
-        return all;
-    }
+    // the value of an option: a word after it, or --option=value
+    const auto equals = word.starts_with("--") ? word.find('=') : std::string::npos;
+    const bool has_value = equals != std::string::npos;
+    const auto name = has_value ? word.substr(0, equals) : words.size() > 1 ? words[words.size() - 2] : "";
+    const auto* taking = name.starts_with('-') ? command->get_option_no_throw(name) : nullptr;
+    const bool takes = taking && taking->get_items_expected_max() > 0;
+    if (takes) add_values(*taking, words[0], words, word, has_value ? word.substr(0, equals + 1) : "", all);
+    if (takes || has_value) return all;
     for (const auto* option : command->get_options()) {
         if (!option->get_positional()) {
             for (const auto& name : option->get_lnames()) all.push_back({"--" + name, option->get_description()});

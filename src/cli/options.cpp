@@ -53,8 +53,20 @@ Destination::Destination(const OutOptions& options, std::size_t runs, const std:
 
 namespace {
 
+/// Parses "A<separator>B" as two whole numbers; returns nothing otherwise.
+std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
+    long first = 0, second = 0;
+    const char* const end = text.data() + text.size();
+    const auto [middle, error] = std::from_chars(text.data(), end, first);
+    if (error != std::errc() || middle == end || *middle != separator) return std::nullopt;
+    const auto [stop, second_error] = std::from_chars(middle + 1, end, second);
+    if (second_error != std::errc() || stop != end) return std::nullopt;
+    return std::pair{first, second};
+}
+
 /// The folder of the file; if it is a link, the folder that it leads to.
 std::filesystem::path folder_of(const std::filesystem::path& file) {
+    if (!file.has_filename()) throw bad_input("{} names a folder; give the name of a file", file.string());
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     return type_of(folder) == std::filesystem::file_type::symlink ? std::filesystem::weakly_canonical(folder) : folder;
 }
@@ -81,16 +93,6 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
 
 CLI::Option* add_gl_option(CLI::App& command, Gl& gl) {
     return add_choice(command, "--gl", gl, "NAME", "OpenGL library; auto: OSMesa, or EGL if OSMesa is missing");
-}
-
-std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator) {
-    long first = 0, second = 0;
-    const char* const end = text.data() + text.size();
-    const auto [middle, error] = std::from_chars(text.data(), end, first);
-    if (error != std::errc() || middle == end || *middle != separator) return std::nullopt;
-    const auto [stop, second_error] = std::from_chars(middle + 1, end, second);
-    if (second_error != std::errc() || stop != end) return std::nullopt;
-    return std::pair{first, second};
 }
 
 std::optional<Shard> shard_of_option(const std::string& text, bool merges) {

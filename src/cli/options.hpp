@@ -68,9 +68,6 @@ void add_run_options(CLI::App& command, RunCommandOptions& options, const std::s
 /// --gl: a name of Gl.
 CLI::Option* add_gl_option(CLI::App& command, Gl& gl);
 
-/// Parses "A<separator>B" as two whole numbers; returns nothing otherwise.
-std::optional<std::pair<long, long>> two_numbers(const std::string& text, char separator);
-
 /// --shard I/N; nothing if the text is empty. Throws Error (exit 2).
 std::optional<Shard> shard_of_option(const std::string& text, bool merges);
 /// --frames A:B: the first frame, and the one after the last. Throws Error (exit 2).
@@ -113,8 +110,8 @@ struct Destination {
 
 /// A transaction of one file in any folder, whose manifests are not read.
 struct SingleFile {
-    /// Throws Error (exit 4) if the file cannot be written, or exists and is not Doppel's or does not begin with
-    /// `start`.
+    /// Throws Error: exit 2 if the path is that of a folder, exit 4 if the file cannot be written, or exists and is not
+    /// Doppel's or does not begin with `start`.
     SingleFile(const std::filesystem::path& path, std::string_view start);
 
     Transaction parts;
