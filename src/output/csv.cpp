@@ -22,31 +22,30 @@ Csv::Csv(const std::filesystem::path& place, std::vector<std::string> columns, c
 }
 
 void Csv::add(long value) {
-    if (next_cell()) fmt::format_to(std::back_inserter(buffer_), "{},", value);
+    if (separate()) fmt::format_to(std::back_inserter(buffer_), "{}", value);
 }
 
 void Csv::add(double value) {
-    const bool is_written = next_cell();
+    const bool is_written = separate();
     if (!std::isfinite(value))
         throw method_failed("{}: {} of row {} would be {}; a table contains only finite numbers", file_.path().string(),
                             columns_[cell_ - 1], row_, value);
-    if (is_written) fmt::format_to(std::back_inserter(buffer_), "{},", value);
+    if (is_written) fmt::format_to(std::back_inserter(buffer_), "{}", value);
 }
 
 void Csv::add(std::string_view text) {
-    if (!next_cell()) return;
+    if (!separate()) return;
     const std::string_view quote = text.find_first_of(",\"\r\n") == std::string_view::npos ? "" : "\"";
     buffer_ += quote;
     for (const char c : text) buffer_.append(c == '"' ? 2 : 1, c);
     buffer_ += quote;
-    buffer_ += ',';
 }
 
 void Csv::add(std::optional<double> value) {
     if (value)
         add(*value);
-    else if (next_cell())
-        buffer_ += ',';
+    else
+        separate();
 }
 
 void Csv::add_or_empty(double value) {
@@ -57,9 +56,9 @@ void Csv::end_row() {
     if (cell_ != columns_.size())
         throw std::logic_error(
             fmt::format("{}: a row of {} cells under {} columns", file_.path().string(), cell_, columns_.size()));
-    buffer_.back() = '\r';  // in place of the last comma
-    buffer_ += '\n';
+    buffer_ += "\r\n";
     cell_ = 0;
+    begins_row_ = true;
     ++row_;
     if (buffer_.size() >= std::size_t{1} << 16) {
         file_.write(buffer_);
@@ -72,10 +71,12 @@ void Csv::finish() {
     file_.close();
 }
 
-bool Csv::next_cell() {
+bool Csv::separate() {
     if (cell_ == columns_.size())
         throw std::logic_error(fmt::format("{}: more than {} cells in a row", file_.path().string(), columns_.size()));
-    return is_written_[cell_++];
+    if (!is_written_[cell_++]) return false;
+    if (!std::exchange(begins_row_, false)) buffer_ += ',';
+    return true;
 }
 
 }  // namespace doppel

@@ -33,12 +33,13 @@ public:
 
 private:
     /// Moves to the next cell; returns whether its column is written.
-    bool next_cell();
+    bool separate();
 
     OutputFile file_;
     std::string buffer_;
     std::vector<std::string> columns_;
     std::vector<bool> is_written_;  // for each column
+    bool begins_row_ = true;
     std::size_t cell_ = 0;
     long row_ = 0;
 };
