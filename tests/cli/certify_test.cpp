@@ -1,4 +1,4 @@
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -11,13 +11,10 @@ namespace doppel::certify_test {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using test::bytes_of;
-using test::doppel;
-using test::fresh_folder;
-using test::with;
-using Words = std::vector<std::string>;
+using namespace test;
+using Certify = ProgramTest;
 
-const Words brief{"--set", "scene.duration_s=0.5", "--progress", "none"};
+const Words brief = "--set scene.duration_s=0.5 --progress none";
 
 /// The rows of a table, without its header.
 std::vector<std::vector<double>> rows_of(const fs::path& file) {
@@ -34,10 +31,8 @@ std::vector<std::vector<double>> rows_of(const fs::path& file) {
     return rows;
 }
 
-TEST(Certify, WritesBoundsThatContainAnAccurateRun) {
-    const auto folder = fresh_folder();
-    const auto result = doppel(folder, with({"certify", "butterfly"}, brief));
-    ASSERT_EQ(result.code, 0) << result.err;
+TEST_F(Certify, WritesBoundsThatContainAnAccurateRun) {
+    const auto result = done(with("certify butterfly", brief));
     EXPECT_EQ(result.out.substr(0, result.out.find(' ')), "out/butterfly/butterfly.certified.csv");
     const auto table = bytes_of(folder / "out/butterfly/butterfly.certified.csv");
     EXPECT_TRUE(table.starts_with(
@@ -46,12 +41,11 @@ TEST(Certify, WritesBoundsThatContainAnAccurateRun) {
         "theta2_rad_low,b_theta2_rad_high,b_omega1_rad_per_s_low,b_omega1_rad_per_s_high,b_omega2_rad_per_s_low,b_"
         "omega2_rad_per_s_high,distance_low,distance_high\r\n"));
     // the same pair in quad: angles, rates and distance
-    ASSERT_EQ(doppel(folder, with({"simulate", "butterfly", "--set", "system.integrator=\"taylor\"", "--set",
-                                   "system.tolerance=1e-28", "--set", "system.precision=\"quad\"", "--columns",
-                                   "time_s,a_theta1_rad,a_theta2_rad,a_omega1_rad_per_s,a_omega2_rad_per_s,distance"},
-                                  brief))
-                  .code,
-              0);
+    done(
+        with("simulate butterfly --set system.integrator=\"taylor\" --set system.tolerance=1e-28 --set "
+             "system.precision=\"quad\" --columns "
+             "time_s,a_theta1_rad,a_theta2_rad,a_omega1_rad_per_s,a_omega2_rad_per_s,distance",
+             brief));
     const auto bounds = rows_of(folder / "out/butterfly/butterfly.certified.csv");
     const auto known = rows_of(folder / "out/butterfly/butterfly.csv");
     ASSERT_EQ(bounds.size(), 61u);
@@ -81,79 +75,64 @@ TEST(Certify, WritesBoundsThatContainAnAccurateRun) {
     EXPECT_TRUE(manifest["files"].contains("butterfly.certified.csv"));
 }
 
-TEST(Certify, SaysWhenTheRunIsProvedToHaveLeftTheTrueMotion) {
-    const auto folder = fresh_folder();
-    const auto result = doppel(
-        folder, {"certify", "butterfly", "--set", "scene.duration_s=3", "--radius", "1e-3", "--progress", "plain"});
-    ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.err.find("butterfly: the true motion is proved until 3 s in double: angles within "),
-              std::string::npos)
-        << result.err;
+TEST_F(Certify, SaysWhenTheRunIsProvedToHaveLeftTheTrueMotion) {
+    const auto result = done("certify butterfly --set scene.duration_s=3 --radius 1e-3 --progress plain");
+    EXPECT_TRUE(has(result.err, "butterfly: the true motion is proved until 3 s in double: angles within "));
     const auto proof = json::parse(bytes_of(folder / "out/butterfly/butterfly.certified.json"))["certificate"];
     const double until = proof["a"]["run_proved_until_s"], beyond = proof["a"]["run_proved_beyond_s"];
     EXPECT_GT(until, 0.5);
     EXPECT_NEAR(beyond - until, 1.0 / 120, 1e-12);  // the bounds are so narrow that the next sample is beyond
 }
 
-TEST(Certify, HasTheSameBytesForAnyNumberOfThreadsAndOnStandardOutput) {
-    const auto folder = fresh_folder();
-    for (const char* jobs : {"1", "2"})
-        ASSERT_EQ(doppel(folder, with({"certify", "calm", "--jobs", jobs, "-o", jobs}, brief)).code, 0);
+TEST_F(Certify, HasTheSameBytesForAnyNumberOfThreadsAndOnStandardOutput) {
+    for (const char* jobs : {"1", "2"}) done(with({"certify", "calm", "--jobs", jobs, "-o", jobs}, brief));
     const auto table = bytes_of(folder / "1/calm/calm.certified.csv");
     EXPECT_EQ(table, bytes_of(folder / "2/calm/calm.certified.csv"));
-    EXPECT_EQ(doppel(folder, with({"certify", "calm", "-o", "-"}, brief)).out, table);
-    EXPECT_EQ(doppel(folder, {"certify", "calm", "--list-outputs"}).out,
-              "out/calm/calm.certified.csv\nout/calm/calm.certified.json\n");
+    EXPECT_EQ(doppel(with("certify calm -o -", brief)).out, table);
+    EXPECT_EQ(doppel("certify calm --list-outputs").out, "out/calm/calm.certified.csv\nout/calm/calm.certified.json\n");
     // beside a film's own files
-    EXPECT_EQ(doppel(folder, with({"simulate", "calm", "-o", "1"}, brief)).code, 0);
-    EXPECT_EQ(doppel(folder, with({"certify", "calm", "-o", "1"}, brief)).code, 0);
+    done(with("simulate calm -o 1", brief));
+    done(with("certify calm -o 1", brief));
 }
 
-TEST(Certify, RefusesWhatItCannotProve) {
-    const auto folder = fresh_folder();
+TEST_F(Certify, RefusesWhatItCannotProve) {
     for (const auto& [name, found] : {std::pair("triple", "links = 3"),
                                       {"rods", "rod_mass_kg = ["},
                                       {"kapitza", "links = 1"},
                                       {"damped", "joint_"},
                                       {"springs", "a particle \""},
                                       {"measured", "track.file = \""}}) {
-        const auto result = doppel(folder, with({"certify", name}, {"--progress", "none"}));
-        EXPECT_EQ(result.code, 2) << name;
-        EXPECT_NE(result.err.find(": a proof needs two ideal links: "), std::string::npos) << result.err;
-        EXPECT_NE(result.err.find(std::string("; the side has ") + found), std::string::npos) << result.err;
+        const auto result =
+            expect_refused(with({"certify", name}, "--progress none"), 2, ": a proof needs two ideal links: ");
+        EXPECT_TRUE(has(result.err, std::string("; the side has ") + found));
         EXPECT_FALSE(fs::exists(folder / "out" / name)) << name;
     }
 }
 
-TEST(Certify, EndsTheRowsWhereTheProofEnds) {
+TEST_F(Certify, EndsTheRowsWhereTheProofEnds) {
     // so fast that no step is short enough
-    const auto folder = fresh_folder();
-    const auto result =
-        doppel(folder, with({"certify", "butterfly", "--set", "system.omega_deg_per_s=[1e10, 0]"}, brief));
-    EXPECT_EQ(result.code, 3);
-    EXPECT_TRUE(result.err.starts_with("butterfly: the true motion is proved until 0 s in 256 bits")) << result.err;
+    fresh_folder();  // empties it
+    const auto result = ends(with("certify butterfly --set 'system.omega_deg_per_s=[1e10, 0]'", brief), 3);
+    EXPECT_TRUE(begins(result.err, "butterfly: the true motion is proved until 0 s in 256 bits"));
     EXPECT_TRUE(result.err.ends_with("doppel: butterfly: nothing is proved after 0 s of 0.5 s; the rows end there\n"));
     EXPECT_EQ(rows_of(folder / "out/butterfly/butterfly.certified.csv").size(), 1u);
     const auto manifest = json::parse(bytes_of(folder / "out/butterfly/butterfly.certified.json"));
     EXPECT_EQ(manifest["certificate"]["to_the_end"], false);
 }
 
-TEST(Certify, TheKeyOfAPresetAddsTheProof) {
-    const auto folder = fresh_folder();
-    const Words key{"--set", "scene.certify=true"};
-    ASSERT_EQ(doppel(folder, with(with({"simulate", "calm"}, key), brief)).code, 0);
+TEST_F(Certify, TheKeyOfAPresetAddsTheProof) {
+    const Words key = "--set scene.certify=true";
+    done(with(with("simulate calm", key), brief));
     const auto manifest = json::parse(bytes_of(folder / "out/calm/calm.json"));
     EXPECT_EQ(manifest["certificate"]["a"]["run_proved_until_s"], 0.5);
     EXPECT_EQ(manifest["resolved_preset"]["scene"]["certify"], true);
-    const auto check = doppel(folder, with(with({"check", "calm"}, key), {"--set", "scene.duration_s=0.5"}));
-    EXPECT_NE(check.out.find("  proof  side a: its run is proved within 0.5 rad of the true motion until 0.5 s\n"),
-              std::string::npos)
-        << check.out;
-    EXPECT_EQ(doppel(folder, with(with({"simulate", "triple"}, key), brief)).code, 2);
+    const auto check = doppel(with(with("check calm", key), "--set scene.duration_s=0.5"));
+    EXPECT_TRUE(has(check.out, "  proof  side a: its run is proved within 0.5 rad of the true motion until 0.5 s\n"));
+    EXPECT_EQ(doppel(with(with("simulate triple", key), brief)).code, 2);
     // a band in the strip, and its text
-    const Words picture{"still", "calm", "--at", "0.5", "--size", "320x180"};
-    ASSERT_EQ(doppel(folder, with(with(picture, {"-o", "plain"}), brief)).code, 0);
-    ASSERT_EQ(doppel(folder, with(with(with(picture, {"-o", "proved"}), key), brief)).code, 0);
+    const Words picture = "still calm --at 0.5 --size 320x180";
+    done(with(with(picture, "-o plain"), brief));
+    done(with(with(with(picture, "-o proved"), key), brief));
     EXPECT_NE(bytes_of(folder / "plain/calm/calm.0.5s.png"), bytes_of(folder / "proved/calm/calm.0.5s.png"));
 }
 

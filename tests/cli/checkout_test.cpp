@@ -1,5 +1,5 @@
 // The script "doppel" of a checkout that cannot build.
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 
 namespace doppel::checkout_test {
 
@@ -19,7 +19,7 @@ fs::path checkout() {
 void expect_refused(const Outcome& result, const std::string& reason) {
     EXPECT_EQ(result.code, 4) << result.err;  // 1 means that pictures differ
     EXPECT_TRUE(one_line(result.err)) << result.err;
-    EXPECT_NE(result.err.find("/build/release cannot be written: " + reason + "; "), std::string::npos) << result.err;
+    EXPECT_TRUE(has(result.err, "/build/release cannot be written: " + reason + "; "));
 }
 
 TEST(Checkout, ThatCannotBeWrittenIsReportedInOneLine) {

@@ -1,6 +1,5 @@
-#include "cli/process.hpp"
+#include "cli/pictures.hpp"
 #include "cli/xml.hpp"
-#include "output/png.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +8,7 @@
 namespace doppel::cmake_package_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::shell;
+using namespace test;
 
 constexpr const char* project = R"(cmake_minimum_required(VERSION 3.21)
 project(sample NONE)
@@ -25,7 +23,7 @@ doppel_add_golden_test(NAME chart PRESET fig6 FIGURE SIZE 160x90 GOLDEN charts S
 class CmakePackage : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = test::fresh_folder();
+        folder_ = fresh_folder();
         const auto build = fs::path(DOPPEL_TEST_OUTPUT).parent_path();
         const auto installed = run(fmt::format("cmake --install '{}' --prefix \"$PWD/first\"", build.string()));
         ASSERT_EQ(installed.code, 0) << installed.out << installed.err;
@@ -36,8 +34,8 @@ protected:
         ASSERT_EQ(configured.code, 0) << configured.out << configured.err;
     }
 
-    test::Outcome run(const std::string& script) const { return shell(folder_, "unset CI; " + script); }
-    test::Outcome run_tests() const { return run("ctest --test-dir build --output-on-failure"); }
+    Outcome run(const std::string& script) const { return shell(folder_, "unset CI; " + script); }
+    Outcome run_tests() const { return run("ctest --test-dir build --output-on-failure"); }
 
     fs::path folder_;
 };
@@ -45,11 +43,11 @@ protected:
 TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
     const auto without = run_tests();
     EXPECT_NE(without.code, 0);
-    EXPECT_NE(without.out.find("golden is missing"), std::string::npos) << without.out;
+    EXPECT_TRUE(has(without.out, "golden is missing"));
 
     const auto refused = run("CI=true cmake --build build --target doppel-update-goldens");
     EXPECT_NE(refused.code, 0);
-    EXPECT_NE(refused.out.find("not by CI"), std::string::npos) << refused.out;
+    EXPECT_TRUE(has(refused.out, "not by CI"));
     EXPECT_FALSE(fs::exists(folder_ / "golden"));
 
     const auto updated = run("cmake --build build --target doppel-update-goldens");
@@ -58,17 +56,15 @@ TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
     const auto passed = run("cp -r golden kept; CI=true ctest --test-dir build --output-on-failure");
     EXPECT_EQ(passed.code, 0) << passed.out;
 
-    auto picture = read_png(folder_ / "golden/000001.png");
-    for (int x = 0; x < 40; ++x) picture.at(10 + x, 20)[0] ^= 64;
-    write_png(folder_ / "golden/000001.png", picture);
+    spoil(folder_ / "golden/000001.png");
     const auto failed = run_tests();
     EXPECT_NE(failed.code, 0);
-    EXPECT_NE(failed.out.find("1 tests failed out of 2"), std::string::npos) << failed.out;
-    EXPECT_NE(failed.out.find("40 pixels differ by more than 3/255"), std::string::npos) << failed.out;
+    EXPECT_TRUE(has(failed.out, "1 tests failed out of 2"));
+    EXPECT_TRUE(has(failed.out, "40 pixels differ by more than 3/255"));
     EXPECT_TRUE(fs::exists(folder_ / "build/doppel/swing/mine/compare/000001.diff.png"));
-    const auto junit = test::XmlReader(bytes_of(folder_ / "build/doppel/swing/compare.xml")).document();
+    const auto junit = document_of(bytes_of(folder_ / "build/doppel/swing/compare.xml"));
     EXPECT_EQ(junit["tests"] + junit["failures"], "21");
-    const auto page = test::XmlReader(bytes_of(folder_ / "build/doppel/swing/compare.html")).document();
+    const auto page = document_of(bytes_of(folder_ / "build/doppel/swing/compare.html"));
     EXPECT_EQ(page.all("img").size(), 3u);
 
     EXPECT_EQ(run("cmake --build build --target doppel-update-goldens-swing").code, 0);
@@ -76,7 +72,7 @@ TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
 }
 
 TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
-    const auto folder = test::fresh_folder();
+    const auto folder = fresh_folder();
     // a build folder without manual pages, and one without the program
     const auto build = fs::path(DOPPEL_TEST_OUTPUT).parent_path().string();
     const auto made =
@@ -87,7 +83,7 @@ TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
     ASSERT_EQ(made.code, 0) << made.err;
     const auto half = shell(folder, "cmake --install half --prefix \"$PWD/first\" && first/bin/doppel list");
     EXPECT_EQ(half.code, 0) << half.out << half.err;
-    EXPECT_NE(half.out.find("the manual pages and completions are not built"), std::string::npos) << half.out;
+    EXPECT_TRUE(has(half.out, "the manual pages and completions are not built"));
     EXPECT_TRUE(fs::exists(folder / "first/share/doppel/presets/calm.toml"));
     EXPECT_FALSE(fs::exists(folder / "first/share/man"));
     // its pages link to files that are there, but for pictures, and folders of the source
@@ -98,7 +94,7 @@ TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
     fs::remove(folder / "half/doppel");
     const auto none = shell(folder, "cmake --install half --prefix \"$PWD/second\"");
     EXPECT_NE(none.code, 0);
-    EXPECT_NE(none.err.find("doppel: the program is not built"), std::string::npos) << none.err;
+    EXPECT_TRUE(has(none.err, "doppel: the program is not built"));
     EXPECT_FALSE(fs::exists(folder / "second"));
 }
 
@@ -116,7 +112,7 @@ TEST_F(CmakePackage, RefusesWhatMakesNoSense) {
                                                   << arguments << ")\n";
         const auto configured = run("cmake -S . -B build");
         EXPECT_NE(configured.code, 0);
-        EXPECT_NE(configured.err.find(words), std::string::npos) << configured.err;
+        EXPECT_TRUE(has(configured.err, words));
     }
 }
 

@@ -13,10 +13,8 @@ extern "C" {
 namespace doppel::compare_page_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::doppel;
-using test::Element;
-using test::fresh_folder;
+using namespace test;
+using ComparePage = ProgramTest;
 
 /// The decoded pictures of one kind on a page, in order.
 std::vector<Picture> pictures_of(const Element& page, const std::string& kind, const fs::path& scratch) {
@@ -31,7 +29,7 @@ std::vector<Picture> pictures_of(const Element& page, const std::string& kind, c
                                             static_cast<int>(png.size()));
         EXPECT_GT(length, 0);
         png.resize(static_cast<std::size_t>(std::max(length, 0)));
-        test::write_bytes(scratch, png);
+        write_bytes(scratch, png);
         pictures.push_back(read_png(scratch));
         EXPECT_EQ((*image)["width"], std::to_string(pictures.back().size.width));
         EXPECT_EQ((*image)["height"], std::to_string(pictures.back().size.height));
@@ -39,35 +37,34 @@ std::vector<Picture> pictures_of(const Element& page, const std::string& kind, c
     return pictures;
 }
 
-TEST(ComparePage, ContainsThePixelsAndNeedsNoOtherFile) {
-    const auto folder = fresh_folder();
+TEST_F(ComparePage, ContainsThePixelsAndNeedsNoOtherFile) {
     for (const char* side : {"one", "two"}) fs::create_directories(folder / side);
     const Size size{300, 200};  // 180 kB of noise: several blocks of base64
     for (const std::string name : {"<b>&\"'.png", "2.png", "same.png", "gone.png", "broken.png", "tall.png"}) {
-        write_png(folder / "one" / name, test::noise(size, 1), {.with_alpha = true});
-        write_png(folder / "two" / name, test::noise(size, name == "same.png" ? 1 : 2), {.with_alpha = true});
+        write_png(folder / "one" / name, noise(size, 1), {.with_alpha = true});
+        write_png(folder / "two" / name, noise(size, name == "same.png" ? 1 : 2), {.with_alpha = true});
     }
-    Picture clear = test::noise(size, 1);  // two differences: red of the first row, opacity of the second
+    Picture clear = noise(size, 1);  // two differences: red of the first row, opacity of the second
     for (int x = 0; x < size.width; ++x) clear.at(x, 0)[0] ^= 5, clear.at(x, 1)[3] ^= 6;
     write_png(folder / "two/2.png", clear, {.with_alpha = true});
-    write_png(folder / "two/tall.png", test::noise({10, 20}, 2));
+    write_png(folder / "two/tall.png", noise({10, 20}, 2));
     fs::remove(folder / "two/gone.png");
     std::ofstream(folder / "two/broken.png") << "no picture";
-    EXPECT_EQ(doppel(folder, {"compare", "one", "two", "--html", "page.html", "--junit", "report.xml"}).code, 4);
+    EXPECT_EQ(doppel("compare one two --html page.html --junit report.xml").code, 4);
 
     const auto text = bytes_of(folder / "page.html");
-    const auto page = test::XmlReader(text).document();
+    const auto page = document_of(text);
     EXPECT_EQ(page.all("h1")[0]->text, "4 of 6 pictures differ, 1 could not be compared");
     EXPECT_EQ(page.all("title")[0]->text, page.all("h1")[0]->text);
     EXPECT_EQ(page.all("section").size(), 4u);  // those that differ, and the list of those that cannot be compared
     EXPECT_EQ(page.all("h2")[1]->text, "2.png");
     EXPECT_EQ(page.all("h2")[2]->text, "<b>&\"'.png");
     EXPECT_EQ(page.all("input").size(), 2u);
-    EXPECT_NE(text.find("two/gone.png: missing"), std::string::npos);
-    EXPECT_NE(text.find("two/broken.png: cannot be decoded"), std::string::npos);
-    EXPECT_NE(text.find("10×20 px, expected 300×200"), std::string::npos);
+    EXPECT_TRUE(has(text, "two/gone.png: missing"));
+    EXPECT_TRUE(has(text, "two/broken.png: cannot be decoded"));
+    EXPECT_TRUE(has(text, "10×20 px, expected 300×200"));
     for (const char* outside : {"http:", "https:", "src=\"/", "url(", "@import", "<script src"})
-        EXPECT_EQ(text.find(outside), std::string::npos) << outside;
+        EXPECT_FALSE(has(text, outside)) << outside;
 
     const auto expected = pictures_of(page, "expected", folder / "scratch.png");
     const auto actual = pictures_of(page, "actual", folder / "scratch.png");
@@ -88,17 +85,16 @@ TEST(ComparePage, ContainsThePixelsAndNeedsNoOtherFile) {
     }
 }
 
-TEST(ComparePage, SaysThatAllPass) {
-    const auto folder = fresh_folder();
-    write_png(folder / "one.png", test::noise({8, 8}, 1));
-    EXPECT_EQ(doppel(folder, {"compare", "one.png", "one.png", "--html", "page.html"}).code, 0);
-    const auto page = test::XmlReader(bytes_of(folder / "page.html")).document();
+TEST_F(ComparePage, SaysThatAllPass) {
+    write_png(folder / "one.png", noise({8, 8}, 1));
+    done("compare one.png one.png --html page.html");
+    const auto page = document_of(bytes_of(folder / "page.html"));
     EXPECT_EQ(page.all("h1")[0]->text, "The picture passes");
     EXPECT_TRUE(page.all("img").empty() && page.all("section").empty());
     EXPECT_EQ(page.all("details")[0]->all("li").size(), 1u);
 }
 
-TEST(ComparePage, StyleAndScriptAreSmall) {
+TEST_F(ComparePage, StyleAndScriptAreSmall) {
     std::uintmax_t bytes = 0;
     for (const char* file : {"output/page.css", "cli/compare.css", "cli/compare.js"})
         bytes += fs::file_size(fs::path(DOPPEL_SOURCE_DIR) / "src" / file);

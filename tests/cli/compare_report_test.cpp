@@ -1,6 +1,5 @@
-#include "cli/process.hpp"
+#include "cli/pictures.hpp"
 #include "cli/xml.hpp"
-#include "output/png.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -8,22 +7,9 @@
 namespace doppel::compare_report_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::doppel;
-using test::Element;
-using test::fresh_folder;
-
-Picture plain(int red, Size size = {16, 8}) {
-    Picture picture(size);
-    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
-        picture.rgba[i] = static_cast<std::uint8_t>(red), picture.rgba[i + 3] = 255;
-    return picture;
-}
-
-void make(const fs::path& path, const Picture& picture) {
-    fs::create_directories(path.parent_path());
-    write_png(path, picture);
-}
+using namespace test;
+using CompareJunit = ProgramTest;
+using CompareReports = ProgramTest;
 
 /// Names that are special in markup, terminals and XML; the last is U+FFFE, U+FFFF and a byte that is not UTF-8.
 const std::string sharp = "<a> & \"b' --> .png", steered = "line\nnext\x1b[1m\x01.png",
@@ -46,12 +32,10 @@ const Element* case_of(const Element& root, const std::string& name) {
     return found == cases.end() ? nullptr : *found;
 }
 
-TEST(CompareJunit, ReportsEveryPictureOnce) {
-    const auto folder = fresh_folder();
+TEST_F(CompareJunit, ReportsEveryPictureOnce) {
     make_folders(folder);
-    const auto result = doppel(folder, {"compare", "one", "two", "--junit", "new/folder/report.xml"});
-    EXPECT_EQ(result.code, 4) << result.err;
-    const auto root = test::XmlReader(bytes_of(folder / "new/folder/report.xml")).document();
+    const auto result = ends("compare one two --junit new/folder/report.xml", 4);
+    const auto root = document_of(bytes_of(folder / "new/folder/report.xml"));
     EXPECT_EQ(std::distance(fs::directory_iterator(folder / "new/folder"), {}), 1);
     ASSERT_EQ(root.all("testsuite").size(), 1u);
     for (const auto* counted : {&root, root.all("testsuite")[0]}) {
@@ -71,49 +55,46 @@ TEST(CompareJunit, ReportsEveryPictureOnce) {
     const auto* differs = case_of(root, sharp);
     ASSERT_TRUE(differs && differs->children.size() == 1);
     EXPECT_EQ(differs->children[0].name, "failure");
-    EXPECT_NE(differs->children[0].text.find("128 pixels differ by more than 3/255"), std::string::npos);
-    EXPECT_NE(differs->children[0].text.find("differing pixels 128, by more than 3/255 128, largest difference 80/255"),
-              std::string::npos)
-        << differs->children[0].text;
-    EXPECT_NE(differs->children[0]["message"].find("two/" + sharp + ": differs"), std::string::npos);
+    EXPECT_TRUE(has(differs->children[0].text, "128 pixels differ by more than 3/255"));
+    EXPECT_TRUE(
+        has(differs->children[0].text, "differing pixels 128, by more than 3/255 128, largest difference 80/255"));
+    EXPECT_TRUE(has(differs->children[0]["message"], "two/" + sharp + ": differs"));
     const auto* resized = case_of(root, "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xc3\xa4.png");
     ASSERT_TRUE(resized && resized->children.size() == 1);
-    EXPECT_NE(resized->children[0]["message"].find("8×8 px, expected 16×8"), std::string::npos);
+    EXPECT_TRUE(has(resized->children[0]["message"], "8×8 px, expected 16×8"));
     EXPECT_EQ(case_of(root, "4.png")->children.at(0)["message"], "two/4.png: missing");
     EXPECT_EQ(case_of(root, "7.png")->children.at(0)["message"], "one/7.png: missing");
     EXPECT_EQ(case_of(root, "5.png")->children.at(0).name, "error");
 }
 
-TEST(CompareJunit, OfTwoPicturesAndOfNoDifference) {
-    const auto folder = fresh_folder();
+TEST_F(CompareJunit, OfTwoPicturesAndOfNoDifference) {
     make(folder / "one.png", plain(10));
     make(folder / "two.png", plain(90));
     std::ofstream(folder / "three.png") << "no picture";
     const auto report = [&](const char* actual, int code) {
-        EXPECT_EQ(doppel(folder, {"compare", "one.png", actual, "--junit", "r.xml"}).code, code);
-        return test::XmlReader(bytes_of(folder / "r.xml")).document();
+        EXPECT_EQ(doppel({"compare", "one.png", actual, "--junit", "r.xml"}).code, code);
+        return document_of(bytes_of(folder / "r.xml"));
     };
     EXPECT_EQ(report("one.png", 0)["failures"], "0");
     EXPECT_EQ(report("two.png", 1)["failures"], "1");
     EXPECT_EQ(report("three.png", 4)["errors"], "1");
 }
 
-TEST(CompareReports, ReplaceOnlyTheirOwn) {
-    const auto folder = fresh_folder();
+TEST_F(CompareReports, ReplaceOnlyTheirOwn) {
     make(folder / "one.png", plain(10));
     for (const std::string option : {"--junit", "--html"}) {
         fs::remove(folder / "mine");
         const auto run = [&](const std::string& file) {
-            return doppel(folder, {"compare", "one.png", "one.png", option, file});
+            return doppel({"compare", "one.png", "one.png", option, file});
         };
         for (int again = 0; again < 2; ++again) EXPECT_EQ(run("mine").code, 0);
         const std::string yours = option == "--html"
                                       ? "<!DOCTYPE html>\n<html lang=\"en\"></html>"
                                       : "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"mine\"/>";
-        test::write_bytes(folder / "yours", yours);
+        write_bytes(folder / "yours", yours);
         const auto refused = run("yours");
         EXPECT_EQ(refused.code, 4);
-        EXPECT_NE(refused.err.find("yours was not written by Doppel"), std::string::npos) << refused.err;
+        EXPECT_TRUE(has(refused.err, "yours was not written by Doppel"));
         EXPECT_EQ(bytes_of(folder / "yours"), yours);
         fs::remove(folder / "link");
         fs::create_symlink("mine", folder / "link");
@@ -121,47 +102,41 @@ TEST(CompareReports, ReplaceOnlyTheirOwn) {
         EXPECT_EQ(run("folder/").code, 2);
         EXPECT_EQ(run("/proc/no/report").code, 4);
     }
-    EXPECT_EQ(doppel(folder, {"compare", "one.png", "one.png", "--html", "a/../b", "--junit", "./b"}).code, 2);
+    EXPECT_EQ(doppel("compare one.png one.png --html a/../b --junit ./b").code, 2);
 }
 
-TEST(CompareReports, ReplaceNoInputAndNoOtherFileOfDoppels) {
-    const auto folder = fresh_folder();
+TEST_F(CompareReports, ReplaceNoInputAndNoOtherFileOfDoppels) {
     make(folder / "one/1.png", plain(10));
     fs::copy(folder / "one", folder / "two");
-    ASSERT_EQ(doppel(folder, {"simulate", "calm", "--set", "scene.duration_s=0.1"}).code, 0);
-    ASSERT_EQ(doppel(folder, {"compare", "one", "two", "--junit", "r.xml"}).code, 0);
+    done("simulate calm --set scene.duration_s=0.1");
+    done("compare one two --junit r.xml");
     for (const std::string option : {"--junit", "--html"})
         for (const std::string file : {"one/1.png", "two/1.png", "out/calm/calm.csv", "out/calm/calm.json", "r.xml"}) {
             if (option == "--junit" && file == "r.xml") continue;
             const auto before = bytes_of(folder / file);
-            const auto refused = doppel(folder, {"compare", "one", "two", option, file});
-            EXPECT_EQ(refused.code, 4) << option << file;
+            const auto refused = ends({"compare", "one", "two", option, file}, 4);
             EXPECT_EQ(refused.out, "") << option << file;
-            EXPECT_NE(refused.err.find(file), std::string::npos) << refused.err;
+            EXPECT_TRUE(has(refused.err, file));
             EXPECT_EQ(bytes_of(folder / file), before) << option << file;
         }
 }
 
-TEST(CompareReports, DoNotReadTheManifestsOfTheirFolder) {
-    const auto folder = fresh_folder();
+TEST_F(CompareReports, DoNotReadTheManifestsOfTheirFolder) {
     make(folder / "one.png", plain(10));
     // a file system that records access times shows whether the file was read
-    ASSERT_EQ(test::shell(folder, "echo '{}' >other.json; touch -a -d 2001-01-01 other.json").code, 0);
-    const auto result = test::shell(folder,
-                                    "\"$DOPPEL\" compare one.png one.png --junit r.xml --html r.html && "
-                                    "\"$DOPPEL\" init mine.toml && stat -c %x other.json");
-    EXPECT_NE(result.out.find("\n2001-01-01"), std::string::npos) << result.out << result.err;
-    const auto refused = doppel(folder, {"compare", "one.png", "one.png", "--junit", "other.json"});
+    ASSERT_EQ(shell("echo '{}' >other.json; touch -a -d 2001-01-01 other.json").code, 0);
+    const auto result = shell(
+        "\"$DOPPEL\" compare one.png one.png --junit r.xml --html r.html && "
+        "\"$DOPPEL\" init mine.toml && stat -c %x other.json");
+    EXPECT_TRUE(has(result.out, "\n2001-01-01")) << result.err;
+    const auto refused = doppel("compare one.png one.png --junit other.json");
     EXPECT_EQ(refused.err, "doppel: other.json was not written by Doppel for this; give another file name\n");
 }
 
-TEST(CompareReports, AreNotForStandardOutput) {
-    const auto folder = fresh_folder();
+TEST_F(CompareReports, AreNotForStandardOutput) {
     make(folder / "one.png", plain(10));
     for (const auto* option : {"--junit", "--html", "--out"}) {
-        const auto refused = doppel(folder, {"compare", "one.png", "one.png", option, "-"});
-        EXPECT_EQ(refused.code, 2) << option;
-        EXPECT_NE(refused.err.find("cannot be standard output here"), std::string::npos) << refused.err;
+        expect_refused({"compare", "one.png", "one.png", option, "-"}, 2, "cannot be standard output here");
         EXPECT_FALSE(fs::exists(folder / "-")) << option;
     }
 }

@@ -1,5 +1,5 @@
 // Completion in a real bash. zsh and fish: tests/check-completion.
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 #include "integrate/methods.hpp"
 
 #include <poll.h>
@@ -7,7 +7,6 @@
 #include <sys/resource.h>
 
 #include <optional>
-#include <sstream>
 #include <system_error>
 
 namespace doppel::completion_test {
@@ -15,13 +14,6 @@ namespace doppel::completion_test {
 namespace fs = std::filesystem;
 using namespace test;
 using Lines = std::vector<std::string>;
-
-Lines lines_of(const std::string& text) {
-    std::istringstream in(text);
-    Lines lines;
-    for (std::string line; std::getline(in, line);) lines.push_back(line);
-    return lines;
-}
 
 /// A folder with "doppel", which completes; for other commands it writes the arguments to the file "args".
 fs::path folder_with_doppel() {
@@ -46,16 +38,16 @@ Lines completed(const fs::path& folder, const std::string& words) {
     return lines_of(bytes_of(folder / "stdout"));
 }
 
-bool has(const Lines& lines, const std::string& line) {
-    return std::find(lines.begin(), lines.end(), line) != lines.end();
+/// Whether every one of these is a line.
+bool offers(const Lines& lines, const Words& all) {
+    return std::ranges::all_of(all, [&](const auto& line) { return std::ranges::count(lines, line) > 0; });
 }
 
 TEST(Completion, KnowsCommandsOptionsAndTheirChoices) {
     const auto folder = folder_with_doppel();
     const auto commands = completed(folder, "");
-    for (const char* command : {"render", "figure", "check", "init", "schema", "completion"})
-        EXPECT_TRUE(has(commands, command)) << command;
-    EXPECT_FALSE(has(commands, "complete"));
+    EXPECT_TRUE(offers(commands, {"render", "figure", "check", "init", "schema", "completion"}));
+    EXPECT_FALSE(offers(commands, "complete"));
     EXPECT_EQ(completed(folder, "sim"), Lines{"simulate"});
     EXPECT_EQ(completed(folder, "render --form"), Lines{"--format"});
     EXPECT_EQ(completed(folder, "render --format "),
@@ -75,14 +67,14 @@ TEST(Completion, KnowsPresetsHereAndBuiltInAndFiles) {
          {"presets/mine.toml", "presets/figures/my-chart.toml", "films/a b.toml", "films/x.txt", "own.toml"})
         write_bytes(folder / file, "");
     const auto films = completed(folder, "render ");
-    for (const char* name : {"butterfly", "mine", "films/", "own.toml"}) EXPECT_TRUE(has(films, name)) << name;
-    for (const char* name : {"fig6", "my-chart", "stdout", "all"}) EXPECT_FALSE(has(films, name)) << name;
+    EXPECT_TRUE(offers(films, {"butterfly", "mine", "films/", "own.toml"}));
+    for (const char* name : {"fig6", "my-chart", "stdout", "all"}) EXPECT_FALSE(offers(films, name)) << name;
     const auto figures = completed(folder, "figure ");
-    for (const char* name : {"fig6", "my-chart", "all"}) EXPECT_TRUE(has(figures, name)) << name;
-    EXPECT_FALSE(has(figures, "butterfly"));
+    EXPECT_TRUE(offers(figures, {"fig6", "my-chart", "all"}));
+    EXPECT_FALSE(offers(figures, "butterfly"));
     EXPECT_EQ(completed(folder, "check films/"), (Lines{"films/a\\ b.toml", "films/old/"}));
     EXPECT_EQ(completed(folder, "render calm -o fi"), Lines{"films/"});
-    EXPECT_TRUE(has(completed(folder, "compare "), "stdout"));
+    EXPECT_TRUE(offers(completed(folder, "compare "), "stdout"));
 }
 
 TEST(Completion, KnowsKeysAndTheirValues) {
@@ -109,15 +101,12 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
     EXPECT_EQ(completed(folder, "check flip-map --set grid.x.poi"), Lines{"grid.x.points="});
     EXPECT_EQ(completed(folder, "init --figure gr"), Lines{"grid"});
-    EXPECT_TRUE(has(completed(folder, "figure --set "), "poincare.orbits=") ||
-                has(completed(folder, "figure --set "), "section.orbits="));
+    EXPECT_TRUE(offers(completed(folder, "figure --set "), "poincare.orbits=") ||
+                offers(completed(folder, "figure --set "), "section.orbits="));
 }
 
 TEST(Completion, RefusesAnUnknownShell) {
-    const auto result = doppel(fresh_folder(), {"completion", "tcsh"});
-    EXPECT_EQ(result.code, 2);
-    EXPECT_TRUE(one_line(result.err)) << result.err;
-    EXPECT_NE(result.err.find("tcsh"), std::string::npos);
+    expect_refused(fresh_folder(), "completion tcsh", 2, "tcsh");
 }
 
 /// CPU time of the finished child processes, s.
@@ -141,7 +130,7 @@ TEST(Completion, IsFast) {
     double best = 10;
     for (int i = 0; i < 5; ++i) {
         const double before = spent_by_children();
-        EXPECT_EQ(doppel(folder, {"complete", "figure", "fig2-right", "--set", "grid."}).code, 0);
+        done(folder, "complete figure fig2-right --set grid.");
         best = std::min(best, spent_by_children() - before);
     }
     EXPECT_LT(best, maximum);

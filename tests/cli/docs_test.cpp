@@ -1,7 +1,5 @@
 // Statements of the pages that commands can check: the commands run, and their output must agree.
-#include "cli/sandbox.hpp"
-
-#include <gtest/gtest.h>
+#include "cli/process.hpp"
 
 #include <regex>
 
@@ -10,42 +8,75 @@ namespace doppel::docs_test {
 namespace fs = std::filesystem;
 using namespace test;
 
+const fs::path top = DOPPEL_SOURCE_DIR;
+
 /// README.md and docs/*.md.
 std::vector<fs::path> pages() {
-    const fs::path source(DOPPEL_SOURCE_DIR);
-    std::vector<fs::path> all{source / "README.md"};
-    for (const auto& entry : fs::directory_iterator(source / "docs"))
+    std::vector<fs::path> all{top / "README.md"};
+    for (const auto& entry : fs::directory_iterator(top / "docs"))
         if (entry.path().extension() == ".md") all.push_back(entry.path());
     return all;
 }
 
-/// Calls run(page, groups) for every match of `pattern` in every page.
+/// Calls run(page, groups) for every match of `pattern` in every page, of which there are more than `least`.
 template <class Run>
-void on_every(const char* pattern, const Run& run) {
+void on_every(const char* pattern, int least, const Run& run) {
     const std::regex what(pattern);
     int seen = 0;
     for (const auto& page : pages()) {
         const auto text = bytes_of(page);
         for (std::sregex_iterator found(text.begin(), text.end(), what), end; found != end; ++found, ++seen)
-            run(page.filename().string(), *found);
+            run(page, *found);
     }
-    EXPECT_GT(seen, 0);
+    EXPECT_GT(seen, least);
+}
+
+TEST(Pages, LinkToFilesThatExist) {
+    on_every(R"(\]\(([^)#:]+)\))", 25, [](const fs::path& page, const std::smatch& found) {  // measured 60
+        EXPECT_TRUE(fs::exists(page.parent_path() / found.str(1))) << page << " links to " << found.str(1);
+    });
+}
+
+TEST(Pages, AreShortAndSayWhatTheReaderCanDo) {
+    for (const auto& page : pages()) {
+        const auto text = bytes_of(page);
+        EXPECT_LE(text.size(), 12'288u) << page;
+        if (page.filename() == "README.md") {
+            EXPECT_TRUE(text.size() > 2000 && text.size() <= 6144) << text.size();
+        } else if (page.filename() != "study.md") {  // made by a test
+            EXPECT_LT(text.find("\n\nAfter reading this page you "), 100u) << page;
+        }
+    }
+}
+
+TEST(Pages, NameEveryPreset) {
+    for (const auto& [folder, page] : {std::pair("presets", "docs/films.md"), {"presets/figures", "docs/figures.md"}}) {
+        const auto text = bytes_of(top / page);
+        int presets = 0;
+        for (const auto& entry : fs::directory_iterator(top / folder)) {
+            if (entry.path().extension() != ".toml") continue;
+            const auto name = entry.path().stem().string();
+            const bool is_of_study = std::regex_match(name, std::regex("fig[2-8].*"));  // from fig2-left to fig8
+            EXPECT_TRUE(is_of_study || has(text, '`' + name + '`')) << page << " lacks " << name;
+            ++presets;
+        }
+        EXPECT_GT(presets, 10);
+    }
 }
 
 const std::string doppel_is_this_one = "set -e; doppel() { \"$DOPPEL\" \"$@\"; }; ";
 
 TEST(Docs, NumbersEqualTheOutputOfTheirCommand) {
-    on_every("<!-- \\$ ([^\\n]*) -->", [](const std::string& page, const std::smatch& found) {
+    on_every("<!-- \\$ ([^\\n]*) -->", 0, [](const fs::path& page, const std::smatch& found) {
         const auto result = shell(fresh_folder(), doppel_is_this_one + found.str(1));
         EXPECT_EQ(result.code, 0) << page << ": " << found.str(1) << '\n' << result.out << result.err;
     });
 }
 
 TEST(Docs, ExamplesPrintTheShownLines) {
-    on_every("\\n```\\n\\$ ./(doppel [^\\n]*)\\n([^`]*)```", [](const std::string& page, const std::smatch& found) {
+    on_every("\\n```\\n\\$ ./(doppel [^\\n]*)\\n([^`]*)```", 0, [](const fs::path& page, const std::smatch& found) {
         const auto result = shell(fresh_folder(), doppel_is_this_one + found.str(1));
-        EXPECT_NE(result.out.find(found.str(2)), std::string::npos) << page << ": " << found.str(1) << '\n'
-                                                                    << result.out << result.err;
+        EXPECT_TRUE(has(result.out, found.str(2))) << page << ": " << found.str(1) << '\n' << result.err;
     });
 }
 
@@ -96,7 +127,7 @@ TEST_P(PageOfCommands, Runs) {
     const auto commands = commands_of(GetParam());
     if (commands.empty()) return;
     const auto folder = fresh_folder();
-    test::write_bytes(folder / "doppel", shortened);
+    write_bytes(folder / "doppel", shortened);
     fs::permissions(folder / "doppel", fs::perms::owner_all);
     const bool has_goldens = std::regex_search(commands, std::regex("golden|kept"));
     const auto result = shell(folder, "set -e; unset CI; PATH=\"$PWD:$PATH\"\n" + std::string(prepare) +

@@ -1,5 +1,5 @@
 // The system allows the program only a few threads, or none.
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 
 #include <fmt/ranges.h>
 
@@ -8,7 +8,7 @@ namespace doppel::few_threads_test {
 using namespace test;
 
 /// The program's exit code if it may start at most `count` threads.
-int code_with_threads(int count, const std::filesystem::path& folder, const std::vector<std::string>& line) {
+int code_with_threads(int count, const std::filesystem::path& folder, const Words& line) {
     const auto prepare = [&] {
         setenv("LD_PRELOAD", DOPPEL_FEW_THREADS, 1);
         setenv("DOPPEL_TEST_THREADS", std::to_string(count).c_str(), 1);
@@ -19,19 +19,19 @@ int code_with_threads(int count, const std::filesystem::path& folder, const std:
 }
 
 TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
-    const auto film = [](const std::vector<std::string>& more) {
-        return with({"render", "butterfly", "--size", "128x72", "--frames", "0:5", "--progress", "none"}, more);
+    const auto film = [](const Words& more) {
+        return with("render butterfly --size 128x72 --frames 0:5 --progress none", more);
     };
-    const std::vector<std::vector<std::string>> lines{
+    const std::vector<Words> lines{
         film({}),
-        film({"--format", "png", "--jobs", "3"}),
-        film({"--format", "gif"}),
-        film({"--format", "apng"}),
-        film({"--format", "webm"}),
-        film({"--format", "webm", "--set", "video.codec=\"av1\""}),
-        film({"--format", "webm", "--set", "video.codec=\"av1\"", "--set", "video.pixel_format=\"yuv444p\""}),
-        {"simulate", "butterfly", "--set", "scene.duration_s=0.1", "--progress", "none"},
-        {"figure", "fig2-right", "--set", "grid.x.step=30", "--jobs", "4", "--progress", "none"},
+        film("--format png --jobs 3"),
+        film("--format gif"),
+        film("--format apng"),
+        film("--format webm"),
+        film("--format webm --set video.codec=\"av1\""),
+        film("--format webm --set video.codec=\"av1\" --set video.pixel_format=\"yuv444p\""),
+        "simulate butterfly --set scene.duration_s=0.1 --progress none",
+        "figure fig2-right --set grid.x.step=30 --jobs 4 --progress none",
     };
     for (const auto& line : lines)
         for (const int count : {0, 1, 4, 12, 1000}) {
@@ -46,7 +46,7 @@ TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
             }
             EXPECT_EQ(code, 4) << what << "\n" << message;
             EXPECT_TRUE(one_line(message)) << what << "\n" << message;
-            EXPECT_NE(message.find("no more threads"), std::string::npos) << what << "\n" << message;
+            EXPECT_TRUE(has(message, "no more threads")) << what << "\n";
             EXPECT_TRUE(left_nothing(folder)) << what;
             EXPECT_LT(count, 1000) << what;
         }
@@ -55,8 +55,7 @@ TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
 TEST(FewThreads, AreEnoughForPictures) {
     // one instead of three threads that compress
     const auto folder = fresh_folder();
-    const std::vector<std::string> line{"render", "butterfly", "--size",   "128x72", "--frames",   "0:20",
-                                        "--jobs", "3",         "--format", "png",    "--progress", "none"};
+    const Words line = "render butterfly --size 128x72 --frames 0:20 --jobs 3 --format png --progress none";
     int needed = 1;
     while (needed < 8 && code_with_threads(needed, folder, line) != 0) ++needed;
     EXPECT_LT(needed, 8);  // measured 3: two are OpenGL's

@@ -1,6 +1,5 @@
-#include "cli/process.hpp"
+#include "cli/pictures.hpp"
 #include "cli/xml.hpp"
-#include "output/png.hpp"
 
 #include <fstream>
 #include <map>
@@ -9,38 +8,34 @@
 namespace doppel::golden_script_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::shell;
+using namespace test;
+using GoldenScript = ProgramTest;
 
 /// The script that the GitHub action runs, with the same variables.
-TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
-    const auto folder = test::fresh_folder();
+TEST_F(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
     const auto run = [&](const std::string& more) {
-        return shell(folder,
-                     "export PROGRAM=\"$DOPPEL\" GOLDEN=golden OUT='drawn here' FRAMES=0:2 SIZE=160x90 "
-                     "GITHUB_STEP_SUMMARY=summary FILM_SETS='scene.duration_s=0.5\n  video.layout=\"overlay\"\n' "
-                     "FIGURE_SETS=scene.duration_s=0.5 " +
-                         more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
+        return shell(
+            "export PROGRAM=\"$DOPPEL\" GOLDEN=golden OUT='drawn here' FRAMES=0:2 SIZE=160x90 "
+            "GITHUB_STEP_SUMMARY=summary FILM_SETS='scene.duration_s=0.5\n  video.layout=\"overlay\"\n' "
+            "FIGURE_SETS=scene.duration_s=0.5 " +
+            more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
     };
     const auto film = run("PRESETS='\n  calm '");
     EXPECT_EQ(film.code, 1) << film.err;  // there is no golden picture yet
     EXPECT_TRUE(fs::exists(folder / "drawn here/calm/compare/000001.actual.png"));
     const auto update = [&](const std::string& arguments) {
-        const auto made =
-            shell(folder, "unset CI; \"$DOPPEL\" compare --update --size 160x90 --set scene.duration_s=0.5 --render " +
-                              arguments);
+        const auto made = shell(
+            "unset CI; \"$DOPPEL\" compare --update --size 160x90 --set scene.duration_s=0.5 --render " + arguments);
         EXPECT_EQ(made.code, 0) << made.err;
     };
     update("calm golden/calm --frames 0:2 --set video.layout=overlay");
     EXPECT_EQ(run("PRESETS=calm").code, 0);
 
-    auto picture = read_png(folder / "golden/calm/000001.png");
-    for (int x = 0; x < 40; ++x) picture.at(10 + x, 20)[0] ^= 64;
-    write_png(folder / "golden/calm/000001.png", picture);
+    spoil(folder / "golden/calm/000001.png");
     EXPECT_EQ(run("PRESETS=calm").code, 1);
     EXPECT_TRUE(fs::exists(folder / "drawn here/calm.html"));
     EXPECT_TRUE(fs::exists(folder / "drawn here/calm/compare/000001.diff.png"));
-    const auto junit = test::XmlReader(bytes_of(folder / "drawn here/calm.xml")).document();
+    const auto junit = document_of(bytes_of(folder / "drawn here/calm.xml"));
     EXPECT_EQ(junit["tests"] + junit["failures"], "21");
 
     EXPECT_EQ(run("FIGURES=fig6 FIGURE_SETS='video.layout=\"overlay\"'").code, 2);  // not a key of a figure
@@ -49,9 +44,8 @@ TEST(GoldenScript, DrawsComparesAndReportsFilmsAndFigures) {
     update("fig6 golden");
     EXPECT_EQ(run("PRESETS=calm FIGURES=fig6").code, 1);  // only the film differs
     const auto summary = bytes_of(folder / "summary");
-    for (const char* line :
-         {"| calm | passes |", "| calm | differs |", "| fig6 | failed (exit code 2) |", "| fig6 | passes |"})
-        EXPECT_NE(summary.find(line), std::string::npos) << summary;
+    EXPECT_TRUE(has(
+        summary, {"| calm | passes |", "| calm | differs |", "| fig6 | failed (exit code 2) |", "| fig6 | passes |"}));
 }
 
 /// The first and second group of `pattern` for each match.
@@ -62,7 +56,7 @@ std::map<std::string, std::string> pairs_in(const std::string& text, const std::
     return found;
 }
 
-TEST(GoldenScript, TheExampleOfTheDocumentationPasses) {
+TEST_F(GoldenScript, TheExampleOfTheDocumentationPasses) {
     const fs::path source(DOPPEL_SOURCE_DIR);
     const auto page = bytes_of(source / "docs/ci.md"), action = bytes_of(source / "action.yml");
     const auto example =
@@ -76,30 +70,27 @@ TEST(GoldenScript, TheExampleOfTheDocumentationPasses) {
         variables += " " + variable + "='" + value + "'";
     }
     ASSERT_EQ(given.size(), 6u) << example;
-    const auto folder = test::fresh_folder();
+    fresh_folder();  // empties it
     const auto after = page.find("```sh", page.find("The goldens are"));
     const auto commands = page.substr(after + 5, page.find("```\n", after) - after - 5);
-    const auto made = shell(folder,
-                            "set -e; unset CI; doppel() { \"$DOPPEL\" \"$@\"; }; mkdir presets; "
-                            "doppel init presets/mine.toml" +
-                                commands);
+    const auto made = shell(
+        "set -e; unset CI; doppel() { \"$DOPPEL\" \"$@\"; }; mkdir presets; "
+        "doppel init presets/mine.toml" +
+        commands);
     ASSERT_EQ(made.code, 0) << made.err;
-    const auto result =
-        shell(folder, "export PROGRAM=\"$DOPPEL\"" + variables + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
+    const auto result = shell("export PROGRAM=\"$DOPPEL\"" + variables + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
     EXPECT_EQ(result.code, 0) << variables << result.out << result.err;
     EXPECT_TRUE(fs::exists(folder / "doppel-golden/fig6.html") && fs::exists(folder / "doppel-golden/mine.html"));
 }
 
-TEST(GoldenScript, ReportsWhatItCannotDraw) {
-    const auto folder = test::fresh_folder();
+TEST_F(GoldenScript, ReportsWhatItCannotDraw) {
     // a replacement for the program that draws nothing, prints its arguments and reads its input
-    test::write_bytes(folder / "draws", "#!/bin/sh\ncat\necho \"ran $*\" | cut -d' ' -f 1-5\n");
-    test::write_bytes(folder / "fails", "#!/bin/sh\nexit 1\n");
+    write_bytes(folder / "draws", "#!/bin/sh\ncat\necho \"ran $*\" | cut -d' ' -f 1-5\n");
+    write_bytes(folder / "fails", "#!/bin/sh\nexit 1\n");
     for (const char* program : {"draws", "fails"}) fs::permissions(folder / program, fs::perms::owner_all);
     const auto run = [&](const std::string& more) {
-        return shell(folder,
-                     "export PROGRAM=./draws GOLDEN=golden OUT=drawn FRAMES=0:2 SIZE= GITHUB_STEP_SUMMARY=summary " +
-                         more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
+        return shell("export PROGRAM=./draws GOLDEN=golden OUT=drawn FRAMES=0:2 SIZE= GITHUB_STEP_SUMMARY=summary " +
+                     more + "; '" DOPPEL_SOURCE_DIR "/.ci/golden'");
     };
     struct Case {
         const char* variables;
@@ -123,12 +114,11 @@ TEST(GoldenScript, ReportsWhatItCannotDraw) {
            "ran compare --render three golden/three.png\n"}}) {
         const auto outcome = run(variables);
         EXPECT_EQ(outcome.code, code) << variables << outcome.err;
-        EXPECT_NE(outcome.err.find(err), std::string::npos) << variables << outcome.err;
+        EXPECT_TRUE(has(outcome.err, err)) << variables;
         EXPECT_EQ(outcome.out, out) << variables;
     }
     const auto summary = bytes_of(folder / "summary");
-    for (const char* line : {"| PRESETS and FIGURES | there is nothing to draw", "| calm | failed (exit code 4) |"})
-        EXPECT_NE(summary.find(line), std::string::npos) << summary;
+    EXPECT_TRUE(has(summary, {"| PRESETS and FIGURES | there is nothing to draw", "| calm | failed (exit code 4) |"}));
 }
 
 }  // namespace doppel::golden_script_test

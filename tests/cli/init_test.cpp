@@ -1,5 +1,5 @@
 // The preset that "doppel init" writes. With the real program.
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 #include "figure/kind_tables.hpp"
 #include "figure/kinds.hpp"
 #include "figure/preset.hpp"
@@ -14,20 +14,18 @@ namespace doppel::init_test {
 
 namespace fs = std::filesystem;
 using namespace test;
+using Init = ProgramTest;
 
 Preset read(const std::string& text) {
     return read_preset({"mine", "mine.toml", text, "mine.toml"});
 }
 
-TEST(Init, WritesAPresetThatIsCheckedAndRendered) {
-    const auto folder = fresh_folder();
-    const auto result = doppel(folder, {"init", "mine.toml"});
-    EXPECT_EQ(result.code, 0) << result.err;
+TEST_F(Init, WritesAPresetThatIsCheckedAndRendered) {
+    const auto result = done("init mine.toml");
     EXPECT_EQ(result.out, "mine.toml: edit it, then: doppel check mine.toml\n");
-    EXPECT_EQ(listing(folder), (std::set<std::string>{"mine.toml", "stdout", "stderr"}));
-    EXPECT_EQ(doppel(folder, {"check", "mine.toml", "--set", "scene.duration_s=0.1"}).code, 0);
-    const auto film = doppel(folder, {"render", "mine.toml", "--set", "scene.duration_s=0.1", "--size", "160x90"});
-    EXPECT_EQ(film.code, 0) << film.err;
+    EXPECT_EQ(listing(folder), (Names{"mine.toml", "stdout", "stderr"}));
+    done("check mine.toml --set scene.duration_s=0.1");
+    done("render mine.toml --set scene.duration_s=0.1 --size 160x90");
     EXPECT_TRUE(fs::exists(folder / "out/mine/mine.mp4"));
     // butterfly with an accuracy instead of the study's method
     const auto preset = read(bytes_of(folder / "mine.toml"));
@@ -37,11 +35,11 @@ TEST(Init, WritesAPresetThatIsCheckedAndRendered) {
 }
 
 /// The keys in comments that cannot be uncommented alone.
-std::set<std::string> refused_keys(const std::string& whole, const std::function<void(const std::string&)>& read_text,
-                                   std::size_t& keys) {
+Names refused_keys(const std::string& whole, const std::function<void(const std::string&)>& read_text,
+                   std::size_t& keys) {
     std::istringstream lines(whole);
     std::size_t at = 0;
-    std::set<std::string> refused;
+    Names refused;
     for (std::string line; std::getline(lines, line); at += line.size() + 1) {
         if (line.size() < 2 || line[0] != '#' || !std::isalpha(static_cast<unsigned char>(line[1]))) continue;
         auto text = whole;
@@ -56,68 +54,42 @@ std::set<std::string> refused_keys(const std::string& whole, const std::function
     return refused;
 }
 
-TEST(Init, EachKeyCanBeUncommented) {
-    const auto folder = fresh_folder();
-    ASSERT_EQ(doppel(folder, {"init", "mine.toml"}).code, 0);
+TEST_F(Init, EachKeyCanBeUncommented) {
+    done("init mine.toml");
     std::size_t keys = 0;
     const auto refused = refused_keys(bytes_of(folder / "mine.toml"), read, keys);
     EXPECT_GT(keys, 50u);
     // keys that require other values of other keys
-    EXPECT_EQ(refused, (std::set<std::string>{"angles_range",
-                                              "codec",
-                                              "energies_a_range",
-                                              "energies_b_range",
-                                              "energy_range",
-                                              "exponent_range",
-                                              "integrator",
-                                              "members",
-                                              "phase",
-                                              "phase_link",
-                                              "pivot.direction_deg",
-                                              "pivot.frequency_hz",
-                                              "pivot.phase_deg",
-                                              "position_bits",
-                                              "rates_range",
-                                              "rod_error_range",
-                                              "rod_force_range",
-                                              "speed_ease_s",
-                                              "stabilise_rate_per_s",
-                                              "step_s",
-                                              "tolerance",
-                                              "total_energy_range",
-                                              "track.offset_deg",
-                                              "track.start_s"}));
+    const Words expected =
+        "angles_range codec energies_a_range energies_b_range energy_range exponent_range integrator "
+        "members phase phase_link pivot.direction_deg pivot.frequency_hz pivot.phase_deg position_bits "
+        "rates_range rod_error_range rod_force_range speed_ease_s stabilise_rate_per_s step_s tolerance "
+        "total_energy_range track.offset_deg track.start_s";
+    EXPECT_EQ(refused, Names(expected.begin(), expected.end()));
 }
 
-TEST(Init, WritesAPresetOfEveryKindOfFigure) {
-    const auto folder = fresh_folder();
+TEST_F(Init, WritesAPresetOfEveryKindOfFigure) {
     for (const auto& kind : figure_kinds()) {
         const std::string name(kind.name), file = name + ".toml";
-        const auto result = doppel(folder, {"init", "--figure", name});
-        ASSERT_EQ(result.code, 0) << result.err;
-        EXPECT_EQ(result.out, file + ": edit it, then: doppel check " + file + "\n");
+        EXPECT_EQ(done({"init", "--figure", name}).out, file + ": edit it, then: doppel check " + file + "\n");
         // `check` of a work-precision figure computes the references of all problems, 5 s
-        const std::vector<std::string> quickly{"figure", file, "--list-outputs"}, fully{"check", file};
-        const auto check = doppel(folder, name == "work-precision" ? quickly : fully);
-        EXPECT_EQ(check.code, 0) << name << check.err;
+        done(with(name == "work-precision" ? "figure --list-outputs" : "check", file));
         const auto text = bytes_of(folder / file);
-        EXPECT_EQ(doppel(folder, {"show", file}).out, text);
+        EXPECT_EQ(doppel({"show", file}).out, text);
         EXPECT_EQ(kind_of_preset({name, file, text, file}), name);
         for (const auto& table : tables_of(name))
             for (const auto& field : table.fields) {
                 const auto key = std::string(field.key) + " = ";
-                EXPECT_TRUE(text.find("\n" + key) != std::string::npos || text.find("\n#" + key) != std::string::npos)
-                    << name << ": " << key;
+                EXPECT_TRUE(has(text, "\n" + key) || has(text, "\n#" + key)) << name << ": " << key;
                 if (field.key == "title" || field.key == "kind") continue;  // given by the file's name and the option
-                EXPECT_NE(text.find("# " + std::string(field.help) + " ("), std::string::npos) << name << ": " << key;
+                EXPECT_TRUE(has(text, "# " + std::string(field.help) + " (")) << name << ": " << key;
             }
     }
 }
 
-TEST(Init, EachKeyOfAFigureCanBeUncommented) {
-    const auto folder = fresh_folder();
+TEST_F(Init, EachKeyOfAFigureCanBeUncommented) {
     // keys that require other values of other keys, and keys that the figure sets itself
-    std::map<std::string_view, std::set<std::string>> beside{
+    std::map<std::string_view, Names> beside{
         {"grid",
          {"threshold", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right",
           "stabilise_rate_per_s", "step_s", "tolerance", "transient_periods", "mark_step_s", "x.labels",
@@ -128,7 +100,7 @@ TEST(Init, EachKeyOfAFigureCanBeUncommented) {
         {"work-precision", {"duration_s"}}};
     for (const auto& kind : figure_kinds()) {
         const std::string name(kind.name);
-        ASSERT_EQ(doppel(folder, {"init", "--figure", name}).code, 0);
+        done({"init", "--figure", name});
         std::size_t keys = 0;
         auto whole = bytes_of(folder / (name + ".toml"));
         if (const auto at = whole.find("\nduration_s = 30"); at != std::string::npos)
@@ -147,12 +119,10 @@ TEST(Init, EachKeyOfAFigureCanBeUncommented) {
     }
 }
 
-TEST(Init, WritesAFigureThatIsDrawn) {
-    const auto folder = fresh_folder();
-    ASSERT_EQ(doppel(folder, {"init", "mine.toml", "--figure", "section"}).code, 0);
-    const auto figure = doppel(folder, {"figure", "mine.toml", "--set", "section.orbits=2", "--set",
-                                        "section.crossings=10", "--set", "chart.scale=0.25"});
-    EXPECT_EQ(figure.code, 0) << figure.err;
+TEST_F(Init, WritesAFigureThatIsDrawn) {
+    done("init mine.toml --figure section");
+    const auto figure =
+        done("figure mine.toml --set section.orbits=2 --set section.crossings=10 --set chart.scale=0.25");
     EXPECT_TRUE(fs::exists(folder / "out/mine/mine.png"));
     // pairs that differ
     for (const auto& [kind, small, column] :
@@ -162,24 +132,21 @@ TEST(Init, WritesAFigureThatIsDrawn) {
             "scene.duration_s=5"},
            "flip_time_s"}}) {
         const std::string file = std::string(kind) + ".toml";
-        doppel(folder, {"init", "--figure", kind});
+        doppel({"init", "--figure", kind});
         std::vector<std::string> arguments{"figure", file, "--set", "chart.scale=0.25"};
         for (const auto& set : small) arguments.insert(arguments.end(), {"--set", set});
-        const auto drawn = doppel(folder, arguments);
-        EXPECT_EQ(drawn.code, 0) << kind << drawn.err;
+        done(arguments);
         const auto table = bytes_of(folder / "out" / kind / (std::string(kind) + ".csv"));
-        EXPECT_NE(table.find(column), std::string::npos) << table;
+        EXPECT_TRUE(has(table, column));
         const std::string last = table.substr(table.rfind(',', table.size()) + 1);
         EXPECT_GT(last.size(), 4u) << kind << last;  // a number and a line end
     }
-    EXPECT_EQ(doppel(folder, {"init", "--figure", "pair"}).code, 2);
-    EXPECT_EQ(doppel(folder, {"init"}).err, "doppel: init needs the name of the new file: doppel init FILE.toml\n");
-    EXPECT_EQ(doppel(folder, {"init", "mine.toml", "--figure", "grid"}).err,
-              "doppel: mine.toml: exists already; give a new name\n");
+    EXPECT_EQ(doppel("init --figure pair").code, 2);
+    EXPECT_EQ(doppel("init").err, "doppel: init needs the name of the new file: doppel init FILE.toml\n");
+    EXPECT_EQ(doppel("init mine.toml --figure grid").err, "doppel: mine.toml: exists already; give a new name\n");
 }
 
-TEST(Init, NeverReplacesAFile) {
-    const auto folder = fresh_folder();
+TEST_F(Init, NeverReplacesAFile) {
     write_bytes(folder / "mine.toml", "title = \"mine\"\n");
     fs::create_symlink("nowhere", folder / "link.toml");
     for (const auto& [name, message] : std::vector<std::pair<std::string, std::string>>{
@@ -187,36 +154,32 @@ TEST(Init, NeverReplacesAFile) {
              {"link.toml", "link.toml: exists already; give a new name"},
              {"mine.txt", "mine.txt: the name of a preset's file ends in .toml"},
              {".toml", ".toml: the name of a preset's file ends in .toml"}}) {
-        const auto result = doppel(folder, {"init", name});
-        EXPECT_EQ(result.code, 2);
+        const auto result = ends({"init", name}, 2);
         EXPECT_EQ(result.err, "doppel: " + message + "\n");
     }
     EXPECT_EQ(bytes_of(folder / "mine.toml"), "title = \"mine\"\n");
-    const auto missing = doppel(folder, {"init", "no/such/folder/mine.toml"});
-    EXPECT_EQ(missing.code, 4);
+    const auto missing = ends("init no/such/folder/mine.toml", 4);
     EXPECT_TRUE(one_line(missing.err)) << missing.err;
     EXPECT_FALSE(fs::exists(folder / "no"));
 }
 
-TEST(Init, WritesNoOtherFile) {
-    const auto folder = fresh_folder();
+TEST_F(Init, WritesNoOtherFile) {
     write_bytes(folder / "mine.toml.part", "mine");
     fs::create_directory(folder / "elsewhere");
     fs::create_directory_symlink("elsewhere", folder / "link");
-    for (const char* name : {"mine.toml", "link/mine.toml"}) EXPECT_EQ(doppel(folder, {"init", name}).code, 0) << name;
+    for (const char* name : {"mine.toml", "link/mine.toml"}) done({"init", name});
     EXPECT_EQ(bytes_of(folder / "mine.toml.part"), "mine");
-    EXPECT_EQ(listing(folder), (std::set<std::string>{"elsewhere", "elsewhere/mine.toml", "link", "mine.toml",
-                                                      "mine.toml.part", "stderr", "stdout"}));
+    EXPECT_EQ(listing(folder),
+              (Names{"elsewhere", "elsewhere/mine.toml", "link", "mine.toml", "mine.toml.part", "stderr", "stdout"}));
 }
 
-TEST(Init, NamesTheSchemaThatIsThere) {
-    const auto folder = fresh_folder();
+TEST_F(Init, NamesTheSchemaThatIsThere) {
     fs::create_directories(folder / "presets");
     fs::create_directories(folder / "films");
     fs::copy_file(fs::path(DOPPEL_SOURCE_DIR) / "presets/preset.schema.json", folder / "presets/preset.schema.json");
-    ASSERT_EQ(doppel(folder, {"init", "films/mine.toml"}).code, 0);
+    done("init films/mine.toml");
     EXPECT_TRUE(bytes_of(folder / "films/mine.toml").starts_with("#:schema ../presets/preset.schema.json\n"));
-    const auto check = doppel(folder, {"check", "films/mine.toml", "--set", "scene.duration_s=0.1"});
+    const auto check = doppel("check films/mine.toml --set scene.duration_s=0.1");
     EXPECT_FALSE(check.out.starts_with("films/mine.toml:")) << check.out;
 }
 

@@ -1,5 +1,5 @@
 // The schema of presets, and the line that names it for editors. With the real program.
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -7,26 +7,25 @@ namespace doppel::schema_test {
 
 namespace fs = std::filesystem;
 using namespace test;
+using Schema = ProgramTest;
 
 const fs::path source = DOPPEL_SOURCE_DIR;
 
-TEST(Schema, IsPrinted) {
-    const auto printed = doppel(fresh_folder(), {"schema"});
-    EXPECT_EQ(printed.code, 0);
+TEST_F(Schema, IsPrinted) {
+    const auto printed = done("schema");
     EXPECT_EQ(printed.out, bytes_of(source / "presets/preset.schema.json"));
     EXPECT_EQ(nlohmann::json::parse(printed.out)["$schema"], "http://json-schema.org/draft-04/schema#");
 }
 
-TEST(Schema, LineOfAShownPresetIsRightForACopy) {
-    const auto folder = fresh_folder();
+TEST_F(Schema, LineOfAShownPresetIsRightForACopy) {
     const auto whole = bytes_of(source / "presets/butterfly.toml");
     const auto rest = whole.substr(whole.find('\n') + 1);
-    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, rest);  // there is no schema
+    EXPECT_EQ(doppel("show butterfly").out, rest);  // there is no schema
     fs::create_directories(folder / "presets");
     fs::copy_file(source / "presets/preset.schema.json", folder / "presets/preset.schema.json");
-    EXPECT_EQ(doppel(folder, {"show", "butterfly"}).out, "#:schema ./presets/preset.schema.json\n" + rest);
+    EXPECT_EQ(doppel("show butterfly").out, "#:schema ./presets/preset.schema.json\n" + rest);
     write_bytes(folder / "mine.toml", whole);
-    EXPECT_EQ(doppel(folder, {"show", "mine.toml"}).out, whole);  // a user's preset is printed unchanged
+    EXPECT_EQ(doppel("show mine.toml").out, whole);  // a user's preset is printed unchanged
     // the folders of an installed package
     fs::create_directories(folder / "usr/bin");
     fs::create_directories(folder / "usr/share/doppel/presets");
@@ -38,12 +37,10 @@ TEST(Schema, LineOfAShownPresetIsRightForACopy) {
               "#:schema file://" + (folder / "usr/share/doppel/presets/preset.schema.json").string() + "\n" + rest);
 }
 
-TEST(Schema, LineThatIsWrongIsToldInOneLine) {
-    const auto folder = fresh_folder();
+TEST_F(Schema, LineThatIsWrongIsToldInOneLine) {
     const auto note = [&](const std::string& line) {
         write_bytes(folder / "mine.toml", "# mine\n" + line + "\n[system]\nintegrator = \"taylor\"\n");
-        const auto result = doppel(folder, {"check", "mine.toml", "--set", "scene.duration_s=0.1"});
-        EXPECT_EQ(result.code, 0) << result.err;
+        const auto result = done("check mine.toml --set scene.duration_s=0.1");
         const auto end = result.out.find("\n") + 1;
         return result.out.starts_with("mine.toml:") ? result.out.substr(0, end) : "";
     };

@@ -1,57 +1,43 @@
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 #include "output/png.hpp"
-
-#include <gtest/gtest.h>
 
 namespace doppel::still_program_test {
 
 namespace fs = std::filesystem;
-using test::fresh_folder;
+using namespace test;
+using Still = ProgramTest;
 
-TEST(Still, IsDrawnAloneAndRefusedInOneLine) {
-    const auto folder = fresh_folder();
-    const auto result = test::doppel(folder, {"still", "calm", "--at", "0.5", "--size", "64x64", "-o", "pictures"});
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_EQ(test::listing(folder / "pictures"), (std::set<std::string>{"calm", "calm/calm.0.5s.png"}));
-    EXPECT_NE(result.out.find("pictures/calm/calm.0.5s.png"), std::string::npos);
-    for (const auto& [arguments, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-             {{"still", "calm"}, "--at is required"},
-             {{"still", "calm", "--at", "soon"}, "--at must be seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
-             {{"still", "calm", "--at", "31"}, "--at 31: calm ends at 30 s"},
-             {{"still", "calm", "--at", "30.0000001"}, "--at 30.0000001: calm ends at 30 s"},
-             {{"render", "calm", "--to", "30.00000001"}, "--to 30.00000001: calm ends at 30 s"},
-             {{"still", "calm", "--at", "1", "--set", "video.format=\"gif\""},
-              "and --format of still, which draws PNG"},
-             {{"render", "measured", "--to", "99"}, "--to 99: measured ends at 2.65 s"},
-             {{"render", "calm", "--from", "-1"}, "--from must be seconds ≥ 0"},
-             {{"render", "calm", "--from", "1", "--frames", "0:3"},
-              "--frames counts frames, --from and --to seconds; give one"},
-             {{"render", "calm", "--from", "3", "--to", "2"},
-              "--from 3 --to 2: the end, which is not included, must be after the start"}}) {
-        const auto refused = test::doppel(folder, arguments);
-        EXPECT_EQ(refused.code, 2) << message;
-        EXPECT_NE(refused.err.find(message), std::string::npos) << refused.err;
-    }
+TEST_F(Still, IsDrawnAloneAndRefusedInOneLine) {
+    const auto result = done("still calm --at 0.5 --size 64x64 -o pictures");
+    EXPECT_EQ(listing(folder / "pictures"), (Names{"calm", "calm/calm.0.5s.png"}));
+    EXPECT_TRUE(has(result.out, "pictures/calm/calm.0.5s.png"));
+    for (const auto& [arguments, message] : std::vector<std::pair<Words, std::string>>{
+             {"still calm", "--at is required"},
+             {"still calm --at soon", "--at must be seconds ≥ 0, such as 6.8 or 1/3; it is \"soon\""},
+             {"still calm --at 31", "--at 31: calm ends at 30 s"},
+             {"still calm --at 30.0000001", "--at 30.0000001: calm ends at 30 s"},
+             {"render calm --to 30.00000001", "--to 30.00000001: calm ends at 30 s"},
+             {"still calm --at 1 --set video.format=\"gif\"", "and --format of still, which draws PNG"},
+             {"render measured --to 99", "--to 99: measured ends at 2.65 s"},
+             {"render calm --from -1", "--from must be seconds ≥ 0"},
+             {"render calm --from 1 --frames 0:3", "--frames counts frames, --from and --to seconds; give one"},
+             {"render calm --from 3 --to 2",
+              "--from 3 --to 2: the end, which is not included, must be after the start"}})
+        expect_refused(arguments, 2, message);
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
 /// Keys of the preset's own format do not apply to the picture.
-TEST(Still, IsDrawnOfAFilmOfAnyFormat) {
-    const auto folder = fresh_folder();
+TEST_F(Still, IsDrawnOfAFilmOfAnyFormat) {
     for (const char* keys : {"format = \"webm\"\ncodec = \"av1\"\ncrf = 60", "format = \"html\"\nposition_bits = 20"}) {
-        test::write_bytes(folder / "x.toml", std::string("[scene]\nduration_s = 1\n[video]\nsize = [64, 64]\n") + keys);
-        const auto still = test::doppel(folder, {"still", "x.toml", "--at", "0"});
-        EXPECT_EQ(still.code, 0) << still.err;
-        const auto compared = test::doppel(folder, {"compare", "--render", "x.toml", "--at", "0", "out/x"});
-        EXPECT_EQ(compared.code, 0) << compared.err;
+        write_bytes(folder / "x.toml", std::string("[scene]\nduration_s = 1\n[video]\nsize = [64, 64]\n") + keys);
+        done("still x.toml --at 0");
+        done("compare --render x.toml --at 0 out/x");
     }
 }
 
-TEST(Draft, HasAQuarterOfThePixels) {
-    const auto folder = fresh_folder();
-    const auto result =
-        test::doppel(folder, {"render", "calm", "--quality", "draft", "--format", "png", "--frames", "0:1"});
-    EXPECT_EQ(result.code, 0) << result.err;
+TEST_F(Still, ADraftHasAQuarterOfThePixels) {
+    done("render calm --quality draft --format png --frames 0:1");
     EXPECT_EQ(read_png(folder / "out/calm/frames/000000.png").size, (Size{960, 540}));
 }
 

@@ -1,6 +1,6 @@
 // Input and output on terminals, pipes and closed descriptors. With the real program.
 #include "base/text.hpp"
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
@@ -12,34 +12,27 @@ namespace doppel::streams_test {
 
 namespace fs = std::filesystem;
 using namespace test;
+using Streams = ProgramTest;
 
-const std::string quick = " --set 'system.integrator=\"taylor\"' --set scene.duration_s=0.1 ";
+const std::string quick = " --set system.integrator=taylor --set scene.duration_s=0.1 ";
 
-TEST(Streams, UnwritableStandardOutputIsExit4) {
-    const auto folder = fresh_folder();
-    ASSERT_EQ(
-        shell(folder, "\"$DOPPEL\" render calm --format png --size 64x64 --frames 0:2 -o one --progress none").code, 0);
-    ASSERT_EQ(
-        shell(folder, "\"$DOPPEL\" render triple --format png --size 64x64 --frames 0:2 -o two --progress none").code,
-        0);
+TEST_F(Streams, UnwritableStandardOutputIsExit4) {
+    for (const char* name : {"calm", "triple"})
+        done(with("render --format png --size 64x64 --frames 0:2 --progress none", name));
     for (const std::string command :
          {"show butterfly", "list", "list methods", "schema", "completion bash", "complete sim", "check calm",
-          "check fig6", "--help", "render --help", "--version", "compare one/calm/frames one/calm/frames",
-          "compare one/calm/frames two/triple/frames"}) {
+          "check fig6", "--help", "render --help", "--version", "compare out/calm/frames out/calm/frames",
+          "compare out/calm/frames out/triple/frames"})
         for (const auto& [to, why] :
-             {std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "Bad file descriptor")}) {
-            const auto result = shell(folder, "\"$DOPPEL\" " + command + " " + to);
-            EXPECT_EQ(result.code, std::string(to) == ">&-" ? 4 : 75) << command << to;
+             {std::pair(" >/dev/full", "No space left on device"), {" >&-", "Bad file descriptor"}}) {
+            const auto result = shell(program + command + to);
+            EXPECT_EQ(result.code, std::string(to) == " >&-" ? 4 : 75) << command << to;
             EXPECT_EQ(result.err, fmt::format("doppel: standard output cannot be written: {}\n", why)) << command << to;
         }
-    }
 }
 
-TEST(Streams, UnprintableNamesOfFilesAreExit75) {
-    const auto folder = fresh_folder();
-    write_bytes(folder / "map.toml",
-                "[scene]\nkind = \"grid\"\nduration_s = 1\n[grid]\nquantity = \"flip_time\"\n[grid.x]\npoints = 8\n"
-                "[grid.y]\nkey = \"theta2_deg\"\npoints = 8\n");
+TEST_F(Streams, UnprintableNamesOfFilesAreExit75) {
+    write_bytes(folder / "map.toml", small_map);
     const std::vector<std::pair<std::string, std::string>> cases{
         {"simulate butterfly" + quick, "butterfly/butterfly.csv"},
         {"render butterfly --size 64x64" + quick, "butterfly/butterfly.mp4"},
@@ -50,57 +43,51 @@ TEST(Streams, UnprintableNamesOfFilesAreExit75) {
         {"init out/mine.toml", "mine.toml"}};
     for (const auto& [command, file] : cases)
         for (const std::string style : {"none", "plain"}) {
-            fs::remove_all(folder / "out");
-            fs::create_directory(folder / "out");
-            const auto line = "\"$DOPPEL\" " + command + (command.starts_with("init") ? "" : " --progress " + style);
-            const auto full = shell(folder, line + " >/dev/full");
+            const auto line = program + command + (command.starts_with("init") ? "" : " --progress " + style);
+            const auto run = [&](const std::string& script) {
+                fs::remove_all(folder / "out");
+                fs::create_directory(folder / "out");
+                auto outcome = shell(script);
+                EXPECT_TRUE(fs::exists(folder / "out" / file)) << script << outcome.err;
+                return outcome;
+            };
+            const auto full = run(line + " >/dev/full");
             EXPECT_EQ(full.code, 75) << command;
             EXPECT_TRUE(full.err.ends_with("doppel: standard output cannot be written: No space left on device\n"))
                 << command << full.err;
-            EXPECT_TRUE(fs::exists(folder / "out" / file)) << command;
-            fs::remove_all(folder / "out");
-            fs::create_directory(folder / "out");
-            // standard output is closed: nothing to report
-            EXPECT_EQ(shell(folder, line + " >&-").code, 0) << command;
-            EXPECT_TRUE(fs::exists(folder / "out" / file)) << command;
-            fs::remove_all(folder / "out");
-            fs::create_directory(folder / "out");
-            const auto left = shell(folder, "(" + line + "; echo $? >code) | true");
-            EXPECT_EQ(bytes_of(folder / "code"), "0\n") << command << left.err;
+            EXPECT_EQ(run(line + " >&-").code, 0) << command;  // closed: nothing to report
+            run("(" + line + "; echo $? >code) | true");
+            EXPECT_EQ(bytes_of(folder / "code"), "0\n") << command;
         }
 }
 
-TEST(Streams, UnwritableJsonIsReportedAtTheEnd) {
-    const auto folder = fresh_folder();
+TEST_F(Streams, UnwritableJsonIsReportedAtTheEnd) {
     for (const auto& command : {"simulate butterfly" + quick, std::string("figure fig6 --size 160x90")}) {
         const bool is_figure = command.starts_with("figure");
         const auto csv = folder / "out" / (is_figure ? "fig6/fig6.csv" : "butterfly/butterfly.csv");
-        const auto full = shell(folder, "\"$DOPPEL\" " + command + " --progress json >/dev/full");
+        const auto full = shell(program + command + " --progress json >/dev/full");
         EXPECT_EQ(full.code, 75) << full.err;
         EXPECT_EQ(full.err, "doppel: standard output cannot be written: No space left on device\n");
         EXPECT_TRUE(fs::exists(csv)) << command;
         fs::remove_all(folder / "out");
         // a reader that stops reading is not an error
-        const auto left = shell(folder, "(\"$DOPPEL\" " + command + " --progress json; echo $? >code) | true");
+        const auto left = shell("(" + program + command + " --progress json; echo $? >code) | true");
         EXPECT_EQ(bytes_of(folder / "code"), "0\n") << left.err;
         EXPECT_TRUE(fs::exists(csv)) << command;
     }
 }
 
-TEST(Streams, JsonSaysAnyPath) {
-    const auto folder = fresh_folder();
-    const auto result =
-        shell(folder, "\"$DOPPEL\" simulate butterfly" + quick + "--progress json -o \"$(printf 'a\\377b')\"");
+TEST_F(Streams, JsonSaysAnyPath) {
+    const auto result = shell(program + "simulate butterfly" + quick + "--progress json -o \"$(printf 'a\\377b')\"");
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(nlohmann::json::parse(result.out)["files"][0],
               "a\xef\xbf\xbd"
               "b/butterfly/butterfly.csv");
 }
 
-TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
-    const auto folder = fresh_folder();
+TEST_F(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     const auto run = [&](const std::string& streams) {
-        const auto result = shell(folder, "\"$DOPPEL\" simulate butterfly --set scene.duration_s=0.1 " + streams);
+        const auto result = shell(program + "simulate butterfly --set scene.duration_s=0.1 " + streams);
         EXPECT_EQ(result.code, 0) << streams;
         const auto csv = bytes_of(folder / "out/butterfly/butterfly.csv");
         fs::remove_all(folder / "out");
@@ -110,10 +97,9 @@ TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     for (const auto* streams : {"<&- >&- 2>&-", "<&-", ">&-", "2>&-", ">&- 2>&-"})
         EXPECT_EQ(run(streams), whole) << streams;
     // the standard descriptors refer to /dev/null while the run writes its files
-    const auto child =
-        start(folder, {"simulate", "butterfly", "--set", "scene.duration_s=100000", "--progress", "plain"}, [] {
-            for (const int stream : {0, 1, 2}) close(stream);
-        });
+    const auto child = start(folder, "simulate butterfly --set scene.duration_s=100000 --progress plain", [] {
+        for (const int stream : {0, 1, 2}) close(stream);
+    });
     const auto link = [&](int number) {
         std::error_code ignored;
         return fs::read_symlink(fmt::format("/proc/{}/fd/{}", child, number), ignored).string();
@@ -125,50 +111,45 @@ TEST(Streams, ClosedStreamsDoNotReceiveTheFilm) {
 }
 
 // a whole film of this length would take minutes
-TEST(Streams, AFilmIsStreamedWhileItIsMade) {
-    const auto folder = fresh_folder();
-    const auto piped = shell(folder,
-                             "\"$DOPPEL\" render calm --size 64x64 --set scene.duration_s=2000 --format y4m -o - "
-                             "--progress none 2>errors | head -c 20000 | wc -c");
+TEST_F(Streams, AFilmIsStreamedWhileItIsMade) {
+    const auto piped = shell(
+        "\"$DOPPEL\" render calm --size 64x64 --set scene.duration_s=2000 --format y4m -o - "
+        "--progress none 2>errors | head -c 20000 | wc -c");
     EXPECT_EQ(piped.out, "20000\n");
     EXPECT_EQ(bytes_of(folder / "errors"), "doppel: standard output: cannot be written: Broken pipe\n");
     EXPECT_FALSE(fs::exists(folder / "out"));
-    const auto both = shell(folder, "\"$DOPPEL\" render calm -o - --shard 1/2");
-    EXPECT_EQ(both.code, 2);
-    EXPECT_EQ(both.err, "doppel: -o -: parts and their merge need a folder; give another --out\n");
+    expect_refused("render calm -o - --shard 1/2", 2,
+                   "doppel: -o -: parts and their merge need a folder; give another --out\n");
 }
 
-TEST(Streams, AnEmptyArgumentIsNotTakenForNone) {
-    const auto folder = fresh_folder();
-    const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+TEST_F(Streams, AnEmptyArgumentIsNotTakenForNone) {
+    const std::vector<std::pair<Words, std::string>> cases{
         {{"render", "butterfly", "--size", ""}, "--size is empty"},
-        {{"render", "butterfly", "--size="}, "--size is empty"},
+        {"render butterfly --size=", "--size is empty"},
         {{"render", "butterfly", "--frames", ""}, "--frames is empty"},
         {{"render", "butterfly", "--format", ""}, "--format is empty"},
         {{"render", "butterfly", "--quality", ""}, "--quality is empty"},
         {{"render", "butterfly", "--gl", ""}, "--gl is empty"},
         {{"render", "butterfly", "-o", ""}, "-o is empty"},
-        {{"render", "butterfly", "--out="}, "--out is empty"},
+        {"render butterfly --out=", "--out is empty"},
         {{"render", "butterfly", "--set", ""}, "--set is empty"},
         {{"render", "butterfly", "-j", ""}, "-j is empty"},
         {{"render", "butterfly", "--progress", ""}, "--progress is empty"},
         {{"figure", "fig6", "--shard", ""}, "--shard is empty"},
-        {{"figure", "fig6", "--shard="}, "--shard is empty"},
+        {"figure fig6 --shard=", "--shard is empty"},
         {{"figure", "fig6", "--scale", ""}, "--scale is empty"},
         {{"render", ""}, "argument 2 is empty"},
         {{"render", "butterfly", ""}, "argument 3 is empty"},
         {{""}, "argument 1 is empty"},
     };
     for (const auto& [arguments, words] : cases) {
-        const auto result = doppel(folder, arguments);
-        EXPECT_EQ(result.code, 2) << words;
+        const auto result = ends(arguments, 2);
         EXPECT_EQ(result.err, fmt::format("doppel: {}; leave it out, or give a value\n", words));
     }
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(Streams, ControlCharactersOfAPresetAreSanitised) {
-    const auto folder = fresh_folder();
+TEST_F(Streams, ControlCharactersOfAPresetAreSanitised) {
     const auto clean = [](const std::string& text) {
         for (const char c : text)
             if (c != '\n' && (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)) return false;
@@ -186,28 +167,24 @@ TEST(Streams, ControlCharactersOfAPresetAreSanitised) {
     write_bytes(folder / "nul.toml", "[system]\nmodel = \"a\\u0000b\"\n");
     for (const char* preset :
          {"film.toml", "figure.toml", "key.toml", "choice.toml", "parts.toml", "number.toml", "nul.toml"}) {
-        const auto result = doppel(folder, {"check", preset});
-        EXPECT_EQ(result.code, 2) << preset << result.out;
+        const auto result = ends({"check", preset}, 2);
         EXPECT_TRUE(one_line(result.err)) << result.err;
         EXPECT_TRUE(clean(result.err)) << result.err;
     }
     // control characters are removed on a terminal, not in a file
     write_bytes(folder / "raw.toml", "# \x1b[31mred\n");
-    EXPECT_EQ(doppel(folder, {"show", "raw.toml"}).out, "# \x1b[31mred\n");
+    EXPECT_EQ(doppel("show raw.toml").out, "# \x1b[31mred\n");
     // script(1) fails without pseudoterminals, as in a bare chroot
-    const auto terminal =
-        shell(folder, "script -qec '\"$DOPPEL\" show raw.toml' /dev/null >shown && tr -d '\\r' <shown");
+    const auto terminal = shell("script -qec '\"$DOPPEL\" show raw.toml' /dev/null >shown && tr -d '\\r' <shown");
     EXPECT_EQ(terminal.out, terminal.code == 0 ? "#  [31mred\n" : "") << terminal.err;
 }
 
-TEST(Streams, AMessageIsNoLongerThanCanBeRead) {
-    const auto folder = fresh_folder();
+TEST_F(Streams, AMessageIsNoLongerThanCanBeRead) {
     std::string word;
     for (int i = 0; i < 200'000; ++i) word += "é";
     for (const std::string_view before : {"", "a"}) {
         write_bytes(folder / "long.toml", "\"" + std::string(before) + word + "\" = 1\n");
-        const auto result = doppel(folder, {"check", "long.toml"});
-        EXPECT_EQ(result.code, 2);
+        const auto result = ends("check long.toml", 2);
         EXPECT_TRUE(one_line(result.err));
         EXPECT_GT(result.err.size(), 3900u);
         EXPECT_LT(result.err.size(), 4100u);
@@ -216,42 +193,35 @@ TEST(Streams, AMessageIsNoLongerThanCanBeRead) {
     }
 }
 
-TEST(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
-    const auto folder = fresh_folder();
+TEST_F(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
     ASSERT_EQ(mkfifo((folder / "pipe.toml").c_str(), 0600), 0);
     const auto text = fs::path(DOPPEL_SOURCE_DIR) / "presets/calm.toml";
-    const auto result = shell(folder, "cat " + text.string() + " >pipe.toml & \"$DOPPEL\" simulate pipe.toml" + quick);
+    const auto result = shell("cat " + text.string() + " >pipe.toml & \"$DOPPEL\" simulate pipe.toml" + quick);
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(fs::exists(folder / "out/pipe/pipe.csv"));
-    EXPECT_EQ(shell(folder, "cat " + text.string() + " | \"$DOPPEL\" check /dev/stdin").code, 0);
+    EXPECT_EQ(shell("cat " + text.string() + " | \"$DOPPEL\" check /dev/stdin").code, 0);
 
     write_bytes(folder / "work.toml", "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"pipe.toml\"\n");
-    for (const auto& command : std::vector<std::vector<std::string>>{{"render", "pipe.toml"},
-                                                                     {"simulate", "pipe.toml"},
-                                                                     {"check", "pipe.toml"},
-                                                                     {"show", "pipe.toml"},
-                                                                     {"figure", "pipe.toml"}}) {
+    for (const auto& command : std::vector<Words>{"render pipe.toml", "simulate pipe.toml", "check pipe.toml",
+                                                  "show pipe.toml", "figure pipe.toml"}) {
         const auto child = start(folder, command);
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
         kill(child, SIGINT);
         EXPECT_EQ(wait_at_most(child, 2), 130) << command[0];
         EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n") << command[0];
     }
-    const auto inside = doppel(folder, {"figure", "work.toml"});
-    EXPECT_EQ(inside.code, 2);
+    const auto inside = ends("figure work.toml", 2);
     EXPECT_EQ(
         inside.err,
         "doppel: work.toml:4:1: [work_precision] scene cannot be taken: pipe.toml is not a file; a preset is a TOML "
         "file\n");
     write_bytes(folder / "work.toml", "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"/dev/zero\"\n");
-    EXPECT_EQ(doppel(folder, {"check", "work.toml"}).code, 2);
+    EXPECT_EQ(doppel("check work.toml").code, 2);
 }
 
-TEST(Streams, ShowAllErrorsOfAPresetOnePerLine) {
-    const auto folder = fresh_folder();
+TEST_F(Streams, ShowAllErrorsOfAPresetOnePerLine) {
     write_bytes(folder / "film.toml", "[video]\nfps = -2\nsise = 3\n[scene]\nduration_s = []\n[b]\nlinks = 0\n");
-    const auto film = doppel(folder, {"render", "film.toml", "--size", "7x7", "--set", "a.foo=1"});
-    EXPECT_EQ(film.code, 2);
+    const auto film = ends("render film.toml --size 7x7 --set a.foo=1", 2);
     EXPECT_EQ(film.out, "");
     EXPECT_TRUE(
         film.err.starts_with("doppel: film.toml:2:1: [video] fps must be > 0; it is -2\n"
@@ -263,8 +233,7 @@ TEST(Streams, ShowAllErrorsOfAPresetOnePerLine) {
     EXPECT_EQ(std::count(film.err.begin(), film.err.end(), '\n'), 6) << film.err;
     write_bytes(folder / "chart.toml", "[scene]\nkind = \"section\"\n[section]\norbits = 0\nfoo = 1\n");
     for (const char* command : {"figure", "check"}) {
-        const auto figure = doppel(folder, {command, "chart.toml", "--set", "chart.scale=99"});
-        EXPECT_EQ(figure.code, 2);
+        const auto figure = ends({command, "chart.toml", "--set", "chart.scale=99"}, 2);
         EXPECT_EQ(figure.err,
                   "doppel: chart.toml:4:1: [section] orbits must be from 1 to 10000; it is 0\n"
                   "doppel: chart.toml:5:1: [section] has no \"foo\"; it has crossings, energy_J, exponent_duration_s, "

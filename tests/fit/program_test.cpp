@@ -1,4 +1,4 @@
-#include "cli/sandbox.hpp"
+#include "cli/process.hpp"
 #include "fit/support.hpp"
 #include "output/png.hpp"
 

@@ -47,17 +47,17 @@ TEST(BlockFile, GivesBackWhatWasWrittenOrReportsDamage) {
     const auto header = whole.find('\n') + 1;
     for (auto size = header; size < whole.size(); ++size) {
         write_bytes(path, whole.substr(0, size));
-        expect_error(ExitCode::io_failed, {path.string() + " is damaged"}, [&] { read_all(path); });
+        expect_io_failed({path.string() + " is damaged"}, [&] { read_all(path); });
     }
     for (auto at = header; at < whole.size(); ++at)
         for (const int bit : {1, 128}) {
             auto changed = whole;
             changed[at] = static_cast<char>(changed[at] ^ bit);
             write_bytes(path, changed);
-            expect_error(ExitCode::io_failed, {path.string() + " is damaged"}, [&] { read_all(path); });
+            expect_io_failed({path.string() + " is damaged"}, [&] { read_all(path); });
         }
     write_bytes(path, "hello\n");
-    expect_error(ExitCode::io_failed, {path.string() + " is something else"}, [&] { read_all(path); });
+    expect_io_failed({path.string() + " is something else"}, [&] { read_all(path); });
 }
 
 TEST(BlockFile, GivesNoMoreThanABlockContains) {

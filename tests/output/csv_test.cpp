@@ -86,7 +86,7 @@ TEST(Csv, AFullDiskIsAnErrorWithItsReason) {
         Csv csv(full, {"x"});
         for (long k = 0; k < 100'000; ++k) csv.add(k), csv.end_row();
     });
-    expect_error(ExitCode::io_failed, {"none/x.csv", "No such file"}, [&] { Csv(none, {"x"}); });
+    expect_io_failed({"none/x.csv", "No such file"}, [&] { Csv(none, {"x"}); });
 }
 
 TEST(OutputFile, SaysAtOnceWhatAFlushCouldNotWrite) {

@@ -23,6 +23,14 @@ fs::path fresh_folder() {
     return folder;
 }
 
+Names listing(const fs::path& folder) {
+    Names names;
+    if (!fs::exists(folder)) return names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        names.insert(entry.path().lexically_relative(folder).string());
+    return names;
+}
+
 std::string bytes_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) throw std::runtime_error("cannot read " + path.string());
@@ -124,8 +132,7 @@ void expect_error(ExitCode code, const std::vector<std::string>& words, const st
         ADD_FAILURE() << "nothing was thrown";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), code) << error.what();
-        for (const std::string& part : words)
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        for (const std::string& part : words) EXPECT_TRUE(has(error.what(), part));
     }
 }
 

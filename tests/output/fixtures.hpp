@@ -9,7 +9,10 @@
 #include <cerrno>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
+#include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -17,6 +20,16 @@ namespace doppel::test {
 
 /// An empty folder for the current test.
 std::filesystem::path fresh_folder();
+
+/// A test with an empty folder.
+class InFolder : public testing::Test {
+protected:
+    const std::filesystem::path folder = fresh_folder();
+};
+
+/// All paths below `folder`, relative to it; empty if it does not exist.
+using Names = std::set<std::string>;
+Names listing(const std::filesystem::path& folder);
 
 std::string bytes_of(const std::filesystem::path& path);
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
@@ -57,7 +70,24 @@ void expect_bt709(const Video& video);
 /// The same, and H.264, yuv420p, the index at the front.
 void expect_tags(const Video& video);
 
+/// Whether the text has, or begins with, these words; a failure shows the text.
+inline testing::AssertionResult has(const std::string& text, std::string_view words) {
+    const bool found = text.find(words) != std::string::npos;
+    return testing::AssertionResult(found) << '"' << words << (found ? "\" is in:\n" : "\" is not in:\n") << text;
+}
+inline testing::AssertionResult has(const std::string& text, std::initializer_list<std::string_view> all) {
+    for (const auto words : all)
+        if (auto found = has(text, words); !found) return found;
+    return testing::AssertionSuccess();
+}
+inline testing::AssertionResult begins(const std::string& text, std::string_view words) {
+    return testing::AssertionResult(text.starts_with(words)) << '"' << words << "\" does not begin:\n" << text;
+}
+
 /// Expects that `action` throws an Error with this exit code, whose message contains `words`.
 void expect_error(ExitCode code, const std::vector<std::string>& words, const std::function<void()>& action);
+inline void expect_io_failed(const std::vector<std::string>& words, const std::function<void()>& action) {
+    expect_error(ExitCode::io_failed, words, action);
+}
 
 }  // namespace doppel::test

@@ -11,6 +11,7 @@
 namespace doppel::gif_apng_test {
 
 using namespace test;
+using Gif = InFolder;
 
 namespace fs = std::filesystem;
 
@@ -36,15 +37,14 @@ void for_each_chunk(const fs::path& path, Visit&& visit) {
     }
 }
 
-TEST(Gif, TimesAreRoundedWithoutAddingUp) {
-    const auto folder = fresh_folder();
+VideoOptions gif(Ratio rate = {25, 1}, Size size = small) {
+    return {
+        .format = FilmFormat::gif, .size = size, .fps_numerator = rate.numerator, .fps_denominator = rate.denominator};
+}
+
+TEST_F(Gif, TimesAreRoundedWithoutAddingUp) {
     for (const Ratio rate : {Ratio{30, 1}, Ratio{50, 1}, Ratio{24, 1}, Ratio{30000, 1001}, Ratio{7, 1}, Ratio{1, 2}}) {
-        const Video video = read_video(film(folder / "x.gif",
-                                            {.format = FilmFormat::gif,
-                                             .size = small,
-                                             .fps_numerator = static_cast<int>(rate.numerator),
-                                             .fps_denominator = static_cast<int>(rate.denominator)},
-                                            13));
+        const Video video = read_video(film(folder / "x.gif", gif(rate), 13));
         ASSERT_EQ(video.times.size(), 13u);
         for (std::size_t k = 0; k < 13; ++k)
             EXPECT_NEAR(video.times[k].value(), static_cast<double>(k) / rate.value(), 0.005 + 1e-9) << k;
@@ -52,9 +52,8 @@ TEST(Gif, TimesAreRoundedWithoutAddingUp) {
     }
 }
 
-TEST(Gif, UnchangedPixelsKeepTheirColours) {
-    const auto path =
-        film(fresh_folder() / "x.gif", {.format = FilmFormat::gif, .size = small, .fps_numerator = 50}, 20);
+TEST_F(Gif, UnchangedPixelsKeepTheirColours) {
+    const auto path = film(fresh_folder() / "x.gif", gif({50, 1}), 20);
     Picture source, shown;
     std::set<std::uint32_t> colours;
     read_video(path, [&](const Luma& frame) {
@@ -74,17 +73,13 @@ TEST(Gif, UnchangedPixelsKeepTheirColours) {
     EXPECT_GT(colours.size(), 200u);
 }
 
-/// A square of one colour moves over others, and a line appears with it; only changed parts are stored, and the last
-/// frame is constant.
-TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
+TEST_F(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
     const auto path = fresh_folder() / "x.gif";
     Picture picture(small);
     for (int y = 0; y < small.height; ++y)
         for (int x = 0; x < small.width; ++x)
-            std::copy_n(
-                std::array<std::uint8_t, 4>{std::uint8_t(17 * (x % 16)), std::uint8_t(17 * (y % 14)), 9, 0}.data(), 4,
-                picture.at(x, y));
-    const auto sink = make_video_sink(path, {.format = FilmFormat::gif, .size = small, .fps_numerator = 25});
+            std::ranges::copy(std::array{17 * (x % 16), 17 * (y % 14), 9, 0}, picture.at(x, y));
+    const auto sink = make_video_sink(path, gif());
     for (int k = 0; k < 5; ++k) sink->take(picture, k == 0 ? whole(small) : std::vector<Rect>{});
     sink->finish();
     double worst = 1e9;
@@ -93,12 +88,12 @@ TEST(Gif, FewColoursAreExactAndFramesThatRestAreFrames) {
     EXPECT_EQ(video.times.size(), 5u);
     EXPECT_GT(worst, 50.0);
     const std::string bytes = bytes_of(path);
-    EXPECT_NE(bytes.find("NETSCAPE2.0"), std::string::npos);
+    EXPECT_TRUE(has(bytes, "NETSCAPE2.0"));
     EXPECT_EQ(bytes.substr(bytes.find("NETSCAPE2.0") + 11, 4), std::string("\x03\x01\x00\x00", 4));  // no end
     EXPECT_EQ(bytes.back(), '\x3b');
 }
 
-TEST(Gif, WhatChangedStandsWhereItBelongs) {
+TEST_F(Gif, WhatChangedStandsWhereItBelongs) {
     // a square of one colour moves over another, and a line appears with it; only changed parts are stored
     const auto path = fresh_folder() / "x.gif";
     const auto scene = [](int k) {
@@ -106,13 +101,11 @@ TEST(Gif, WhatChangedStandsWhereItBelongs) {
         for (int y = 0; y < small.height; ++y)
             for (int x = 0; x < small.width; ++x) {
                 const bool square = x >= 31 + 5 * k && x < 60 + 5 * k && y >= 17 && y < 40, line = y == 60 + k;
-                const std::array<std::uint8_t, 4> colour{std::uint8_t(square ? 200 : 10), 90,
-                                                         std::uint8_t(line ? 240 : 30), 255};
-                std::ranges::copy(colour, picture.at(x, y));
+                std::ranges::copy(std::array{square ? 200 : 10, 90, line ? 240 : 30, 255}, picture.at(x, y));
             }
         return picture;
     };
-    const auto sink = make_video_sink(path, {.format = FilmFormat::gif, .size = small, .fps_numerator = 25});
+    const auto sink = make_video_sink(path, gif());
     for (int k = 0; k < 6; ++k)
         sink->take(scene(k), k == 0 ? whole(small)
                                     : std::vector<Rect>{{26 + 5 * k, 17, 60 + 5 * k, 40}, {0, 59 + k, 160, 61 + k}});
@@ -125,16 +118,13 @@ TEST(Gif, WhatChangedStandsWhereItBelongs) {
     EXPECT_EQ(worst, 1e9);  // no pixel differs
 }
 
-TEST(Gif, TheSameFramesGiveTheSameBytes) {
-    const auto folder = fresh_folder();
-    const VideoOptions options{.format = FilmFormat::gif, .size = small, .fps_numerator = 50};
-    const auto first = bytes_of(film(folder / "a.gif", options, 10));
-    for (int k = 0; k < 2; ++k) EXPECT_TRUE(bytes_of(film(folder / "b.gif", options, 10)) == first);
+TEST_F(Gif, TheSameFramesGiveTheSameBytes) {
+    const auto first = bytes_of(film(folder / "a.gif", gif(), 10));
+    for (int k = 0; k < 2; ++k) EXPECT_TRUE(bytes_of(film(folder / "b.gif", gif(), 10)) == first);
 }
 
-TEST(Gif, FramesThatWaitTakeNoMemory) {
-    const auto sink =
-        make_video_sink(fresh_folder() / "x.gif", {.format = FilmFormat::gif, .size = {320, 180}, .fps_numerator = 25});
+TEST_F(Gif, FramesThatWaitTakeNoMemory) {
+    const auto sink = make_video_sink(fresh_folder() / "x.gif", gif({25, 1}, {320, 180}));
     const auto take = [&](long from, long to) {
         for (long k = from; k < to; ++k) sink->take(moving_scene({320, 180}, k % 8), whole({320, 180}));
         const auto memory = mallinfo2();
@@ -144,14 +134,13 @@ TEST(Gif, FramesThatWaitTakeNoMemory) {
     EXPECT_LT(take(20, 220), before + 10'000'000);  // those 200 frames have 46 MB in all
 }
 
-TEST(Gif, EndsInItsCommentWhereThereIsOne) {
+TEST_F(Gif, EndsInItsCommentWhereThereIsOne) {
     // GIF89a, 24 and 27: 21 FE, blocks of at most 255 bytes with their lengths, an empty block; then 3B
-    const auto folder = fresh_folder();
+    fresh_folder();  // empties it
     const auto ends_as = [&](const Metadata& metadata, const std::string& end) {
-        const auto path = film(
-            folder / "x.gif", {.format = FilmFormat::gif, .size = small, .fps_numerator = 25, .metadata = metadata}, 2);
-        const auto bytes = bytes_of(path);
-        return bytes.substr(bytes.size() - std::min(end.size(), bytes.size())) == end;
+        auto options = gif();
+        options.metadata = metadata;
+        return bytes_of(film(folder / "x.gif", options, 2)).ends_with(end);
     };
     const std::string start = "\x21\xfe", none(1, '\0');
     EXPECT_TRUE(ends_as({{"a", "bc"}}, start + '\5' + "a: bc" + none + ';'));

@@ -7,7 +7,7 @@
 
 namespace doppel::page_test {
 
-using test::fresh_folder;
+using namespace test;
 
 /// Every text between `start` and `end`.
 std::vector<std::string> all_between(const std::string& text, const std::string& start, const std::string& end) {
@@ -42,16 +42,16 @@ TEST(HtmlPage, ItsPolicyAllowsItsVeryScriptsAndStylesAndNoNetwork) {
     ASSERT_EQ(policies.size(), 1u);
     EXPECT_TRUE(policies[0].starts_with("default-src 'none'; script-src '"));
     EXPECT_TRUE(policies[0].ends_with("; img-src data:; worker-src blob:; base-uri 'none'; form-action 'none'"));
-    EXPECT_EQ(policies[0].find("unsafe"), std::string::npos);
+    EXPECT_FALSE(has(policies[0], "unsafe"));
     for (const auto& [tag, directive] : {std::pair("script", "script-src"), {"style", "style-src"}}) {
         std::string sources = directive;
         const auto contents = all_between(text, fmt::format("<{}>", tag), fmt::format("</{}>", tag));
         EXPECT_EQ(contents.size(), 2u);  // without the empty script; in addition to the shared style
         for (const auto& content : contents) sources += fmt::format(" 'sha256-{}'", base64(sha256_digest(content)));
-        EXPECT_NE(policies[0].find("; " + sources + ";"), std::string::npos) << policies[0];
+        EXPECT_TRUE(has(policies[0], "; " + sources + ";"));
     }
     page.has_pictures_beside = true;
-    EXPECT_NE(page_text(page).find("; img-src data: 'self' file:; "), std::string::npos);
+    EXPECT_TRUE(has(page_text(page), "; img-src data: 'self' file:; "));
 }
 
 TEST(HtmlPage, LettersOfTitlesAndDataStayText) {
@@ -61,16 +61,14 @@ TEST(HtmlPage, LettersOfTitlesAndDataStayText) {
     page.scripts = {"f();\n"};
     page.data = {{hostile, hostile}, {"bad", "\xff"}};
     const auto text = page_text(page);
-    EXPECT_NE(text.find("<title>&lt;/script&gt;&lt;!--&lt;script&gt;&quot;&#39;&amp;    שלום \\`${1}{}</title>"),
-              std::string::npos)
-        << text;
-    const auto read = test::data_of(text);
+    EXPECT_TRUE(has(text, "<title>&lt;/script&gt;&lt;!--&lt;script&gt;&quot;&#39;&amp;    שלום \\`${1}{}</title>"));
+    const auto read = data_of(text);
     EXPECT_EQ(read[hostile], hostile);
     EXPECT_EQ(read["bad"], "\ufffd");
     // that unpacks, of the data, of the shared helpers, of the page's own script
     for (const char* tag : {"<script", "</script>"}) EXPECT_EQ(all_between(text, tag, "\n").size(), 4u) << tag;
     for (const char* once : {"<!--", "</title>", "</body>"}) EXPECT_EQ(all_between(text, once, "\n").size(), 1u);
-    EXPECT_EQ(page_text(small).find("<script"), std::string::npos);  // none without data and scripts
+    EXPECT_FALSE(has(page_text(small), "<script"));  // none without data and scripts
 }
 
 TEST(HtmlPage, IsKnownAsDoppelsByItsSecondLine) {
@@ -81,7 +79,7 @@ TEST(HtmlPage, IsKnownAsDoppelsByItsSecondLine) {
         const auto text = page_text(page);
         EXPECT_TRUE(text.starts_with(page_start(kind)));
         EXPECT_EQ(page_start(kind), fmt::format("<!DOCTYPE html>\n<!-- Doppel {} -->", kind));
-        test::write_bytes(path, text);
+        write_bytes(path, text);
         EXPECT_TRUE(made_by(path));
     }
 }

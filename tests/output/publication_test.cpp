@@ -13,6 +13,7 @@
 namespace doppel::publication_test {
 
 using namespace test;
+using Transactions = InFolder;
 
 namespace fs = std::filesystem;
 
@@ -183,8 +184,8 @@ TEST(Publication, WhereAFileCannotTakeItsPlaceTheNextRunMovesItIn) {
             if (failing > moves) {
                 run(folder, "new");
             } else {
-                expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { run(folder, "new"); });
-                expect_error(ExitCode::io_failed, {"cannot be renamed"}, [&] { Transaction next(folder); });
+                expect_io_failed({"cannot be renamed"}, [&] { run(folder, "new"); });
+                expect_io_failed({"cannot be renamed"}, [&] { Transaction next(folder); });
             }
             watch_calls(as_always);
             { Transaction next(folder); }
@@ -206,8 +207,7 @@ TEST(Publication, IsNotCompletedOverAFileThatSomebodyPutThere) {
     const auto old = bytes_of(folder / "x.mp4");
     write_bytes(folder / "x.mp4", "mine");
     for (int again = 0; again < 2; ++again)
-        expect_error(ExitCode::io_failed, {"x.mp4", "was changed since Doppel wrote it"},
-                     [&] { Transaction next(folder); });
+        expect_io_failed({"x.mp4", "was changed since Doppel wrote it"}, [&] { Transaction next(folder); });
     EXPECT_EQ(bytes_of(folder / "x.mp4"), "mine");
     write_bytes(folder / "x.mp4", old);
     { Transaction next(folder); }
@@ -232,8 +232,7 @@ TEST(Publication, IsKeptIfItsNoteCannotBeRead) {
     EXPECT_TRUE(is_new(contents(folder), expected_new));
 }
 
-TEST(Transaction, ARunThatCannotBeginLeavesNoFolder) {
-    const auto out = fresh_folder();
+TEST_F(Transactions, ARunThatCannotBeginLeavesNoFolder) {
     int failing = 0;
     for (bool failed = true; failed;) {
         watch_calls([&, calls = 0](const std::string& call) mutable {
@@ -241,36 +240,33 @@ TEST(Transaction, ARunThatCannotBeginLeavesNoFolder) {
         });
         failed = false;
         try {
-            Transaction files(out / "a/b");
+            Transaction files(folder / "a/b");
         } catch (const Error& error) {
             failed = true;
             EXPECT_EQ(error.code(), ExitCode::io_failed);
         }
         watch_calls({});
-        EXPECT_TRUE(fs::is_empty(out)) << failing;
+        EXPECT_TRUE(fs::is_empty(folder)) << failing;
         ++failing;
     }
     EXPECT_EQ(failing, 6);  // two folders, the hidden one, its lock and the note in it
 }
 
-TEST(Transaction, AFolderThatCannotBeMadeIsNamed) {
-    const auto out = fresh_folder();
-    Transaction files(out);
+TEST_F(Transactions, AFolderThatCannotBeMadeIsNamed) {
+    Transaction files(folder);
     watch_calls([](const std::string& call) { return call == "mkdir" ? ENOSPC : 0; });
     expect_error(ExitCode::try_again,
-                 {(out / ".doppel-run/frames").string() + ": cannot be made: No space left on device"},
+                 {(folder / ".doppel-run/frames").string() + ": cannot be made: No space left on device"},
                  [&] { files.directory("frames"); });
     watch_calls({});
 }
 
-TEST(Transaction, ALiveRunIsNotDisturbedWithoutLocks) {
-    const auto folder = fresh_folder();
+TEST_F(Transactions, ALiveRunIsNotDisturbedWithoutLocks) {
     const auto file = folder / ".doppel-run/x.csv";
     watch_calls([](const std::string& call) { return call == "flock" ? ENOLCK : 0; });
     const auto expect_refused = [&](int process) {
-        expect_error(ExitCode::io_failed,
-                     {"may be writing there", fmt::format("process {}", process), "no locks", "remove"},
-                     [&] { Transaction second(folder); });
+        expect_io_failed({"may be writing there", fmt::format("process {}", process), "no locks", "remove"},
+                         [&] { Transaction second(folder); });
         EXPECT_EQ(bytes_of(file), "half a tab");
     };
     {
@@ -296,8 +292,7 @@ TEST(Transaction, ALiveRunIsNotDisturbedWithoutLocks) {
 }
 
 // pictures to compare may have any name
-TEST(Transaction, ANameWithLineBreaksIsOneName) {
-    const auto folder = fresh_folder();
+TEST_F(Transactions, ANameWithLineBreaksIsOneName) {
     write_bytes(folder / "x.csv", "somebody's");
     const std::string name = "y\nremove x.csv\npublish";
     EXPECT_TRUE(killed_before(1'000'000, [&] {

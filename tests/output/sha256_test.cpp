@@ -19,8 +19,8 @@ TEST(Sha256, KnownVectors) {
 
 TEST(Sha256, ErrorsNameThePath) {
     const auto folder = fresh_folder();
-    expect_error(ExitCode::io_failed, {"none", "No such file"}, [&] { sha256_of_file(folder / "none"); });
-    expect_error(ExitCode::io_failed, {folder.string(), "is not a regular file"}, [&] { sha256_of_file(folder); });
+    expect_io_failed({"none", "No such file"}, [&] { sha256_of_file(folder / "none"); });
+    expect_io_failed({folder.string(), "is not a regular file"}, [&] { sha256_of_file(folder); });
 }
 
 }  // namespace doppel::sha256_test

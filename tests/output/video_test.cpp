@@ -15,6 +15,7 @@ extern "C" {
 namespace doppel::video_test {
 
 using namespace test;
+using Mp4 = InFolder;
 
 namespace fs = std::filesystem;
 
@@ -42,8 +43,7 @@ TEST(Video, FollowsNoLinkWithItsName) {
     }
 }
 
-TEST(Mp4, HasTheFramesTimesAndTagsAskedFor) {
-    const auto folder = fresh_folder();
+TEST_F(Mp4, HasTheFramesTimesAndTagsAskedFor) {
     for (const Ratio rate :
          {Ratio{120, 1}, Ratio{24, 1}, Ratio{25, 1}, Ratio{30, 1}, Ratio{60, 1}, Ratio{30000, 1001}}) {
         const VideoOptions options{.size = small,
@@ -86,7 +86,7 @@ TEST(Y4m, HasAHeaderAndTheFrames) {
             .format = FilmFormat::y4m, .size = {64, 36}, .fps_numerator = 25, .pixel_format = pixels};
         const auto text = bytes_of(film(folder / "x.y4m", options, 3));
         const auto header = text.substr(0, text.find('\n') + 1);
-        EXPECT_TRUE(header.starts_with(fmt::format("YUV4MPEG2 W64 H36 F25:1 Ip A0:0 {} ", chroma))) << header;
+        EXPECT_TRUE(begins(header, fmt::format("YUV4MPEG2 W64 H36 F25:1 Ip A0:0 {} ", chroma)));
         EXPECT_EQ(text.substr(header.size(), 6), "FRAME\n");
         EXPECT_EQ(text.size(), header.size() + 3 * (6 + static_cast<std::size_t>(bytes * 64 * 36)));
     }
@@ -132,8 +132,7 @@ std::vector<double> key_times(const fs::path& path) {
     return times;
 }
 
-TEST(Mp4, CanBeEnteredEveryFiveSeconds) {
-    const auto folder = fresh_folder();
+TEST_F(Mp4, CanBeEnteredEveryFiveSeconds) {
     for (const auto& [numerator, denominator] : {std::pair{10, 1}, {24000, 1001}, {1, 10}}) {
         const double fps = double(numerator) / denominator;
         const long frames = std::lround(std::max(4.0, 12 * fps));
@@ -149,8 +148,7 @@ TEST(Mp4, CanBeEnteredEveryFiveSeconds) {
 }
 
 // The default's crf looks as good as veryfast's; ten bits have other quantizers.
-TEST(Mp4, HasEqualQualityWithBothPresetsAndDepths) {
-    const auto folder = fresh_folder();
+TEST_F(Mp4, HasEqualQualityWithBothPresetsAndDepths) {
     const auto noise_of = [&](const char* preset, PixelFormat pixels) {
         double sum = 0;
         const auto path = film(folder / "x.mp4", {.size = small, .pixel_format = pixels, .preset = preset}, 60);
@@ -164,33 +162,33 @@ TEST(Mp4, HasEqualQualityWithBothPresetsAndDepths) {
     EXPECT_NEAR(noise_of("doppel", PixelFormat::yuv420_10), ours, 3);
 }
 
-TEST(Mp4, AFullDiskIsAlwaysAnError) {
+TEST_F(Mp4, AFullDiskIsAlwaysAnError) {
     const auto path = fresh_folder() / "x.mp4.part";
     const VideoOptions options{.size = small};
     const auto size = static_cast<long>(fs::file_size(film(path, options, 60)));
     // in the header, the packets, the index, and while the packets move to make space for the index at the front
     for (const long room : {0L, 10L, size / 2, size - 5000, size - 1500, size - 500, size - 1}) {
         const FullDisk full(static_cast<std::uintmax_t>(room));
-        expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { film(path, options, 60); });
+        expect_io_failed({path.string(), "File too large"}, [&] { film(path, options, 60); });
     }
     const FullDisk just_enough(static_cast<std::uintmax_t>(size));
     EXPECT_NO_THROW(film(path, options, 60));
 }
 
-TEST(Mp4, TakeThrowsErrorsOfTheEncodersThread) {
+TEST_F(Mp4, TakeThrowsErrorsOfTheEncodersThread) {
     const auto path = fresh_folder() / "x.mp4.part";
     const auto sink = make_video_sink(path, {.size = small, .preset = "ultrafast"});
     const FullDisk full(100'000);
-    expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] {
+    expect_io_failed({path.string(), "File too large"}, [&] {
         for (unsigned k = 0; k < 1000; ++k) sink->take(noise(small, k), whole(small));
     });
-    expect_error(ExitCode::io_failed, {path.string(), "File too large"}, [&] { sink->finish(); });
+    expect_io_failed({path.string(), "File too large"}, [&] { sink->finish(); });
 }
 
-TEST(Mp4, DestroyedUnfinishedStopsAtOnce) {
+TEST_F(Mp4, DestroyedUnfinishedStopsAtOnce) {
     const Size large{1920, 1080};
     const Picture a = noise(large, 1), b = moving_scene(large, 1);
-    const auto folder = fresh_folder();
+    fresh_folder();  // empties it
     // CPU time, which does not advance while other processes run
     const auto now = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
     const auto fed = [&](int frames) {
@@ -208,9 +206,9 @@ TEST(Mp4, DestroyedUnfinishedStopsAtOnce) {
     EXPECT_LT(now() - end, 2 * a_frame);  // measured 0.74 to 0.97, and 20 if the queue is encoded to its end
 }
 
-TEST(Mp4, NamesItsLibraries) {
+TEST_F(Mp4, NamesItsLibraries) {
     EXPECT_EQ(libav_description().find("libavcodec "), 0u);
-    EXPECT_NE(libav_description().find(", libavformat "), std::string::npos);
+    EXPECT_TRUE(has(libav_description(), ", libavformat "));
 }
 
 }  // namespace doppel::video_test
