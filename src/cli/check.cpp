@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -199,20 +198,19 @@ void add_needs(Findings& found, const std::optional<Needs>& needs) {
     json["shard_repeated_share"] = repeated_share;
 }
 
-/// The forecasts of the sides, by letter, as far as they take little time.
-std::map<char, std::optional<Forecast>> forecasts_of(const Scene& scene, const SimulationEstimate& simulation,
-                                                     const std::atomic<bool>& stop) {
+/// The forecasts of the sides, as far as they take little time.
+std::vector<std::optional<Forecast>> forecasts_of(const Scene& scene, const SimulationEstimate& simulation,
+                                                  const std::atomic<bool>& stop) {
     constexpr double patience = 2, longest = 6;  // s: runs that only give information; finding what they give
     const auto letters = scene.letters();
-    std::map<char, std::optional<Forecast>> forecasts;
-    for (const char letter : letters) forecasts[letter];
+    std::vector<std::optional<Forecast>> forecasts(letters.size());
     if (simulation.at_least || simulation.seconds >= patience) return forecasts;
     const TimeLimit limit(longest, stop);
     parallel_for(letters.size(), cores(), [&](std::size_t i) {
         const auto& side = scene.side(letters[i]);
         if (side.replay) return;
         try {
-            forecasts.at(letters[i]) = forecast_of(scene, side, limit.reached());
+            forecasts[i] = forecast_of(scene, side, limit.reached());
         } catch (const Error& error) {
             throw_if_set(stop);
             if (error.code() != ExitCode::interrupted) throw;  // otherwise unknown: it takes too long
@@ -257,11 +255,11 @@ void check_film(Findings& found, const Scene& scene, const std::atomic<bool>& st
         why_not = error.what();
     }
     const auto letters = scene.letters();
-    std::map<char, std::vector<std::string>> alternatives;
-    for (const char letter : letters)
-        if (scene.side(letter).choice) alternatives[letter] = alternatives_of(scene, letter, stop);
+    std::vector<std::vector<std::string>> alternatives(letters.size());
+    for (std::size_t i = 0; i < letters.size(); ++i)
+        if (scene.side(letters[i]).choice) alternatives[i] = alternatives_of(scene, letters[i], stop);
     const auto forecasts = forecasts_of(scene, simulation, stop);
-    for (const char letter : letters) add_side(found, scene, letter, alternatives[letter], forecasts.at(letter));
+    for (std::size_t i = 0; i < letters.size(); ++i) add_side(found, scene, letters[i], alternatives[i], forecasts[i]);
     if (const auto words = no_difference(scene)) {
         found.line("  pair   {}", *words);
         found.warnings.push_back(*words);

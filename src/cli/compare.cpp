@@ -12,7 +12,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -367,14 +366,6 @@ bool compare(const CompareOptions& options) {
 }
 
 }  // namespace
-
-long Comparison::count(Match match) const {
-    return std::ranges::count(pictures, match, &ComparedPicture::match);
-}
-
-std::string Comparison::summary() const {
-    return fmt::format("{} of {} pictures differ", count(Match::differs) + count(Match::missing), pictures.size());
-}
 
 void add_compare(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<CompareOptions>();

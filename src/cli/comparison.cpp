@@ -4,6 +4,7 @@
 #include "base/read_file.hpp"
 #include "base/text.hpp"
 #include "embedded/cli.hpp"
+#include "output/files.hpp"
 #include "output/page.hpp"
 #include "output/png.hpp"
 
@@ -15,6 +16,14 @@
 #include <string_view>
 
 namespace doppel {
+
+long Comparison::count(Match match) const {
+    return std::ranges::count(pictures, match, &ComparedPicture::match);
+}
+
+std::string Comparison::summary() const {
+    return fmt::format("{} of {} pictures differ", count(Match::differs) + count(Match::missing), pictures.size());
+}
 
 namespace {
 
@@ -45,27 +54,22 @@ void write_junit(const std::filesystem::path& place, const Comparison& compariso
         fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"", comparison.pictures.size(),
                     comparison.count(Match::differs) + comparison.count(Match::missing),
                     comparison.count(Match::unreadable), seconds);
-    OutputFile file(place);
-    file.write(junit_start);
-    file.write("\n");
-    file.write(fmt::format("<testsuites name=\"doppel compare\" {0}>\n  <testsuite name=\"{1}\" {0} skipped=\"0\">\n",
-                           counts, suite));
-    file.write(fmt::format(
-        "    <properties>\n      <property name=\"expected\" value=\"{}\"/>\n"
-        "      <property name=\"actual\" value=\"{}\"/>\n      <property name=\"doppel\" value=\"{} ({})\"/>\n"
+    auto xml = fmt::format(
+        "{0}\n<testsuites name=\"doppel compare\" {1}>\n  <testsuite name=\"{2}\" {1} skipped=\"0\">\n"
+        "    <properties>\n      <property name=\"expected\" value=\"{2}\"/>\n"
+        "      <property name=\"actual\" value=\"{3}\"/>\n      <property name=\"doppel\" value=\"{4} ({5})\"/>\n"
         "    </properties>\n",
-        suite, markup(comparison.actual), version(), revision()));
+        junit_start, counts, suite, markup(comparison.actual), version(), revision());
     for (const auto& picture : comparison.pictures) {
-        file.write(fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", suite,
-                               markup(picture.name), picture.seconds));
+        xml += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", suite, markup(picture.name),
+                           picture.seconds);
         const auto inside = picture.match != Match::passes ? fault(picture)
                             : picture.message.empty()
                                 ? ""
                                 : "      <system-out>" + markup(picture.message) + "</system-out>\n";
-        file.write(inside.empty() ? "/>\n" : ">\n" + inside + "    </testcase>\n");
+        xml += inside.empty() ? "/>\n" : ">\n" + inside + "    </testcase>\n";
     }
-    file.write("  </testsuite>\n</testsuites>\n");
-    file.close();
+    write_file(place, xml + "  </testsuite>\n</testsuites>\n");
 }
 
 namespace {
