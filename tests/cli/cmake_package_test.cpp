@@ -20,24 +20,21 @@ doppel_add_golden_test(NAME chart PRESET fig6 FIGURE SIZE 160x90 GOLDEN charts S
 )";
 
 /// A user's project with an installed Doppel that was moved after its installation.
-class CmakePackage : public testing::Test {
+class CmakePackage : public ProgramTest {
 protected:
     void SetUp() override {
-        folder_ = fresh_folder();
         const auto build = fs::path(DOPPEL_TEST_OUTPUT).parent_path();
         const auto installed = run(fmt::format("cmake --install '{}' --prefix \"$PWD/first\"", build.string()));
         ASSERT_EQ(installed.code, 0) << installed.out << installed.err;
-        fs::rename(folder_ / "first", folder_ / "moved here");
-        std::ofstream(folder_ / "CMakeLists.txt") << project;
+        fs::rename(folder / "first", folder / "moved here");
+        std::ofstream(folder / "CMakeLists.txt") << project;
         ASSERT_EQ(run("'moved here/bin/doppel' show calm > mine.toml").code, 0);
         const auto configured = run("cmake -G Ninja -S . -B build -D CMAKE_PREFIX_PATH=\"$PWD/moved here\"");
         ASSERT_EQ(configured.code, 0) << configured.out << configured.err;
     }
 
-    Outcome run(const std::string& script) const { return shell(folder_, "unset CI; " + script); }
+    Outcome run(const std::string& script) const { return shell("unset CI; " + script); }
     Outcome run_tests() const { return run("ctest --test-dir build --output-on-failure"); }
-
-    fs::path folder_;
 };
 
 TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
@@ -48,23 +45,23 @@ TEST_F(CmakePackage, GoldenTestsPassFailAndAreRenewed) {
     const auto refused = run("CI=true cmake --build build --target doppel-update-goldens");
     EXPECT_NE(refused.code, 0);
     EXPECT_TRUE(has(refused.out, "not by CI"));
-    EXPECT_FALSE(fs::exists(folder_ / "golden"));
+    EXPECT_FALSE(fs::exists(folder / "golden"));
 
     const auto updated = run("cmake --build build --target doppel-update-goldens");
     EXPECT_EQ(updated.code, 0) << updated.out;
-    EXPECT_TRUE(fs::exists(folder_ / "charts/fig6.png"));
+    EXPECT_TRUE(fs::exists(folder / "charts/fig6.png"));
     const auto passed = run("cp -r golden kept; CI=true ctest --test-dir build --output-on-failure");
     EXPECT_EQ(passed.code, 0) << passed.out;
 
-    spoil(folder_ / "golden/000001.png");
+    spoil(folder / "golden/000001.png");
     const auto failed = run_tests();
     EXPECT_NE(failed.code, 0);
     EXPECT_TRUE(has(failed.out, "1 tests failed out of 2"));
     EXPECT_TRUE(has(failed.out, "40 pixels differ by more than 3/255"));
-    EXPECT_TRUE(fs::exists(folder_ / "build/doppel/swing/mine/compare/000001.diff.png"));
-    const auto junit = document_of(bytes_of(folder_ / "build/doppel/swing/compare.xml"));
+    EXPECT_TRUE(fs::exists(folder / "build/doppel/swing/mine/compare/000001.diff.png"));
+    const auto junit = document_of(bytes_of(folder / "build/doppel/swing/compare.xml"));
     EXPECT_EQ(junit["tests"] + junit["failures"], "21");
-    const auto page = document_of(bytes_of(folder_ / "build/doppel/swing/compare.html"));
+    const auto page = document_of(bytes_of(folder / "build/doppel/swing/compare.html"));
     EXPECT_EQ(page.all("img").size(), 3u);
 
     EXPECT_EQ(run("cmake --build build --target doppel-update-goldens-swing").code, 0);
@@ -107,9 +104,9 @@ TEST_F(CmakePackage, RefusesWhatMakesNoSense) {
         {"NAME one PRESET calm FIGURE", "GOLDEN is missing"},
     };
     for (const auto& [arguments, words] : calls) {
-        std::ofstream(folder_ / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.21)\nproject(sample NONE)\n"
-                                                     "find_package(doppel REQUIRED)\ndoppel_add_golden_test("
-                                                  << arguments << ")\n";
+        std::ofstream(folder / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.21)\nproject(sample NONE)\n"
+                                                    "find_package(doppel REQUIRED)\ndoppel_add_golden_test("
+                                                 << arguments << ")\n";
         const auto configured = run("cmake -S . -B build");
         EXPECT_NE(configured.code, 0);
         EXPECT_TRUE(has(configured.err, words));

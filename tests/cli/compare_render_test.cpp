@@ -10,10 +10,9 @@ namespace fs = std::filesystem;
 using namespace test;
 
 /// The frames 0 to 2 of a film are golden; `render` is `compare --render` of it.
-class CompareRender : public testing::Test {
+class CompareRender : public ProgramTest {
 protected:
     void SetUp() override {
-        folder_ = fresh_folder();
         const auto made = render("--frames 0:3 --update");
         ASSERT_EQ(made.code, 0) << made.err;
         EXPECT_EQ(made.out,
@@ -22,14 +21,12 @@ protected:
     }
 
     Outcome run(const Words& arguments, const char* ci = nullptr) const {
-        return doppel(folder_, arguments, [&] { ci ? setenv("CI", ci, 1) : unsetenv("CI"); });
+        return doppel(arguments, [&] { ci ? setenv("CI", ci, 1) : unsetenv("CI"); });
     }
     Outcome render(const Words& more, const char* ci = nullptr) const {
         return run(with("compare --render calm golden --set scene.duration_s=0.1 --size 160x90", more), ci);
     }
-    fs::path golden(const std::string& name) const { return folder_ / "golden" / name; }
-
-    fs::path folder_;
+    fs::path golden(const std::string& name) const { return folder / "golden" / name; }
 };
 
 TEST_F(CompareRender, DrawsTheFramesWhoseNumbersAreGolden) {
@@ -38,12 +35,12 @@ TEST_F(CompareRender, DrawsTheFramesWhoseNumbersAreGolden) {
     ASSERT_EQ(run(with("render calm --set scene.duration_s=0.1 --size 160x90 --format png", card)).code, 0);
     for (const char* name : {"000000.png", "000001.png", "000002.png"}) fs::remove(golden(name));
     for (const char* name : {"000003.png", "000007.png", "000018.png"})
-        fs::copy(folder_ / "out/calm/frames" / name, golden(name));
-    fs::remove_all(folder_ / "out");
+        fs::copy(folder / "out/calm/frames" / name, golden(name));
+    fs::remove_all(folder / "out");
     const auto same = render(card);
     EXPECT_EQ(same.code, 0) << same.err;
     EXPECT_EQ(same.out, "0 of 3 pictures differ\n");
-    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    EXPECT_FALSE(fs::exists(folder / "out"));
 
     fs::copy(golden("000007.png"), golden("000099.png"));
     fs::copy(golden("000007.png"), golden("notes.png"));
@@ -68,10 +65,10 @@ TEST_F(CompareRender, KeepsWhatDiffersAndUpdatesOnlyThat) {
         differs.out.ends_with("; expected, actual and difference ×16: out/calm/compare/000001.diff.png\n"
                               "1 of 3 pictures differ\n"))
         << differs.out;
-    EXPECT_EQ(bytes_of(folder_ / "out/calm/compare/000001.actual.png"), good);
-    const auto junit = document_of(bytes_of(folder_ / "report.xml"));
+    EXPECT_EQ(bytes_of(folder / "out/calm/compare/000001.actual.png"), good);
+    const auto junit = document_of(bytes_of(folder / "report.xml"));
     EXPECT_EQ(junit["tests"] + junit["failures"], "31");
-    EXPECT_EQ(document_of(bytes_of(folder_ / "report.html")).all("img").size(), 3u);
+    EXPECT_EQ(document_of(bytes_of(folder / "report.html")).all("img").size(), 3u);
 
     const auto spoilt = bytes_of(golden("000001.png"));
     const auto refused = render("--update", "true");
@@ -84,14 +81,14 @@ TEST_F(CompareRender, KeepsWhatDiffersAndUpdatesOnlyThat) {
     EXPECT_EQ(bytes_of(golden("000001.png")), good);
     EXPECT_EQ(bytes_of(golden("000002.png")), faint);
     EXPECT_EQ(render({}).code, 0);
-    EXPECT_EQ(listing(folder_ / "out/calm/compare"), Names{});
+    EXPECT_EQ(listing(folder / "out/calm/compare"), Names{});
 }
 
 TEST_F(CompareRender, UpdatesNoPictureOfOthers) {
     write_png(golden("000001.png"), Picture({160, 90}), {.metadata = {}});
     const auto mine = bytes_of(golden("000001.png"));
-    fs::rename(golden("000002.png"), folder_ / "elsewhere.png");
-    write_png(folder_ / "elsewhere.png", Picture({160, 90}), {.metadata = {{"encoder", "Doppel 1"}}});
+    fs::rename(golden("000002.png"), folder / "elsewhere.png");
+    write_png(folder / "elsewhere.png", Picture({160, 90}), {.metadata = {{"encoder", "Doppel 1"}}});
     fs::create_symlink("../elsewhere.png", golden("000002.png"));
     const auto refused = render("--update");
     EXPECT_EQ(refused.code, 4);
@@ -111,7 +108,7 @@ TEST_F(CompareRender, PassesIfAnyVariantMatches) {
               "000001.png: matches golden/000001.egl.png\n000002.png: matches golden/000002.egl.png\n"
               "0 of 3 pictures differ\n");
     for (const char* report : {"report.xml", "report.html"})
-        EXPECT_TRUE(has(bytes_of(folder_ / report), "000001.png: matches golden/000001.egl.png"));
+        EXPECT_TRUE(has(bytes_of(folder / report), "000001.png: matches golden/000001.egl.png"));
 
     // the same with folders
     ASSERT_EQ(run("render calm --set scene.duration_s=0.1 --size 160x90 --format png --frames 0:3").code, 0);
@@ -133,7 +130,7 @@ TEST_F(CompareRender, PassesIfAnyVariantMatches) {
 
 TEST_F(CompareRender, ComparesStillsAndFigures) {
     const Words brief = "--set scene.duration_s=0.5";
-    fs::create_directory(folder_ / "kept");
+    fs::create_directory(folder / "kept");
     for (const auto& [command, name] :
          {std::pair(with("compare --render calm --at 0.25 --size 160x90", brief), "calm.0.25s.png"),
           {with("compare --render fig6 --size 320x180", brief), "fig6.png"}}) {
@@ -142,22 +139,22 @@ TEST_F(CompareRender, ComparesStillsAndFigures) {
         EXPECT_EQ(none.code, 1) << none.err;
         EXPECT_EQ(run(with(command, "kept --update")).out, file + ": new\n");
         EXPECT_EQ(run(with(command, "kept")).code, 0);
-        fs::rename(folder_ / file, folder_ / "kept/other.png");
+        fs::rename(folder / file, folder / "kept/other.png");
         const auto missing = run(with(command, "kept --junit missing.xml"));
         EXPECT_EQ(missing.code, 1) << missing.err;
         const auto drawn = fmt::format("out/{}/compare/{}.actual.png", command[2], fs::path(name).stem().string());
         EXPECT_EQ(missing.out, fmt::format("{}: missing; drawn now: {}; --update makes it the golden\n", file, drawn));
-        EXPECT_TRUE(fs::exists(folder_ / drawn) && fs::exists(folder_ / "missing.xml"));
+        EXPECT_TRUE(fs::exists(folder / drawn) && fs::exists(folder / "missing.xml"));
         EXPECT_EQ(run(with(command, "kept/other.png")).code, 0);
-        fs::rename(folder_ / "kept/other.png", folder_ / "kept/other.egl.png");
+        fs::rename(folder / "kept/other.png", folder / "kept/other.egl.png");
         EXPECT_EQ(run(with(command, "kept/other.png")).code, 0);  // a variant alone
-        fs::rename(folder_ / "kept/other.egl.png", folder_ / "kept/other.png");
-        spoil(folder_ / "kept/other.png");
+        fs::rename(folder / "kept/other.egl.png", folder / "kept/other.png");
+        spoil(folder / "kept/other.png");
         EXPECT_EQ(run(with(command, "kept/other.png")).code, 1);
-        fs::remove(folder_ / "kept/other.png");
+        fs::remove(folder / "kept/other.png");
     }
-    EXPECT_TRUE(fs::exists(folder_ / "out/calm/compare/other.actual.png"));
-    EXPECT_TRUE(fs::exists(folder_ / "out/fig6/compare/other.diff.png"));
+    EXPECT_TRUE(fs::exists(folder / "out/calm/compare/other.actual.png"));
+    EXPECT_TRUE(fs::exists(folder / "out/fig6/compare/other.diff.png"));
 }
 
 TEST_F(CompareRender, RefusesWhatMakesNoSense) {
@@ -171,7 +168,7 @@ TEST_F(CompareRender, RefusesWhatMakesNoSense) {
              {"compare --render calm golden --frames 0:99999", "--frames 0:99999: calm has the"},
              {"compare --render calm none", "none: there is no golden frame such as 000000.png"},
              {"compare --render calm golden/000000.png", "golden/000000.png is a picture; give its time with"}})
-        expect_refused(folder_, arguments, 2, words);
+        expect_refused(arguments, 2, words);
     EXPECT_EQ(run("compare golden golden --junit a.xml --html b.html --list-outputs").out, "a.xml\nb.html\n");
 }
 

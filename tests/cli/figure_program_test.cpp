@@ -85,17 +85,16 @@ TEST_F(FigureProgram, AMissingShardIsExit75) {
 }
 
 /// A long run keeps its results, whatever stops it.
-class LongFigure : public testing::Test {
+class LongFigure : public ProgramTest {
 protected:
     void SetUp() override {
-        folder_ = fresh_folder();
-        child_ = start(folder_, with(long_map, "--jobs 1 --progress none"));
+        child_ = start(folder, with(long_map, "--jobs 1 --progress none"));
         // stopped for 2 s, so that it counts as a long run
         for (int i = 0; i < 60'000 && cpu_s() < 0.5; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         kill(child_, SIGSTOP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2050));
         kill(child_, SIGCONT);
-        for (int i = 0; i < 20'000 && (record_ = record_in(folder_)).empty(); ++i)
+        for (int i = 0; i < 20'000 && (record_ = record()).empty(); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         ASSERT_FALSE(record_.empty());
     }
@@ -107,7 +106,7 @@ protected:
         return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
     }
     /// "out/flip-map/flip-map.c0ffee123456.resume"; empty if there is none.
-    static std::string record_in(const fs::path& folder) {
+    std::string record() const {
         std::error_code ignored;
         for (const auto& entry : fs::directory_iterator(folder / "out/flip-map", ignored))
             if (entry.path().extension() == ".resume") return fs::relative(entry.path(), folder).string();
@@ -115,12 +114,11 @@ protected:
     }
 
     void expect_record_alone() const {
-        EXPECT_TRUE(fs::exists(folder_ / record_));
+        EXPECT_TRUE(fs::exists(folder / record_));
         for (const char* file : {"flip-map.png", "flip-map.csv", "flip-map.json"})
-            EXPECT_FALSE(fs::exists(folder_ / "out/flip-map" / file)) << file;
+            EXPECT_FALSE(fs::exists(folder / "out/flip-map" / file)) << file;
     }
 
-    fs::path folder_;
     std::string record_;
     pid_t child_ = -1;
 };
@@ -129,28 +127,28 @@ TEST_F(LongFigure, ResumesAfterItWasKilled) {
     kill(child_, SIGKILL);
     EXPECT_EQ(wait_for(child_), -SIGKILL);
     expect_record_alone();
-    const auto again = done(folder_, with(long_map, "--jobs 2 --progress plain"));
+    const auto again = done(with(long_map, "--jobs 2 --progress plain"));
     EXPECT_TRUE(has(again.err, "resuming from " + record_ + ": "));
     EXPECT_FALSE(has(again.err, ": 0 % is done"));
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out/flip-map"), {}), 3) << "the record has gone";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "out/flip-map"), {}), 3) << "the record has gone";
 
-    done(folder_, with(long_map, "-o whole --progress none"));
+    done(with(long_map, "-o whole --progress none"));
     for (const char* file : {"flip-map.csv", "flip-map.png"})
-        EXPECT_TRUE(bytes_of(folder_ / "out/flip-map" / file) == bytes_of(folder_ / "whole/flip-map" / file)) << file;
+        EXPECT_TRUE(bytes_of(folder / "out/flip-map" / file) == bytes_of(folder / "whole/flip-map" / file)) << file;
 }
 
 TEST_F(LongFigure, ReportsItsRecordAfterCtrlC) {
     kill(child_, SIGINT);
     EXPECT_EQ(wait_for(child_), 130);
-    const auto said = bytes_of(folder_ / "stderr");
+    const auto said = bytes_of(folder / "stderr");
     EXPECT_TRUE(has(said, "doppel: interrupted; ")) << said;
     EXPECT_TRUE(has(said, "kept in " + record_ + ": the same command resumes"));
     expect_record_alone();
     // another preset does not resume from it, and does not change it
-    const auto bytes = bytes_of(folder_ / record_);
-    const auto other = done(folder_, with(long_map, "--set scene.duration_s=0.1 --progress plain"));
+    const auto bytes = bytes_of(folder / record_);
+    const auto other = done(with(long_map, "--set scene.duration_s=0.1 --progress plain"));
     EXPECT_TRUE(has(other.err, "ignoring " + record_ + ", of another preset or version"));
-    EXPECT_EQ(bytes_of(folder_ / record_), bytes);
+    EXPECT_EQ(bytes_of(folder / record_), bytes);
 }
 
 // Commands of README.md and docs/figures.md, run in a shell.
