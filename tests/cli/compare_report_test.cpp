@@ -80,6 +80,16 @@ TEST_F(CompareJunit, OfTwoPicturesAndOfNoDifference) {
     EXPECT_EQ(report("three.png", 4)["errors"], "1");
 }
 
+TEST_F(CompareReports, SayWhatCouldNotBeDrawn) {
+    make(folder / "one.png", plain(10));
+    done("compare one.png one.png --junit report.xml --html report.html");
+    ends("compare --render nothing golden --junit report.xml --html report.html", 2);
+    const auto root = document_of(bytes_of(folder / "report.xml"));
+    EXPECT_EQ(root["errors"], "1");
+    EXPECT_TRUE((*root.all("error").at(0))["message"].starts_with("there is no preset \"nothing\"; "));
+    EXPECT_TRUE(has(bytes_of(folder / "report.html"), "there is no preset"));
+}
+
 TEST_F(CompareReports, ReplaceOnlyTheirOwn) {
     make(folder / "one.png", plain(10));
     for (const std::string option : {"--junit", "--html"}) {

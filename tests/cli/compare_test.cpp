@@ -57,6 +57,13 @@ TEST_F(Compare, ContinuesAfterAnUnreadablePicture) {
     EXPECT_TRUE(begins(result.err, "doppel: 1 of 3 pictures could not be compared; the first: two/1.png: cannot be"));
 }
 
+TEST_F(Compare, NamesFoldersThatItDoesNotEnter) {
+    make_pictures(folder / "one", {{"1.png", 10}});
+    make_pictures(folder / "one/more", {{"1.png", 10}});
+    const auto result = done("compare one one");
+    EXPECT_EQ(result.out, "one/more: this folder is not compared; name it to compare it\n0 of 1 pictures differ\n");
+}
+
 TEST_F(Compare, RemovesAnOldDifferenceWhenThePicturePasses) {
     make_pictures(folder / "one", {{"1.png", 10}, {"2.png", 10}});
     make_pictures(folder / "two", {{"1.png", 90}, {"2.png", 90}});
