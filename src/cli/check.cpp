@@ -282,10 +282,10 @@ void check_film(Findings& found, const Scene& scene, const std::atomic<bool>& st
     const auto& every = scene.frames.stride;  // samples per frame
     const auto frames = schedule_of(scene).frames();
     const double fps = scene.fps.value();
-    found.line(
-        "  video  {} frames of {}×{} at {:.6g} frames/s{}, {}", grouped(frames), video.size.width, video.size.height,
-        fps, every.is_whole() && every.numerator > 1 ? fmt::format(" (one in {} samples)", every.numerator) : "",
-        format_words(scene));
+    found.line("  video  {} frames of {}×{} at {:.6g} frames/s{}, {}", grouped(frames), video.size.width,
+               video.size.height, fps,
+               every.is_whole() && every.numerator > 1 ? fmt::format(" (one in {} samples)", every.numerator) : "",
+               format_words(scene));
     json["frames"] = frames;
     json["fps"] = fps;
     json["size"] = {video.size.width, video.size.height};

@@ -216,7 +216,8 @@ std::vector<ComparedPicture> pairs_of(const fs::path& expected, const fs::path& 
 ComparedPicture pair_of(const fs::path& expected, const fs::path& actual) {
     const fs::path name = expected.filename();
     ComparedPicture pair{.name = actual.filename(), .expected = expected, .actual = actual, .goldens = {expected}};
-    for (const auto& variant : goldens_in(expected.parent_path(), {name})[name])
+    auto goldens = goldens_in(expected.parent_path(), {name});
+    for (const auto& variant : goldens[name])
         if (variant.filename() != name && !fs::equivalent(variant, actual)) pair.goldens.push_back(variant);
     return pair;
 }

@@ -218,11 +218,11 @@ TEST(Strips, TextsOfMarksStandWhereTheyCoverLessOfTheCurve) {
 }
 
 TEST(Strips, CaptionsOfNarrowStripsShrinkOrSayThatTheyAreCut) {
-    const auto labels =
-        labels_of(scene_of("butterfly", {"video.size=[1280, 720]",
-                                         "video.panels=[\"pendulums\", \"distance\", \"exponent\", "
-                                         "\"energy\", \"rod-error\", \"rod-force\", \"energies-a\", \"angles\"]"}),
-                  120);
+    const auto labels = labels_of(
+        scene_of("butterfly", {"video.size=[1280, 720]",
+                               "video.panels=[\"pendulums\", \"distance\", \"exponent\", \"energy\", \"rod-error\", "
+                               "\"rod-force\", \"energies-a\", \"energies-b\", \"angles\", \"rates\"]"}),
+        120);
     const auto whole = label_of(labels, "energy error, of the potential range"), cut = label_of(labels, "potential");
     ASSERT_TRUE(whole && cut);
     EXPECT_LT(whole->size, label_of(labels, "angles, °")->size);

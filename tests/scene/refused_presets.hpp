@@ -18,7 +18,7 @@ inline const std::vector<RefusedPreset> refused_presets{
     {"[scene]\nzzzzzzzz = 1",
      R"(2:1: [scene] has no "zzzzzzzz"; it has certify, duration_s, energy_columns, kind, member_columns, sample_hz)"},
     {"scene = 3", "1:1: scene must be a table; it is a whole number (3)"},
-    {"[scene", "1:7: Error while parsing table header: encountered end-of-file"},
+    {"[scene", "1:7: Error while parsing table header: encountered end-of-file; ] is missing"},
     {"[b]\n\nmass_kg = [1, -1]", "3:1: [b] mass_kg[1] must be > 0; it is -1"},
     {"[system]\nlength_m = [0, 1]", "2:1: [system] length_m[0] must be > 0; it is 0"},
     {"[a]\nangle_deg = [1, nan]", "2:1: [a] angle_deg[1] must be finite; it is nan"},
