@@ -97,7 +97,7 @@ TEST(FitProgram, FitsARealPendulum) {
     EXPECT_EQ(json["models"].size(), 9u);
     EXPECT_EQ(read_png(folder / "out/lab/lab.png").size, (Size{1600, 1300}));
     // the preset, with bodies, Coulomb friction and drag by relative velocity, follows the track
-    EXPECT_LT(worst_of_preset(folder, "lab", read_tracks(lab).pieces[0], "500"), 0.02);  // measured below 5e-3
+    EXPECT_LT(worst_of_preset(folder, "lab", read_tracks(lab).pieces[0], "500"), 0.02);  // measured 6.0e-3
 }
 
 TEST(FitProgram, OmittedDataIsReportedAsANote) {
