@@ -27,6 +27,7 @@ struct Needs {
     double cpu_s = 0;           // of all threads
     double repeated_cpu_s = 0;  // of it: what each shard of the run does again
     double memory_bytes = 0, disk_bytes = 0;
+    double film_bytes = 0;  // of the disk: the video, the pictures or the page; 0 if unknown, or of a figure
     long most_shards = 0;   // 0: it cannot be split
     bool at_least = false;  // the trial was too short for an estimate: a lower bound
 };

@@ -5,7 +5,6 @@
 #include "figure/computation.hpp"
 #include "film/estimate.hpp"
 #include "film/film.hpp"
-#include "film/page.hpp"
 #include "scene/captions.hpp"
 #include "scene/certificate.hpp"
 #include "scene/forecast.hpp"
@@ -29,8 +28,6 @@ constexpr const char* unsettled_words = "parts of the run differ by more than ch
 std::string format_words(const Scene& scene) {
     const auto& video = scene.preset.video;
     const auto& row = video.format_row();
-    if (video.format == FilmFormat::html)
-        return fmt::format("{} of about {}", row.title, bytes_text(estimated_page_bytes(scene)));
     if (!row.is_encoded()) return std::string(row.title);
     return fmt::format("{} {}, crf {}, {}", row.title, video.preset, video.crf, name_of(video.pixel_format));
 }
@@ -282,10 +279,11 @@ void check_film(Findings& found, const Scene& scene, const std::atomic<bool>& st
     const auto& every = scene.frames.stride;  // samples per frame
     const auto frames = schedule_of(scene).frames();
     const double fps = scene.fps.value();
-    found.line("  video  {} frames of {}×{} at {:.6g} frames/s{}, {}", grouped(frames), video.size.width,
+    found.line("  video  {} frames of {}×{} at {:.6g} frames/s{}, {}{}", grouped(frames), video.size.width,
                video.size.height, fps,
                every.is_whole() && every.numerator > 1 ? fmt::format(" (one in {} samples)", every.numerator) : "",
-               format_words(scene));
+               format_words(scene),
+               render && render->film_bytes > 0 ? fmt::format(", about {}", bytes_text(render->film_bytes)) : "");
     json["frames"] = frames;
     json["fps"] = fps;
     json["size"] = {video.size.width, video.size.height};

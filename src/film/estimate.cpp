@@ -3,8 +3,6 @@
 #include "base/error.hpp"
 #include "base/threads.hpp"
 #include "film/film.hpp"
-#include "film/page.hpp"
-#include "film/pair_table.hpp"
 #include "integrate/motion_batch.hpp"
 #include "output/files.hpp"
 
@@ -86,6 +84,7 @@ Scene beginning_of(Scene scene, long samples) {
 struct FrameCost {
     double frames = 1, wall_s = 0, cpu_s = 0;  // from the first of them on
     double bytes = 0;                          // of the film
+    double rows = 0, table_bytes = 0;          // of the table, with its header
     double run_s = 0, key_bytes = 0;           // of the whole run; what a key frame has more than others
 };
 
@@ -104,16 +103,23 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
     const auto result = run(scene, options, stop, [&](const Progress& progress) {
         if (progress.done == 1) wall_s = seconds_of(CLOCK_MONOTONIC), cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     });
-    return {static_cast<double>(result.frames), seconds_of(CLOCK_MONOTONIC) - wall_s,
-            seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s, bytes_of(result.files.front()), result.wall_s};
+    return {.frames = static_cast<double>(result.frames),
+            .wall_s = seconds_of(CLOCK_MONOTONIC) - wall_s,
+            .cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s,
+            .bytes = bytes_of(result.files.front()),
+            .rows = static_cast<double>(result.samples),
+            .table_bytes = bytes_of(folder.path() / scene.preset.name / (scene.preset.name + ".csv")),
+            .run_s = result.wall_s};
 }
 
-/// The cost of one frame: the difference between many frames and few. `run_s` is that of few.
+/// The cost of one frame, and of one row: the difference between many frames and few. `run_s` is that of few.
 FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
     constexpr double sufficient_s = 0.1, slow_s = 2;
     const auto few = cost_of_frames(scene, 2, stop);
-    FrameCost cost{1, few.wall_s / few.frames, few.cpu_s / few.frames, few.bytes / few.frames, few.run_s};
-    for (long count = 8; count <= 128 && few.wall_s < slow_s; count *= 4) {
+    FrameCost cost = few;
+    for (double* part : {&cost.wall_s, &cost.cpu_s, &cost.bytes}) *part /= few.frames;
+    cost.table_bytes /= std::max(few.rows, 1.0);
+    for (long count = 8; count <= 128 && few.cpu_s < slow_s; count *= 4) {
         const auto many = cost_of_frames(scene, count, stop);
         const double more = many.frames - few.frames, wall_s = many.wall_s - few.wall_s;
         if (more < 1) break;
@@ -121,9 +127,26 @@ FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
         cost.cpu_s = std::max(many.cpu_s - few.cpu_s, 0.0) / more;
         cost.bytes = std::max(many.bytes - few.bytes, 0.0) / more;
         cost.key_bytes = std::max(few.bytes - few.frames * cost.bytes, 0.0);
+        if (many.rows > few.rows) cost.table_bytes = (many.table_bytes - few.table_bytes) / (many.rows - few.rows);
         if (wall_s > sufficient_s) break;
     }
     return cost;
+}
+
+/// The cost of one sample of a page: the difference between a page of all samples and one of few. The rest, which does
+/// not depend on the number of samples, is like a key frame.
+FrameCost cost_of_page_sample(const Scene& scene, double simulate_s, const std::atomic<bool>& stop) {
+    const auto beginning = beginning_of(scene, std::min(scene.samples, 2L));
+    const auto few = cost_of_frames(beginning, beginning.frames.count, stop),
+               many = cost_of_frames(scene, scene.frames.count, stop);
+    const double more = std::max(many.rows - few.rows, 1.0),
+                 each_s = std::max((many.run_s - few.run_s) / more - simulate_s, 0.0);
+    return {.wall_s = each_s,
+            .cpu_s = each_s,
+            .bytes = (many.bytes - few.bytes) / more,
+            .table_bytes = (many.table_bytes - few.table_bytes) / more,
+            .run_s = few.run_s,
+            .key_bytes = few.bytes};
 }
 
 /// Memory of x264's own presets for the frames that they look ahead, bytes: the trial is too short to fill it.
@@ -149,35 +172,34 @@ SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bo
 }
 
 Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {
-    // measured after the first half of the motion, where trails are long and ensembles have diverged, or after as much as
-    // is simulated in `begin_s`
-    constexpr double begin_s = 0.6, patience_s = 1;
+    // measured after the first half of the motion, where trails are long and ensembles have diverged, on a whole page, or
+    // on as much as is simulated in `begin_s`
+    const auto& video = scene.preset.video;
+    const bool is_page = video.format == FilmFormat::html;
+    const double begin_s = is_page ? 2 : 0.6, patience_s = 1;  // a page draws nothing in the meantime
     const auto samples = static_cast<double>(scene.samples);
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
     const double sample_s = motions_s / samples;
-    const auto& video = scene.preset.video;
-    const bool is_page = video.format == FilmFormat::html;
-    constexpr double number_bytes = 18.5;  // in the table, measured: 17.9 to 19.7
-    const double table_bytes = number_bytes * samples * static_cast<double>(columns_of(scene).size());
     Needs estimate{.seconds = motions_s,
                    .cpu_s = motions_s,
                    .repeated_cpu_s = motions_s,
-                   .disk_bytes = table_bytes + (is_page ? estimated_page_bytes(scene) : unknown),
+                   .disk_bytes = unknown,
                    .at_least = simulation.at_least};
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
-    if (!is_page && !simulation.at_least && sample_s * static_cast<double>(one_frame) <= patience_s) {
-        const double wanted = std::min(samples / 2, begin_s / std::max(sample_s, 1e-12));
+    if (!simulation.at_least && sample_s * static_cast<double>(one_frame) <= patience_s) {
+        const double wanted = std::min(is_page ? samples : samples / 2, begin_s / std::max(sample_s, 1e-12));
         const auto begun = beginning_of(
             scene, std::clamp(static_cast<long>(wanted), std::min(one_frame, scene.samples), scene.samples));
-        const auto cost = cost_of_frame(begun, stop);
-        const auto frames = static_cast<double>(schedule_of(scene).frames());
-        const auto segments = static_cast<double>(max_shards(scene));
+        const auto cost = is_page ? cost_of_page_sample(begun, sample_s, stop) : cost_of_frame(begun, stop);
+        const double frames = is_page ? samples : static_cast<double>(schedule_of(scene).frames());
+        const double segments = is_page ? 1 : static_cast<double>(max_shards(scene));
         if (video.format_row().has_parts()) estimate.most_shards = max_shards(scene);
         estimate.seconds += cost.run_s + std::max(cost.wall_s * frames, cost.cpu_s * frames / cores());
         estimate.cpu_s += cost.run_s + cost.cpu_s * frames;
-        estimate.disk_bytes = table_bytes + cost.bytes * frames + cost.key_bytes * segments;
+        estimate.film_bytes = cost.bytes * frames + cost.key_bytes * segments;
+        estimate.disk_bytes = cost.table_bytes * (samples + 1) + estimate.film_bytes;
     }
     const bool keeps_motion = depends_on_motion(scene) || video.contact_sheet;
     const double motion_bytes = recorded_bytes(scene, {scene.samples + 1});

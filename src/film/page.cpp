@@ -363,12 +363,4 @@ std::optional<HtmlPage> film_player(Scene scene) {
                                    {pair.next(never_stopped), {}}, scene.samples));
 }
 
-double estimated_page_bytes(const Scene& scene) {
-    constexpr double script = 34e3, place = 1.3 / 16, number = 4;  // bytes; per bit of a place, measured: 0.05 to 0.13
-    const auto one = page_numbers(scene, blank_snapshot(scene), 0, page_computes(scene));
-    const double per_sample = place * scene.preset.video.position_bits * static_cast<double>(one.places.size()) +
-                              number * static_cast<double>(one.curves.size());
-    return script + static_cast<double>(scene.samples) * per_sample;
-}
-
 }  // namespace doppel

@@ -44,9 +44,6 @@ private:
 /// has other pendulums.
 std::optional<HtmlPage> film_player(Scene scene);
 
-/// The approximate size in bytes of a scene's page.
-double estimated_page_bytes(const Scene& scene);
-
 /// An axis for the scripts of pages: its label, the values `from` … `to`, and the pixels `start` … `end`.
 Json axis_json(const Axis& axis, const std::string& label = "");
 
