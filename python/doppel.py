@@ -125,7 +125,10 @@ def film(preset, *options, format="html", out=None, **keys):
 
 
 def _call(command, preset, options, out, keys):
-    if out == "-" or {"-h", "--help", "--list-outputs"} & set(options):
+    given = {os.fspath(option).split("=")[0] for option in options}
+    if given & {"-o", "--out", "--progress"}:
+        raise ValueError("give the folder as out=...; --out and --progress are for the command line")
+    if out == "-" or given & {"-h", "--help", "--list-outputs"}:
         raise ValueError("a Result has files: out must be a folder, and --help and --list-outputs are for the command line")
     folder = None if out is not None else tempfile.TemporaryDirectory(prefix="doppel-")
     result = Result(folder)

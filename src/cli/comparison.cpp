@@ -82,6 +82,7 @@ std::string heading(const Comparison& comparison) {
     if (comparison.count(Match::passes) == std::ssize(comparison.pictures))
         return all == 1 ? "The picture passes" : fmt::format("All {} pictures pass", all);
     if (all == 1 && comparison.count(Match::differs) == 1) return "The picture differs";
+    if (all == 1 && unreadable == 1) return "The picture could not be compared";
     return comparison.summary() + (unreadable > 0 ? fmt::format(", {} could not be compared", unreadable) : "");
 }
 

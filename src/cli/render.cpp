@@ -85,11 +85,19 @@ void run_all(const std::vector<Scene>& scenes, const RunCommandOptions& options,
     run_options.out = to.folder;
     run_options.to_stream =
         options.out == "-" && run_options.pictures && !run_options.merge && video.format_row().is_streamed();
+    std::optional<SingleFile> recording;
+    if (!run_options.pictures && !options.recording.empty())
+        run_options.record_to = recording.emplace(options.recording, recording_file.start).place;
     const bool counts_frames = run_options.pictures && video.format != FilmFormat::html;
     work_on_all(scenes, options.progress, counts_frames ? "frames" : "samples", to.streamed,
                 [&](const Scene& scene, ProgressReport& report) {
                     note_gap(scene, report);
-                    report.done(run(scene, run_options, stop, std::ref(report)));
+                    auto result = run(scene, run_options, stop, std::ref(report));
+                    if (recording) {
+                        recording->parts.publish();
+                        if (options.out != "-") result.files.push_back(options.recording);
+                    }
+                    report.done(result);
                 });
 }
 
@@ -284,15 +292,8 @@ void add_simulate(CLI::App& app) {
     add_columns_option(command, options->columns);
     add_recording_option(command, options->recording, "Also writes the motion to FILE, for render --recording");
     command.callback([options] {
-        RunOptions run{.pictures = false, .jobs = options->jobs, .columns = columns_of_option(options->columns)};
-        const auto scenes = read_scenes(*options);
-        std::optional<SingleFile> file;
-        if (!options->recording.empty() && !options->list_outputs)
-            run.record_to = file.emplace(options->recording, recording_file.start).place;
-        run_all(scenes, *options, run);
-        if (!file) return;
-        file->parts.publish();
-        if (options->progress != ProgressStyle::json && options->out != "-") report_files(options->recording + "\n");
+        const RunOptions run{.pictures = false, .jobs = options->jobs, .columns = columns_of_option(options->columns)};
+        run_all(read_scenes(*options), *options, run);
     });
 }
 

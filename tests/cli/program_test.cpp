@@ -303,13 +303,16 @@ TEST_F(Program, WarningsAreNoProgress) {
 }
 
 TEST_F(Program, ReportsProgressForPeopleAndPrograms) {
-    const auto json = doppel("render butterfly --size 160x90 --set scene.duration_s=1 --progress json");
-    EXPECT_EQ(json.err, "");
-    nlohmann::json event;
-    for (const auto& line : lines_of(json.out)) event = nlohmann::json::parse(line);
+    const auto last_event = [&](const std::string& command) {
+        const auto json = doppel(command + " --set scene.duration_s=1 --progress json");
+        EXPECT_EQ(json.err, "");
+        return nlohmann::json::parse(lines_of(json.out).back());
+    };
+    const auto event = last_event("render butterfly --size 160x90");
     EXPECT_EQ(event["event"], "done");
     EXPECT_EQ(event["done"], 121);
     EXPECT_EQ(event["files"].size(), 3u);
+    EXPECT_EQ(last_event("simulate butterfly --recording b.motion")["files"].back(), "b.motion");
     const auto plain = doppel("render butterfly --size 160x90 --set scene.duration_s=1");
     EXPECT_TRUE(has(plain.err, "butterfly: 121 frames in "));
     EXPECT_FALSE(has(plain.err, "\r")) << "no bar where there is no terminal";

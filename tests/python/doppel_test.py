@@ -75,6 +75,8 @@ class Keys(unittest.TestCase):
         self.assertRaises(TypeError, doppel.run, "butterfly", scene={"duration_s": None})
         self.assertRaises(ValueError, doppel.run, "butterfly", out="-")  # a result has files
         self.assertRaises(ValueError, doppel.run, "butterfly", "--list-outputs")
+        self.assertRaises(ValueError, doppel.run, "butterfly", "--out=x")
+        self.assertRaises(ValueError, doppel.run, "butterfly", "--progress", "none")
 
 
 class Pictures(unittest.TestCase):
