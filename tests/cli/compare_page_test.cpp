@@ -63,6 +63,8 @@ TEST_F(ComparePage, ContainsThePixelsAndNeedsNoOtherFile) {
     EXPECT_TRUE(has(text, "two/gone.png: missing"));
     EXPECT_TRUE(has(text, "two/broken.png: cannot be decoded"));
     EXPECT_TRUE(has(text, "10×20 px, expected 300×200"));
+    EXPECT_EQ(doppel("compare one/2.png two/broken.png --html one.html").code, 4);
+    EXPECT_EQ(document_of(bytes_of(folder / "one.html")).all("h1")[0]->text, "The picture could not be compared");
     for (const char* outside : {"http:", "https:", "src=\"/", "url(", "@import", "<script src"})
         EXPECT_FALSE(has(text, outside)) << outside;
 
