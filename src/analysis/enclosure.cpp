@@ -121,8 +121,7 @@ public:
         const double shortest = std::min(chain.length[0].high(), chain.length[1].high());
         constexpr double of_period = 16384;
         const double longest = std::sqrt(shortest / (std::abs(chain.gravity.high()) + shortest)) / of_period;
-        parts_ = static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / longest)));
-        part_ = number(spec.interval.numerator) / (number(spec.interval.denominator) * number(parts_));
+        divide(static_cast<long>(std::max(1.0, std::ceil(spec.interval.value() / longest))));
     }
 
     /// As enclosures().
@@ -145,6 +144,15 @@ public:
 
 private:
     static Ball<Wide> number(std::int64_t n) { return Wide(n); }
+    /// Divides each part. False if there would be too many.
+    bool divide(long divisor) {
+        constexpr long most = std::numeric_limits<long>::max() / 8;
+        if (divisor > most / parts_ / std::max(spec_.samples, 1L)) return false;
+        parts_ *= divisor;
+        done_ *= divisor;
+        part_ = number(spec_.interval.numerator) / (number(spec_.interval.denominator) * number(parts_));
+        return true;
+    }
     /// Finds the length of the step, and proves that the motion exists that long.
     bool find_step() {
         const auto now = set_.state();
@@ -158,6 +166,11 @@ private:
             middle_.expand(B(h));
             const double longest = static_cast<double>(length_) * longer();
             next_length_ = static_cast<long>(std::clamp(longest, 1.0, 4.0 * static_cast<double>(length_)));
+            if (longest < 1) {  // faster than the period of small swings
+                if (!divide(first_length)) return false;
+                length_ = first_length;
+                continue;
+            }
             if (longest + 1 < static_cast<double>(length_)) {
                 length_ = static_cast<long>(longest);
                 continue;
@@ -206,6 +219,7 @@ private:
         return all;
     }
 
+    static constexpr long first_length = 256;
     EnclosureSpec spec_;
     LinksAndDroplets<B> system_;
     LinksAndDroplets<TangentBall> in_double_;
@@ -213,7 +227,7 @@ private:
     BallSeries<TangentBall> tangent_{12};
     Zonotope<Scalar> set_;
     Ball<Wide> part_;                                             // s
-    long parts_ = 1, length_ = 0, next_length_ = 256, done_ = 0;  // of a sample; of the step; since the start
+    long parts_ = 1, length_ = 0, next_length_ = first_length, done_ = 0;  // of a sample; of the step; since the start
 };
 
 }  // namespace

@@ -290,6 +290,14 @@ TEST(Enclosure, SamplesFarApartAndCloseTogetherAreTheSameMotion) {
     }
 }
 
+TEST(Enclosure, FollowsMotionMuchFasterThanItsPeriod) {
+    auto fast = right_angles;
+    fast.chain.rate[0] = Ball<Wide>(Wide(5000));  // 42 rad from sample to sample
+    const auto sets = enclosed<double>(fast, 2);
+    EXPECT_TRUE(all_inside(sets, reference(fast, 2)));
+    EXPECT_LT(radius_at_end(sets), 1e-6);  // measured 2.1e-7
+}
+
 TEST(Enclosure, ADropletAttracts) {
     // near and heavy, against the same as a mechanism in quad
     auto p = uneven;
