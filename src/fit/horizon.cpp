@@ -23,6 +23,7 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
     constexpr double kept_every_s = 0.02, afterwards_s = 10, far = 10, turn = 2 * std::numbers::pi;  // far: limits
     const auto& piece = track.pieces[shot.piece];
     auto &times = prediction.time_s, &errors = prediction.error;
+    const double begin = time_of(track, shot, 0) - prediction.start_s - prediction.data_s;
     for (std::size_t i = shot.first; i < shot.last; ++i) {
         const double from_start = time_of(track, shot, i) - prediction.start_s, t = from_start - prediction.data_s;
         if (t <= 0) continue;
@@ -37,7 +38,10 @@ bool follow(const Track& track, const Shot& shot, bool is_first_piece, double li
                 difference -= turn * std::round(difference / turn);  // a new piece may count turns differently
             error = std::max(error, std::abs(difference));
         }
-        if (error > limit && !prediction.left_s) prediction.left_s = t;
+        if (error > limit && !prediction.left_s) {
+            prediction.left_s = t;
+            prediction.left_in_gap = !is_first_piece && prediction.within_s < begin;
+        }
         if (!prediction.left_s) prediction.within_s = t;
         if (times.empty() || t - times.back() >= kept_every_s) times.push_back(t), errors.push_back(error);
         if (error > far * limit || (prediction.left_s && t > *prediction.left_s + afterwards_s)) return false;
@@ -124,11 +128,18 @@ Horizon measure_horizon(const FitJob& job, const Fit& fit, const Uncertainty& un
     std::vector<std::pair<double, bool>> times;
     for (auto& prediction : all) {
         if (prediction.time_s.empty()) continue;
-        times.emplace_back(prediction.within_s, prediction.left_s.has_value());
         horizon.longest_s = std::max(horizon.longest_s, prediction.within_s);
         const double start = prediction.start_alone_s.value_or(never);
         const double parameters = prediction.parameters_alone_s.value_or(never);
         const bool by_model = prediction.within_s < much * std::min(start, parameters);
+        if (by_model && prediction.left_in_gap) {  // the pieces may be separate motions
+            ++horizon.ended_by_gap;
+            prediction.left_s.reset();
+            auto& shown = prediction.time_s;
+            shown.erase(std::ranges::upper_bound(shown, prediction.within_s), shown.end());
+            prediction.error.resize(shown.size());
+        }
+        times.emplace_back(prediction.within_s, prediction.left_s.has_value());
         if (prediction.left_s) ++horizon.left_by[by_model ? 0 : start < parameters ? 1 : 2];
         horizon.predictions.push_back(std::move(prediction));
     }

@@ -14,6 +14,7 @@ struct Prediction {
     double data_s = 0;                  // length of the data from which the start was fitted
     double within_s = 0;                // time after the data for which the error stayed within the limit
     std::optional<double> left_s;       // when the error first exceeded the limit; nothing if the track ended before
+    bool left_in_gap = false;           // between two pieces
     std::vector<double> time_s, error;  // after the data: rad, the larger of both links
     std::optional<double> start_alone_s,
         parameters_alone_s;  // until the effect of one standard error reaches the limit
@@ -27,6 +28,9 @@ struct Horizon {
     /// Counts of what ended the predictions that exceeded the limit: the model (if neither errors of the start nor of
     /// the parameters explain it), the start, the parameters.
     std::array<int, 3> left_by{};
+    /// Predictions that left in a gap, and neither errors of the start nor of the parameters explain it: the pieces may be
+    /// separate motions. They count as ended by the track.
+    int ended_by_gap = 0;
     int left() const { return left_by[0] + left_by[1] + left_by[2]; }
 };
 

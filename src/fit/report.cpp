@@ -2,6 +2,7 @@
 
 #include "base/text.hpp"
 #include "numeric/portable_math.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/ranges.h>
 
@@ -66,6 +67,7 @@ Json horizon_json(const FitResult& result) {
             {"median_s", or_null(horizon.median_s)},
             {"longest_s", horizon.longest_s},
             {"left_by", {{"model", by[0]}, {"start", by[1]}, {"parameters", by[2]}}},
+            {"ended_by_gap", horizon.ended_by_gap},
             {"sentence", horizon_sentence(result)},
             {"predictions", list_of(horizon.predictions, [](const Prediction& p) {
                  return Json{{"start_s", p.start_s},
@@ -116,17 +118,23 @@ std::string horizon_sentence(const FitResult& result) {
     };
     auto sentence =
         fmt::format("Predictions from {} s of data stay within {:.2g} rad ", span(&Prediction::data_s), h.limit);
+    const auto gaps = h.ended_by_gap > 0
+                          ? fmt::format(" {} ended at a gap: the next piece is another motion, or the model is wrong.",
+                                        h.ended_by_gap)
+                          : "";
     if (left == 0) {
         // among those observed for the median time or longer: (1 − p)ⁿ = 5 %
         std::vector<double> seen;
         for (const auto& p : h.predictions) seen.push_back(p.within_s);
         std::sort(seen.begin(), seen.end());
         const auto count = seen.size() - seen.size() / 2;
-        return sentence + fmt::format(
-                              "to the end of the track, {} s. Of the {} that ran for {:.1f} s or more, none exceeded "
-                              "it: at 95 % confidence at most {:.0f} % would.",
-                              span(&Prediction::within_s), count, seen[seen.size() / 2],
-                              100 * (1 - portable_pow(0.05, 1 / static_cast<double>(count))));
+        return sentence +
+               fmt::format(
+                   "to the end of the track, {} s. Of the {} that ran for {:.1f} s or more, none exceeded "
+                   "it: at 95 % confidence at most {:.0f} % would.",
+                   span(&Prediction::within_s), count, seen[seen.size() / 2],
+                   100 * (1 - portable_pow(0.05, 1 / static_cast<double>(count)))) +
+               gaps;
     }
     sentence += h.median_s ? fmt::format("for {:.1f} s (median)", *h.median_s)
                            : fmt::format("beyond the end of the track, {:.1f} s", h.longest_s);
@@ -134,7 +142,7 @@ std::string horizon_sentence(const FitResult& result) {
     std::string because;
     for (std::size_t k = 0; k < names.size(); ++k)
         if (h.left_by[k] > 0) because += fmt::format("{}{} ({})", because.empty() ? "" : ", ", names[k], h.left_by[k]);
-    return sentence + fmt::format("; {} of {} exceeded it, limited by {}.", left, h.predictions.size(), because);
+    return sentence + fmt::format("; {} of {} exceeded it, limited by {}.", left, h.predictions.size(), because) + gaps;
 }
 
 std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::size_t parameter) {
@@ -142,8 +150,9 @@ std::string parameter_text(const Fit& fit, const Uncertainty& uncertainty, std::
     const double error = uncertainty.standard_error(parameter);
     const int decimals = error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12) : 6;
     const double value = fit.parameters[parameter];
-    return fmt::format("{} = {}{:.{}f} ± {:.{}f}{}", words.symbol, value < 0 ? "−" : "", std::abs(value), decimals,
-                       error, decimals, words.unit);
+    const auto shown_error = decimals < 12 ? fmt::format("{:.{}f}", error, decimals) : scientific(error);
+    return fmt::format("{} = {}{:.{}f} ± {}{}", words.symbol, value < 0 ? "−" : "", std::abs(value), decimals,
+                       shown_error, words.unit);
 }
 
 std::string fitted_preset(const FitResult& result, const std::string& name) {

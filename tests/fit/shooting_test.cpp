@@ -164,6 +164,21 @@ TEST(FitHorizon, FindsTheIntervalOfPiecesAndTheHorizon) {
     EXPECT_GT(result.horizon->longest_s, 5);
 }
 
+TEST(FitHorizon, DoesNotJudgeAcrossPiecesThatAreSeparateMotions) {
+    auto truth = lab_arms(false);
+    truth[viscous_1] = 0.05;
+    auto track = simulated(truth, Drag::own, {.pieces = 4, .piece_s = 3, .noise = 1e-6, .every_s = 5});
+    std::ranges::reverse(track.pieces);
+    track.start_s = {0, 5, 10, 15};
+    const auto result = answered(track, Bodies::rigid);
+    ASSERT_TRUE(result.horizon);
+    EXPECT_EQ(result.horizon->left(), 0);
+    EXPECT_EQ(result.horizon->ended_by_gap, 3);
+    EXPECT_FALSE(result.horizon->median_s);
+    for (const auto& p : result.horizon->predictions) EXPECT_LT(p.within_s, 3);
+    EXPECT_NE(horizon_sentence(result).find("3 ended at a gap"), std::string::npos);
+}
+
 /// In a track of eight pieces, the first prediction covers most of the track and the last one very little.
 TEST(FitHorizon, ReportsMissingPredictionsAndTheDataUsed) {
     FitResult result;
