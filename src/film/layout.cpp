@@ -487,11 +487,12 @@ Regions split(const Area& room, const RegionNeeds& needs) {
         auto beside = with_strips_below(room, needs, 1, false), stacked = with_strips_below(room, needs, 1, true);
         return can_stack && circle_in(stacked) > circle_in(beside) ? stacked : beside;
     }
+    auto beside = with_strips_beside(room, needs);
     if (needs.panels > 1 && needs.strips <= max_in_row) {
         auto below = with_strips_below(room, needs, needs.strips, false);
-        if (circle_in(below) >= min_circle * needs.height) return below;
+        if (circle_in(below) >= std::min(min_circle * needs.height, circle_in(beside))) return below;
     }
-    return with_strips_beside(room, needs);
+    return beside;
 }
 
 }  // namespace doppel

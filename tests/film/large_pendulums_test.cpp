@@ -75,6 +75,12 @@ TEST(LargePendulums, CirclesAreLargeCentralAndFreeOfText) {
     for (const char* film : films) expect_in_place_at_all_sizes(scene_of(film), film);
 }
 
+TEST(LargePendulums, ASquareFilmHasItsStripBelowThem) {
+    const auto layout = make_layout(at_size(scene_of("butterfly"), {1080, 1080}));
+    EXPECT_GT(2 * layout.reach, 400);  // measured 462; 325 with the strip in a column
+    EXPECT_GT(layout.strips[0].area.top, layout.panels[0].area.bottom);
+}
+
 TEST(LargePendulums, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
     EXPECT_EQ(scene_of("butterfly", {"video.layout=\"portrait\""}).preset.video.size, (Size{1080, 1920}));
     const auto scene = at_size(scene_of("pendulum-portrait"), {1080, 1920});
