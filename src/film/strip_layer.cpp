@@ -31,8 +31,8 @@ public:
             list.push_back(horizontal_line(area.bottom, area.left, area.right, line, theme_.frame));
         }
         if (const auto& proof = state_.scene.certificate)  // a band along the axis
-            list.push_back(Box{area.left, area.bottom - 0.25f * em, strip_.time.at(proof->run_until_s()), area.bottom,
-                               0, theme_.trace.with_alpha(0.5f)});
+            list.push_back(Box{area.left, area.bottom - band * em, strip_.time.at(proof->run_until_s()), area.bottom, 0,
+                               theme_.trace.with_alpha(0.5f)});
         for (const auto& mark : limits_) draw_line(mark, list);
     }
 
@@ -144,7 +144,8 @@ private:
     /// film's curve. If they are too high, the first are left out, which are those of limits.
     std::vector<Label> rows_of(const std::vector<TimeMark>& marks) const {
         const float size = px(style_.font.strip), line = 1.2f * size;
-        const float foot = strip_.area.bottom - 0.45f * size, maximum = (foot - strip_.area.top) / line + 0.25f;
+        const float above = state_.scene.certificate ? band * px(style_.font.axis) : 0;
+        const float foot = strip_.area.bottom - 0.45f * size - above, maximum = (foot - strip_.area.top) / line + 0.25f;
         std::vector<Label> rows;
         for (auto mark = marks.rbegin(); mark != marks.rend(); ++mark) {
             const auto words = words_at(*mark);
@@ -167,6 +168,7 @@ private:
         return rows;
     }
 
+    static constexpr float band = 0.25f;  // height of the band of a proof, em
     const StripLayout& strip_;
     const std::vector<TimeMark> limits_ = limits_of(state_.scene);
     std::vector<CutCurve> traces_;  // one for each curve
