@@ -131,7 +131,7 @@ void layout_fields(KeyVisitor& visit, VideoSpec& video) {
                                  fmt::format("is for \"{}\", which panels does not contain", name_of(kind)),
                                  visit.from_command_line("panels"), "panels"};
         const auto bounds = is_logarithmic(kind) ? positive : Bounds{};
-        visit({range_keys[i], help, "", bounds, fitted, of_shown, "lowest and highest"}, video.ranges[i]);
+        visit({range_keys[i], help, "", bounds, fitted, of_shown}, video.ranges[i]);
     }
 }
 

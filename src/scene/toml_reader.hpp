@@ -58,7 +58,7 @@ std::string shown(const toml::node& node);    // the same on one line, shortened
 std::string found(const toml::node& node);    // "it is a whole number (3)"
 /// What a number must be, "> 0" or "from 1 to 10000 kg"; nothing if it is in range.
 std::optional<std::string> missed_range(const Bounds& bounds, const Quad& number, std::string_view unit = "");
-/// Whether it was given on the command line, where one number or text counts as a list of one.
+/// Whether it was given on the command line.
 bool is_typed(const toml::node& node);
 
 /// Sort key of an error: line and column in the file, then errors without a line, then command line options by number.

@@ -76,9 +76,9 @@ public:
         into = *value;
     }
 
-    /// 1 to `maximum` numbers.
+    /// 1 to `maximum` numbers; one needs no brackets.
     void read(const toml::node& node, std::vector<double>& into) const {
-        if (node.is_number() && is_typed(node)) {
+        if (node.is_number()) {
             into.resize(1);
             return read(node, into[0]);
         }
@@ -118,7 +118,7 @@ public:
     /// For bounds > 0, a logarithmic axis.
     void read(const toml::node& node, Range& into) const {
         std::array<double, 2> range{};
-        read_array(node, range, fmt::format("2 numbers, {}", field_.each));
+        read_array(node, range, "2 numbers, lowest and highest");
         const auto [low, high] = range;
         if (field_.bounds.is_open && (!(high >= 10 * low) || high / low > 1e60))
             throw error("must increase by 1 to 60 powers of ten; it is [{}, {}]", low, high);
@@ -128,7 +128,7 @@ public:
 
     void read(const toml::node& node, std::vector<std::string>& into) const {
         into.clear();
-        if (node.is_string() && is_typed(node)) return read(node, into.emplace_back());
+        if (node.is_string()) return read(node, into.emplace_back());
         const auto* array = node.as_array();
         if (!array) throw error("must be an array of strings; {}", found(node));
         if (field_.is_drawn && array->size() > max_texts)
@@ -140,8 +140,8 @@ public:
     void read(const toml::node& node, ChosenText& into) const {
         into = {};
         if (node.is_boolean()) return read(node, into.shown);
-        if (node.is_string()) return read(node, into.own.emplace().emplace_back());
-        if (!node.is_array()) throw error("must be true, false, text or a list of text; {}", found(node));
+        if (!node.is_array() && !node.is_string())
+            throw error("must be true, false, text or a list of text; {}", found(node));
         read(node, into.own.emplace());
     }
 
@@ -190,7 +190,7 @@ public:
             auto& member = into.releases.emplace_back();
             if (const auto* table = release.as_table())
                 read_release(*table, k, member);
-            else if (release.is_array() || (release.is_number() && is_typed(node)))
+            else if (release.is_array() || release.is_number())
                 ValueReader(table_, numbers_of_release(field_.key, angle_bounds), fmt::format("[{}]", k))
                     .read(release, member.angle_deg);
             else

@@ -73,7 +73,7 @@ Json color_schema() {
     return {{"type", "string"}, {"pattern", "^#[0-9a-fA-F]{6}$"}};
 }
 Json texts_schema(L field, std::size_t minimum) {
-    return list_schema(text_schema(field), minimum, field.is_drawn ? max_texts : 0);
+    return any_of({text_schema(field), list_schema(text_schema(field), minimum, field.is_drawn ? max_texts : 0)});
 }
 
 Json whole_schema(L field) {
@@ -84,7 +84,7 @@ Json whole_schema(L field) {
 
 Json numbers_schema(L field) {
     const auto number = within(field.bounds);
-    return field.maximum > 0 ? list_schema(number, 1, field.maximum) : any_of({number, list_schema(number, 1, 0)});
+    return any_of({number, list_schema(number, 1, field.maximum)});
 }
 
 Json whole_pair_schema(L field) {
@@ -100,8 +100,8 @@ Json speed_schema(L field) {
 }
 
 Json members_schema(L field) {
-    return any_of({whole_schema(field), list_schema(any_of({list_schema(within({}), 1, 0), Json{{"type", "object"}}}),
-                                                    2, Members::max_releases)});
+    const auto release = any_of({within({}), list_schema(within({}), 1, 0), Json{{"type", "object"}}});
+    return any_of({whole_schema(field), list_schema(release, 2, Members::max_releases)});
 }
 
 /// The schema of a key whose member has this type.
@@ -119,7 +119,7 @@ Json type_schema(L field) {
     if constexpr (is_same_v<T, Speed>) return speed_schema(field);
     if constexpr (is_same_v<T, QuadPair> || is_same_v<T, Range>) return pair_schema(field);
     if constexpr (is_same_v<T, Members>) return members_schema(field);
-    if constexpr (is_same_v<T, ChosenText>) return any_of({truth_schema(), text_schema(field), texts_schema(field, 0)});
+    if constexpr (is_same_v<T, ChosenText>) return any_of({truth_schema(), texts_schema(field, 0)});
     if constexpr (is_same_v<T, EndSpec>) return any_of({text_schema(field), pair_schema(field)});
     if constexpr (is_same_v<T, TomlValues>) return list_schema(Json::object(), 1, field.maximum);
     if constexpr (is_same_v<T, Size> || is_same_v<T, std::array<int, 2>>) return whole_pair_schema(field);

@@ -78,6 +78,14 @@ TEST(FigurePreset, ResolvedKeepsEveryDigitAndCharacter) {
     EXPECT_EQ(again.resolved(), figure.resolved());
 }
 
+TEST(FigurePreset, AListOfOneNeedsNoBrackets) {
+    const auto resolved = [](const std::string& captions, const std::string& energy) {
+        return figure_from("captions = " + captions + "\n[scene]\nkind = \"section\"\n[section]\nenergy_J = " + energy)
+            .resolved();
+    };
+    EXPECT_EQ(resolved("\"x\"", "12"), resolved("[\"x\"]", "[12]"));
+}
+
 TEST(FigurePreset, ScaleIsOfThePicture) {
     EXPECT_EQ(layout_of(figure_of("fig6").chart).picture, (Size{1600, 900}));
     EXPECT_EQ(layout_of(figure_of("fig6", {"chart.scale=2", "chart.size=[480, 270]"}).chart).picture, (Size{960, 540}));
@@ -147,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Figures, FigureErrors, testing::ValuesIn(refused_figure
 TEST(FigureErrors, OfTheTopAreNamed) {
     const std::string scene = "\n[scene]\nkind = \"series\"\n[series]\nquantity = \"exponents\"";
     for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
-             {"captions = \"x\"", "captions must be an array of strings; it is a string (\"x\")"},
+             {"captions = 3", "captions must be an array of strings; it is a whole number (3)"},
              {"captions = [3]", "captions[0] must be a string; it is a whole number (3)"},
              {"erratum = 3", "erratum must be a string; it is a whole number (3)"},
              {"subtitel = \"x\"", "a preset has no \"subtitel\"; did you mean \"subtitle\"?"}}) {

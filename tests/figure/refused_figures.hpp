@@ -144,6 +144,8 @@ grid: [grid] / quantity = "energy_error" / [grid.x] / key = "system.mass_kg[1]" 
 grid: [b] / angle_deg = [90.01, 90] / [grid.x] / key = "system.links" / from = 2 / to = 4 / step = 1
     => :6:1: [grid.x] key … needs links that are all equal; angle_deg has different numbers
 grid: [grid.x] / key = "system.center_m[1]" / from = 0.5 => :4:1: [grid.x] key … needs center_m in the preset
+grid: [grid] / quantity = "energy_error" / range = 5
+    => :5:1: [grid] range must be an array of 2 numbers, lowest and highest; it is a whole number (5)
 grid: [grid] / quantity = "stroboscopic" => :4:1: [grid] quantity … that is driven
 grid: [grid] / quantity = "exponent" / [grid.x] / from = 10 / to = 20 / points = 2 / [grid.color]
     / key = "system.integrator" / values = ["euler", "rk4"] => :4:1: [grid] quantity

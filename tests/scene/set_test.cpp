@@ -66,6 +66,14 @@ TEST(Set, IsTheSameAsTheLongForm) {
         EXPECT_EQ(resolved_toml(preset_from(preset, brief)), resolved_toml(preset_from(preset, whole))) << brief[0];
 }
 
+TEST(Set, AListOfOneNeedsNoBracketsInAFileEither) {
+    for (const auto& [brief, whole] : std::vector<std::pair<const char*, const char*>>{
+             {"[video]\npanels = \"pendulums\"", "[video]\npanels = [\"pendulums\"]"},
+             {"[system]\nlinks = 1\n[video]\nlayout = \"ensemble\"\nmembers = [30, 60, 90]",
+              "[system]\nlinks = 1\n[video]\nlayout = \"ensemble\"\nmembers = [[30], [60], [90]]"}})
+        EXPECT_EQ(resolved_toml(preset_from(brief)), resolved_toml(preset_from(whole))) << brief;
+}
+
 TEST(Set, ReachesEntriesByTheirNamesOrTheOnlyOneOfAKind) {
     for (const auto* key : {"system.force.tie", "system.force.spring"}) {
         const auto preset = preset_from(mechanism, {std::string(key) + ".stiffness_N_per_m=3"});
