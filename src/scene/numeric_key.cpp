@@ -106,6 +106,16 @@ void split(const TomlReader& table, std::string_view key, NumericKey& into) {
         throw table.error(key, "must end like \"mass_kg[1]\" where it is one of several; it is \"{}\"", into.path);
 }
 
+/// Of a link's mass_kg and rod_mass_kg one may be 0, as in films.
+Bounds bounds_of(const SideSpec& side, const NumericKey& number, const Field& field) {
+    const bool is_of_ends = number.inside == "mass_kg";
+    if (!is_of_ends && number.inside != "rod_mass_kg") return field.bounds;
+    const auto& others = is_of_ends ? side.physical.rod_mass_kg : side.mass_kg;
+    const auto is_0 = [](const Quad& mass) { return mass == 0; };
+    const bool is_any_0 = number.element ? is_0(others[*number.element]) : std::ranges::any_of(others, is_0);
+    return is_any_0 ? positive : not_negative;
+}
+
 /// Checks the number for one side, and copies the properties of its field.
 void find_in(SideSpec side, const Rational& sample_hz, const TomlReader& table, std::string_view key,
              NumericKey& number) {
@@ -124,15 +134,17 @@ void find_in(SideSpec side, const Rational& sample_hz, const TomlReader& table, 
     const bool is_array = !found.is_whole && !found.step && (!field.each.empty() || values.size() > 1);
     if (!field.only.applies && !field.only.error.empty()) refuse(field.only.error);
     if (!is_array && number.element) refuse("is a number, not an array");
-    number.bounds = field.bounds;
-    constexpr double rounding = 1e-6;
-    if (found.step) number.bounds.high = (1 + rounding) / sample_hz.value();
     number.label = label_of(number, field);
     if (number.element && values.empty()) refuse(fmt::format("needs {} in the preset", field.key));
     if (number.element && *number.element >= values.size())
         refuse(fmt::format("is beyond the array, whose last element is [{}]", values.size() - 1));
     if (!number.element && field.each.empty() && values.size() > 1)
         refuse(fmt::format("has two numbers; give {0}[0] or {0}[1]", number.path));
+    const bool is_open = number.bounds.is_open;  // for the other side
+    number.bounds = bounds_of(side, number, field);
+    number.bounds.is_open |= is_open;
+    constexpr double rounding = 1e-6;
+    if (found.step) number.bounds.high = (1 + rounding) / sample_hz.value();
     if (place.key != "links") return;
     for_each_key(side, [&](const SideEntry& owner, const Field& other, const KeyMember& any) {
         const auto all = numbers_of(any);
@@ -151,6 +163,7 @@ Rational step_near(const Quad& value, const Rational& sample_hz) {
 void put(SideSpec& side, const NumericKey& number, const Quad& value, const Rational& sample_hz) {
     const Place place(number.inside);
     if (!number.is_whole) {
+        if (place.key == "center_m") side.physical.center_m.resize(side.links());  // if it was not given
         const auto found = find_number(side, place);
         if (found.step) *found.step = step_near(value, sample_hz);
         std::ranges::fill(number.element ? found.values.subspan(*number.element, 1) : found.values, value);
@@ -185,6 +198,12 @@ void NumericKey::set(Preset& preset, const Quad& value, const Quad& difference) 
     if (sides != Sides::b) put(preset.a, *this, value, preset.sample_hz);
     if (sides != Sides::a)
         put(preset.b, *this, sides == Sides::both ? Quad(value + difference) : value, preset.sample_hz);
+}
+
+bool NumericKey::has_effect(const Preset& preset) const {
+    if (!inside.starts_with("pivot.") || inside == "pivot.amplitude_m") return true;
+    const auto moves = [](const SideSpec& side) { return side.physical.pivot.amplitude_m != 0; };
+    return (sides != Sides::b && moves(preset.a)) || (sides != Sides::a && moves(preset.b));
 }
 
 SideSpec between(SideSpec from, SideSpec to, const Quad& share) {

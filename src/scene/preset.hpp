@@ -311,6 +311,8 @@ struct PartSpec {
 
 /// [system.pivot]: an oscillating pivot, amplitude · cos(2π · frequency · t + phase).
 struct PivotSpec {
+    static constexpr std::string_view no_effect = "has no effect without amplitude_m";  // error of the other keys
+
     Quad direction_deg = 90;  // from the x axis: 90 = upwards
     Quad amplitude_m = 0, frequency_hz = 1, phase_deg = 0;
 

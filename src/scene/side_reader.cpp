@@ -260,7 +260,7 @@ void check_pivots(TomlReader& system, TomlReader& a, TomlReader& b) {
     for (const auto& [pivot, has_effect] :
          {std::pair(&of_both, moves_a || moves_b), {&of_a, moves_a}, {&of_b, moves_b}})
         for (const auto* key : {"direction_deg", "frequency_hz", "phase_deg"})
-            if (!has_effect && pivot->has(key)) throw pivot->error(key, "has no effect without {}", amplitude);
+            if (!has_effect && pivot->has(key)) throw pivot->error(key, "{}", PivotSpec::no_effect);
 }
 
 /// Refuses particles of one side that would replace the chain of [system] without a word.

@@ -109,6 +109,25 @@ TEST(Grid, FindsTheSameInAnyOrderOfItsValues) {
     }
 }
 
+TEST(Grid, OfACenterOfMassMovesIt) {
+    const std::vector<std::string> sets{"scene.duration_s=1", "grid.quantity=greatest_distance",
+                                        "grid.x.key=system.center_m", "grid.x.values=[0.2, 1]"};
+    const auto rows = table_of(figure_from(twins, sets)).rows;
+    EXPECT_GT(std::abs(rows[0][1] - rows[1][1]), 1e-6);
+    auto given = sets;
+    given.emplace_back("system.center_m=[1, 1]");
+    EXPECT_EQ(table_of(figure_from(twins, given)).rows, rows);
+}
+
+TEST(Grid, TakesTheFrequencyOfAPivotWhoseAmplitudeIsSwept) {
+    std::vector<std::string> sets{
+        "scene.duration_s=1",   "grid.quantity=energy_error",         "grid.x.key=system.pivot.frequency_hz",
+        "grid.x.values=[1, 2]", "grid.color.key=a.pivot.amplitude_m", "grid.color.values=[0, 0.1]"};
+    const auto rows = table_of(figure_from(twins, sets)).rows;
+    EXPECT_EQ(rows.at(0).back(), rows.at(1).back());
+    EXPECT_NE(rows.at(2).back(), rows.at(3).back());
+}
+
 TEST(Grid, OfEqualRatiosHasItsEndsAndTheStepsThatAreTaken) {
     const auto table = table_of(figure_from(
         "[scene]\nkind = \"grid\"\nduration_s = 2\n[system]\nintegrator = \"rk4\"\nangle_deg = [60, 60]\n[grid]\n"

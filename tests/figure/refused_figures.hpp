@@ -146,6 +146,12 @@ grid: [b] / angle_deg = [90.01, 90] / [grid.x] / key = "system.links" / from = 2
 grid: [grid.x] / key = "system.center_m[1]" / from = 0.5 => :4:1: [grid.x] key … needs center_m in the preset
 grid: [grid] / quantity = "energy_error" / range = 5
     => :5:1: [grid] range must be an array of 2 numbers, lowest and highest; it is a whole number (5)
+grid: [grid] / quantity = "energy_error" / [grid.x] / key = "system.pivot.frequency_hz" / from = 1
+    => :6:1: [grid.x] key "system.pivot.frequency_hz" has no effect without amplitude_m
+grid: [grid] / quantity = "distance_at_end" / [a.pivot] / amplitude_m = 1 / [grid.color] / key = "b.pivot.phase_deg"
+    / values = [1, 2] => :8:1: [grid.color] key "b.pivot.phase_deg" has no effect without amplitude_m
+grid: [grid] / quantity = "energy_error" / [grid.x] / key = "b.mass_kg[1]" / from = 1
+    => :6:1: [grid.x] key "b.mass_kg[1]" has no effect on "energy_error", which is of side a
 grid: [grid] / quantity = "stroboscopic" => :4:1: [grid] quantity … that is driven
 grid: [grid] / quantity = "exponent" / [grid.x] / from = 10 / to = 20 / points = 2 / [grid.color]
     / key = "system.integrator" / values = ["euler", "rk4"] => :4:1: [grid] quantity

@@ -70,6 +70,33 @@ TEST(NumericKey, OfAnElementLeavesTheOthers) {
     EXPECT_EQ(all.with(2).a.length_m, (std::vector<Quad>{2, 2}));
 }
 
+TEST(NumericKey, OfAListThatIsNotGivenFillsAllLinks) {
+    for (const auto& [path, text] : std::vector<std::pair<std::string, std::string>>{
+             {"system.center_m", ""}, {"a.center_m", ""}, {"a.center_m", "[system]\nlinks = 3\n"}}) {
+        Found center(path, text);
+        ASSERT_TRUE(center.key) << center.message;
+        const auto set = center.with(0.5);
+        EXPECT_EQ(set.a.physical.center_m, std::vector<Quad>(set.a.links(), Quad(0.5))) << path << text;
+        EXPECT_EQ(set.b.physical.center_m.empty(), path == "a.center_m") << path;
+    }
+}
+
+TEST(NumericKey, HasTheRangeThatAFilmAccepts) {
+    const auto least = [](const std::string& path, const std::string& text) {
+        return Found(path, "[system]\n" + text).key->bounds.is_open;
+    };
+    const std::string rods = "rod_mass_kg = [0, 1]\n", ends = "mass_kg = [0, 1]\nrod_mass_kg = [1, 1]\n";
+    EXPECT_FALSE(least("system.mass_kg[1]", rods));
+    EXPECT_FALSE(least("system.mass_kg", ends));
+    EXPECT_FALSE(least("b.rod_mass_kg[1]", ends));
+    EXPECT_TRUE(least("system.mass_kg[0]", rods));
+    EXPECT_TRUE(least("system.mass_kg", rods));
+    EXPECT_TRUE(least("a.rod_mass_kg", ends));
+    EXPECT_TRUE(least("system.mass_kg", "rod_mass_kg = 1\n[a]\nrod_mass_kg = 0\n"));
+    EXPECT_TRUE(least("system.gravity_m_per_s2", ""));
+    EXPECT_FALSE(Found("system.gravity_m_per_s2", "", true).key->bounds.is_open);
+}
+
 TEST(NumericKey, OfAnEntryIsFoundByNameOrByItsKind) {
     Found left("system.force.left.stiffness_N_per_m", "", true);
     ASSERT_TRUE(left.key) << left.message;
