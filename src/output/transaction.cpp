@@ -42,6 +42,14 @@ void require_type(const fs::path& path, bool is_folder) {
                     is_folder ? "make a folder" : "write a file");
 }
 
+/// The path without missing folders that it leaves by "..": of x/../y, y.
+fs::path without_detours(const fs::path& path) {
+    fs::path way;
+    for (const fs::path& step : path)
+        way = step == ".." && way.has_filename() && type_of(way) == Type::not_found ? way.parent_path() : way / step;
+    return way.empty() ? "." : way;
+}
+
 ino_t inode_of(const fs::path& path) {
     struct stat status {};
     return lstat(path.c_str(), &status) == 0 ? status.st_ino : 0;
@@ -65,8 +73,8 @@ void sync_folder(const fs::path& path, bool with_files = false) {
 
 }  // namespace
 
-Transaction::Transaction(fs::path folder, const std::string& run, std::string kind, Replacing replacing)
-    : Transaction(std::move(folder), std::move(kind), std::move(replacing)) {
+Transaction::Transaction(const fs::path& folder, const std::string& run, std::string kind, Replacing replacing)
+    : Transaction(folder, std::move(kind), std::move(replacing)) {
     hidden_ = folder_ / (".doppel-" + run);
     // from here on the destructor undoes the steps if one throws
     make_folders();
@@ -76,8 +84,8 @@ Transaction::Transaction(fs::path folder, const std::string& run, std::string ki
     begin();
 }
 
-Transaction::Transaction(fs::path folder, std::string kind, Replacing replacing)
-    : folder_(std::move(folder)), kind_(std::move(kind)), replacing_(std::move(replacing)) {}
+Transaction::Transaction(const fs::path& folder, std::string kind, Replacing replacing)
+    : folder_(without_detours(folder)), kind_(std::move(kind)), replacing_(std::move(replacing)) {}
 
 Transaction::~Transaction() {
     std::error_code ignored;

@@ -30,7 +30,7 @@ public:
     /// Makes `folder` and its parents, and locks it for runs named `run`. Runs of other names may write other files
     /// there at the same time. `kind` = "film", "figure" or "fit": files of another kind are not replaced. Throws Error
     /// (exit 4) on failure or if another process has the lock.
-    explicit Transaction(std::filesystem::path folder, const std::string& run = "run", std::string kind = {},
+    explicit Transaction(const std::filesystem::path& folder, const std::string& run = "run", std::string kind = {},
                          Replacing replacing = {});
     ~Transaction();
     Transaction(const Transaction&) = delete;
@@ -74,7 +74,7 @@ private:
         std::string name;
         bool finished = false;
     };
-    Transaction(std::filesystem::path folder, std::string kind, Replacing replacing);
+    Transaction(const std::filesystem::path& folder, std::string kind, Replacing replacing);
     std::filesystem::path hidden(const std::string& name) const { return hidden_ / name; }
     void make_folders();
     bool lock();

@@ -46,6 +46,17 @@ void write_record(const fs::path& folder, const std::vector<std::string>& names)
     write_bytes(folder / "record.json", R"({"doppel": {}, "files": {)" + files + "}}");
 }
 
+TEST_F(Transactions, MakeNoFolderThatTheirPathLeaves) {
+    fs::create_directory(folder / "there");
+    for (const auto* way : {"x/../y", "x/z/../../y", "there/../x/../y", "y"}) {
+        Transaction files(folder / way);
+        write_part(files, "x.csv", way);
+        EXPECT_EQ(files.publish().front().lexically_normal(), folder / "y/x.csv") << way;
+        EXPECT_EQ(listing(folder), (Names{"there", "y", "y/" + hidden, "y/" + lock, "y/x.csv"})) << way;
+        fs::remove(folder / "y/x.csv");
+    }
+}
+
 TEST_F(Transactions, AppearTogetherWhenPublished) {
     Transaction files(folder / "a/b");
     write_part(files, "x.csv", "table");
