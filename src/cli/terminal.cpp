@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <system_error>
 #include <vector>
 
@@ -36,12 +38,31 @@ void check_written(int error) {
                     fmt::format("standard output cannot be written: {}", std::generic_category().message(error)));
 }
 
-std::string bar(double share) {
-    constexpr int width = 28;
-    const auto full = static_cast<int>(share * width);
-    std::string text;
-    for (int i = 0; i < width; ++i) text += i < full ? "━" : "─";
-    return text;
+/// The first characters of the text that fit into so many columns. From U+1100 on, a character may take two.
+std::string_view fitting(std::string_view text, long columns) {
+    auto rest = text;
+    while (!rest.empty()) {
+        auto after = rest;
+        const int width = next_character(after) < 0x1100 ? 1 : 2;
+        if (width > columns) break;
+        columns -= width, rest = after;
+    }
+    return text.substr(0, text.size() - rest.size());
+}
+
+/// The progress on one line of the terminal: with a bar, a shorter one, or none.
+std::string bar_line(const std::string& name, double share, const std::string& numbers) {
+    constexpr long usual = 28, shortest = 6;
+    winsize window{};
+    const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+    const long columns = is_known ? window.ws_col - 1 : std::numeric_limits<long>::max();
+    const auto line = name + " " + numbers;
+    auto width = usual;
+    while (width >= shortest && fitting(line, columns - width - 1) != line) --width;
+    if (width < shortest) return std::string(fitting(line, columns));
+    std::string bar;
+    for (long i = 0; i < width; ++i) bar += i < static_cast<long>(share * static_cast<double>(width)) ? "━" : "─";
+    return name + " " + bar + " " + numbers;
 }
 
 /// Prints to standard error; if nobody reads it, the run continues.
@@ -149,8 +170,9 @@ void ProgressReport::operator()(const Progress& progress) {
                      {"per_second", rate},
                      {"seconds_left", left}});
     } else if (style_ == ProgressStyle::bar) {
-        tell("\r\033[K{} {} {:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", name_, bar(share), 100 * share, progress.done,
-             progress.total, unit_, rate, unit_, duration_text(left));
+        const auto numbers = fmt::format("{:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", 100 * share, progress.done,
+                                         progress.total, unit_, rate, unit_, duration_text(left));
+        tell("\r\033[K{}", bar_line(name_, share, numbers));
         on_screen_ = true;
     } else {
         tell("{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,

@@ -3,6 +3,7 @@
 #include "cli/process.hpp"
 
 #include <nlohmann/json.hpp>
+#include <pty.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -108,6 +109,49 @@ TEST_F(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     for (const int stream : {0, 1, 2}) EXPECT_EQ(link(stream), "/dev/null") << stream;
     kill(child, SIGKILL);
     wait_for(child);
+}
+
+/// The first complete lines of a bar on a terminal of so many columns; none if there is no terminal.
+std::vector<std::string> lines_of_bar(const fs::path& folder, unsigned short columns) {
+    const winsize window{.ws_row = 24, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
+    int side = -1, terminal = -1;
+    if (openpty(&side, &terminal, nullptr, nullptr, &window) != 0) return {};
+    const auto child =
+        start(folder, "simulate 振り子.toml --set scene.duration_s=100000", [&] { dup2(terminal, STDERR_FILENO); });
+    const std::string before = "\r\033[K";
+    std::string said;
+    std::vector<std::string> lines;
+    for (char byte = 0; lines.size() < 3 && read(side, &byte, 1) == 1;) {
+        said += byte;
+        if (!said.ends_with(before)) continue;
+        lines.push_back(said.substr(0, said.size() - before.size()));
+        said.clear();
+    }
+    kill(child, SIGKILL);
+    wait_for(child);
+    close(side);
+    close(terminal);
+    return lines;
+}
+
+TEST_F(Streams, TheBarIsNarrowerThanItsTerminal) {
+    write_bytes(folder / "振り子.toml", "title = \"x\"\n[b]\nangle_deg = 91\n");
+    for (const int columns : {120, 80, 60, 30, 8}) {
+        const auto lines = lines_of_bar(folder, static_cast<unsigned short>(columns));
+        if (lines.empty()) GTEST_SKIP() << "no terminal, as in a root without /dev/pts";
+        for (std::size_t i = 1; i < lines.size(); ++i) {  // before the first one is nothing
+            auto rest = std::string_view(lines[i]);
+            int width = 0, bar = 0;
+            while (!rest.empty()) {
+                const auto character = next_character(rest);
+                width += character < 0x3000 ? 1 : 2;
+                bar += character == 0x2501 || character == 0x2500;
+            }
+            EXPECT_LT(width, columns) << lines[i];
+            EXPECT_EQ(bar == 28, columns == 120) << lines[i];
+            EXPECT_EQ(bar > 5, columns > 60) << lines[i];
+        }
+    }
 }
 
 // a whole film of this length would take minutes
