@@ -309,6 +309,10 @@ void check_arguments(const CompareOptions& options) {
     if (is_one_file && !options.html.empty()) throw bad_input("--junit and --html would both write {}", options.html);
     if (options.actual.empty() == options.render.empty())
         throw bad_input("compare needs EXPECTED and ACTUAL, or --render PRESET and EXPECTED");
+}
+
+/// Throws Error (exit 2, 4) if what is compared is not there.
+void check_paths(const CompareOptions& options) {
     std::error_code fault;
     const bool is_drawn = !options.render.empty();  // then goldens may be missing
     for (const auto& path : {options.expected, options.actual})
@@ -324,6 +328,7 @@ void check_arguments(const CompareOptions& options) {
 bool compare(const CompareOptions& options) {
     check_arguments(options);
     if (options.list_outputs) {
+        check_paths(options);
         for (const auto& report : {options.junit, options.html})
             if (!report.empty()) print_line("{}", report);
         return true;
@@ -336,9 +341,11 @@ bool compare(const CompareOptions& options) {
     Task task{fs::path(options.out) / "compare", !options.render.empty(), options.update,
               options.render.empty() ? never_stopped : watch_interrupts()};
     std::optional<TemporaryFolder> drawn;
-    bool are_folders = fs::is_directory(options.actual);
+    std::error_code missing;
+    bool are_folders = fs::is_directory(options.actual, missing);
     std::optional<Error> first_fault;
     try {
+        check_paths(options);
         if (task.is_drawn) {
             const auto preset = find_preset(options.render, &task.stop);
             task.folder = fs::path(options.out) / preset.name / "compare";

@@ -90,6 +90,19 @@ TEST_F(CompareReports, SayWhatCouldNotBeDrawn) {
     EXPECT_TRUE(has(bytes_of(folder / "report.html"), "there is no preset"));
 }
 
+TEST_F(CompareReports, SayWhatIsNotThere) {
+    make(folder / "one/1.png", plain(10));
+    for (const std::string paths : {"one two", "two one", "one one/1.png"}) {
+        const auto refused = ends("compare " + paths + " --junit report.xml --html report.html", 2);
+        EXPECT_TRUE(one_line(refused.err));
+        const auto words = refused.err.substr(8, refused.err.size() - 9);  // without "doppel: "
+        EXPECT_EQ((*document_of(bytes_of(folder / "report.xml")).all("error").at(0))["message"], words);
+        EXPECT_TRUE(has(bytes_of(folder / "report.html"), words));
+        fs::remove(folder / "report.xml");
+        fs::remove(folder / "report.html");
+    }
+}
+
 TEST_F(CompareReports, ReplaceOnlyTheirOwn) {
     make(folder / "one.png", plain(10));
     for (const std::string option : {"--junit", "--html"}) {
