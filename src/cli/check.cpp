@@ -382,7 +382,10 @@ void add_check(CLI::App& app) {
         "  doppel check butterfly --json | jq '.[0].warnings'");
     add_preset_options(command, *options);
     add_value(command, "--size", options->size, "WxH", "Size of the picture, px");
-    add_value(command, "--format", options->format, "FORMAT", "Format, as render or figure takes it");
+    Choices formats{format_names.begin(), format_names.end()};
+    formats.insert(formats.end(), {"pdf", "svg"});  // of figures
+    add_value(command, "--format", options->format, "FORMAT", "Format, as render or figure takes it")
+        ->check(CLI::IsMember(formats));
     add_quality_option(command, options->quality);
     command.add_flag("--json", options->as_json,
                      "The same as JSON, an array with an object a preset: see docs/files.md");

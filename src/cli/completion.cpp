@@ -13,11 +13,13 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <tuple>
 
 namespace doppel {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_view_literals;
 
 struct Candidate {
     std::string text, help = {};
@@ -81,10 +83,38 @@ std::vector<std::string> kinds_of(const std::string& command, const std::vector<
     return {scene_kinds.begin() + 1, scene_kinds.end()};
 }
 
+/// The entries of a side with the name of this one, or without a name of its kind.
+long count_like(SideSpec& side, const SideEntry& one) {
+    return std::ranges::count_if(entries_of(side), [&](const SideEntry& entry) {
+        return entry.table == one.table && (one.name.empty() ? entry.kind == one.kind : entry.name == one.name);
+    });
+}
+
+/// The keys of a film's entries by their names, or by their kinds: "system.force.left.length_m=".
+void add_entries(const std::vector<std::string>& words, const std::string& word, Candidates& all) {
+    auto preset = of_preset(words, [](const PresetText& source) { return read_preset(source); });
+    if (!preset) return;
+    auto &a = preset->a, &b = preset->b;
+    for (const auto& [table, side, other] : {std::tuple("system"sv, &a, &b), {"a"sv, &a, &b}, {"b"sv, &b, &a}})
+        for_each_key(*side, [&, table = table, side = side, other = other](const SideEntry& of, const Field& field,
+                                                                           const KeyMember& member) {
+            const auto name = of.name.empty() ? of.kind : std::string_view(of.name);
+            if (of.number == 0 || name == of.table || count_like(*side, of) != 1) return;
+            const bool is_of_both = count_like(*other, of) == 1;
+            if (table == "system" ? !is_of_both : of.name.empty() && is_of_both) return;
+            const auto key = fmt::format("{}.{}.{}.{}=", table, of.table, name, field.key);
+            all.push_back({word.starts_with(key) ? key + toml_value(member) : key, std::string(field.help)});
+        });
+}
+
 /// "table.key=", or the values of the key if it is complete. The list is made by tests/figure/starting_presets.cpp.
 void add_settings(const std::string& command, const std::vector<std::string>& words, const std::string& word,
                   Candidates& all) {
     const auto kinds = kinds_of(command, words);
+    add_entries(words, word, all);
+    const auto word_key = word.substr(0, word.find('=') + 1);
+    bool is_axis = false;  // its value is a key of a side
+    Candidates of_sides;
     std::istringstream lines{std::string(embedded_file(cli_files(), "settings.tsv"))};
     for (std::string line; std::getline(lines, line);) {
         const auto cells = CLI::detail::split(line, '\t');  // kind, key, help, values
@@ -93,7 +123,11 @@ void add_settings(const std::string& command, const std::vector<std::string>& wo
         const bool is_complete = word.starts_with(key);
         if (!is_complete) all.push_back({key, cells[2]});
         for (std::size_t i = 3; i < cells.size() && is_complete; ++i) all.push_back({key + cells[i]});
+        is_axis |= is_complete && key.ends_with(".key=");
+        if (key.starts_with("system.") || key.starts_with("a.") || key.starts_with("b."))
+            of_sides.push_back({word_key + cells[1], cells[2]});
     }
+    if (is_axis) all.insert(all.end(), of_sides.begin(), of_sides.end());
 }
 
 /// The last name of --columns: those of the given preset, if they are known without computation.

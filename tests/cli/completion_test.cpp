@@ -101,6 +101,19 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
     EXPECT_EQ(completed(folder, "check flip-map --set grid.x.poi"), Lines{"grid.x.points="});
     EXPECT_EQ(completed(folder, "init --figure gr"), Lines{"grid"});
+    EXPECT_TRUE(offers(completed(folder, "check calm --format "), {"mp4", "html", "pdf"}));
+    // the key of an axis is a key
+    EXPECT_TRUE(offers(completed(folder, "figure fig2-right --set grid.x.key="),
+                       {"theta1_deg", "mass_ratio", "links", "setting", "system.mass_kg", "b.pivot.amplitude_m"}));
+    EXPECT_EQ(completed(folder, "figure fig2-right --set grid.color.key=system.int"), Lines{"system.integrator"});
+    EXPECT_EQ(completed(folder, "figure fig6 --set grid.x.key="), Lines{""});  // a series
+    // entries by name, or by the kind of the only one
+    EXPECT_EQ(completed(folder, "check springs --set system.particle.le"),
+              (Lines{"system.particle.left.mass_kg=", "system.particle.left.position_m=",
+                     "system.particle.left.velocity_m_per_s="}));
+    EXPECT_EQ(completed(folder, "check raindrop --set b.force.droplet.m"), Lines{"b.force.droplet.mass_kg="});
+    EXPECT_EQ(completed(folder, "render driven --set b.torque.motor.joint="), Lines{"1"});
+    EXPECT_EQ(completed(folder, "render springs --set system.force.sp"), Lines{""});  // four springs without names
     EXPECT_TRUE(offers(completed(folder, "figure --set "), "poincare.orbits=") ||
                 offers(completed(folder, "figure --set "), "section.orbits="));
 }

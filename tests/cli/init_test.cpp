@@ -32,6 +32,8 @@ TEST_F(Init, WritesAPresetThatIsCheckedAndRendered) {
     EXPECT_EQ(preset.a.accuracy, parse_quad("1e-3"));
     const auto again = read_preset(find_preset("butterfly"), {parse_set("system.accuracy=1e-3")});
     EXPECT_EQ(resolved_pair(preset), resolved_pair(again));
+    for (const auto* entry : {"torque", "particle", "constraint", "force"})
+        EXPECT_TRUE(has(bytes_of(folder / "mine.toml"), fmt::format("[[system.{}]]", entry))) << entry;
 }
 
 /// The keys in comments that cannot be uncommented alone.

@@ -82,6 +82,8 @@ void add_settings(const FieldTable& table, const std::string& above, std::string
         const auto example = field.example();
         if (example == "true" || example == "false")
             values = {"false", "true"};
+        else if (field.key == "key")
+            values = {"theta1_deg", "theta2_deg", "mass_ratio", "length_ratio", "links", "setting"};
         else if (field.names.empty())
             values = {example};
         lines.insert(fmt::format("{}\t{}{}\t{}{}{}\t{}\n", kind, name, field.key, field.help,
@@ -110,7 +112,9 @@ std::string starting_preset(std::string_view kind) {
             if (key == "scene" && kind != pair_kind) text += fmt::format("kind = {}\n", toml_text(std::string(kind)));
             text += table_lines(table);
             if (key == "system" && kind == pair_kind)
-                text += "# particles, constraints and forces: see docs/presets.md, and \"doppel show springs\"\n";
+                text +=
+                    "# [[system.torque]]: see docs/presets.md, and \"doppel show driven\"\n"
+                    "# [[system.particle]], [[system.constraint]], [[system.force]]: see \"doppel show springs\"\n";
             if (key == "curve")
                 text += "# [curve.system], [curve.a] and [curve.b]: what this curve's sides have otherwise\n";
         }
