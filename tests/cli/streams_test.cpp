@@ -118,6 +118,7 @@ std::vector<std::string> lines_of_bar(const fs::path& folder, unsigned short col
     if (openpty(&side, &terminal, nullptr, nullptr, &window) != 0) return {};
     const auto child =
         start(folder, "simulate 振り子.toml --set scene.duration_s=100000", [&] { dup2(terminal, STDERR_FILENO); });
+    close(terminal);  // so that reading ends with the program
     const std::string before = "\r\033[K";
     std::string said;
     std::vector<std::string> lines;
@@ -130,7 +131,6 @@ std::vector<std::string> lines_of_bar(const fs::path& folder, unsigned short col
     kill(child, SIGKILL);
     wait_for(child);
     close(side);
-    close(terminal);
     return lines;
 }
 
