@@ -252,7 +252,8 @@ float place_header(Layout& layout, const Scene& scene) {
 FittedText fitted_text(const Layout& layout, const std::string& text, float size, Weight weight, float width) {
     const auto& type = layout.style.type;
     const float fits = fitted_size(layout, text, size, weight, width);
-    if (type.width(text, fits, weight) <= width) return {text, fits};
+    constexpr float rounding = 0.01f;  // px
+    if (type.width(text, fits, weight) <= width + rounding) return {text, fits};
     if (const auto equals = text.find(" = ");
         equals < text.size() && equals == text.find(' ') && equals == text.rfind(" = "))
         return fitted_text(layout, text.substr(equals + 3), size, weight, width);  // the number of a single symbol
