@@ -53,6 +53,18 @@ std::string picture_url(const FigurePreset& figure, const std::vector<Plot>& pan
     return svg.size() <= png.size() ? data_url("image/svg+xml", svg) : data_url("image/png", png);
 }
 
+/// Where its texts begin and end, with a margin, in units of its items: square panels do not fill the height of a page.
+std::pair<float, float> used_height(const Page& page) {
+    const float width = static_cast<float>(page.size.width) / page.scale, margin = 0.02f * width;
+    float top = static_cast<float>(page.size.height) / page.scale, bottom = 0;
+    for (const auto& item : page.items)
+        if (const auto* text = std::get_if<Label>(&item)) {
+            top = std::min(top, text->anchor.y - text->size - margin);
+            bottom = std::max(bottom, text->anchor.y + 0.3f * text->size + margin);
+        }
+    return {std::max(std::round(top), 0.0f), std::round(bottom)};
+}
+
 constexpr int tile = 256;  // pixels per side
 
 /// A rectangle of a picture; outside the picture it is transparent.
@@ -102,6 +114,8 @@ std::string figure_page(const FigurePreset& figure, Figure drawn) {
     const auto page = compose_chart(figure.chart, drawn);
     const auto [width, height] =
         std::pair(static_cast<float>(page.size.width) / page.scale, static_cast<float>(page.size.height) / page.scale);
+    const auto [top, end] = used_height(page);
+    const float bottom = std::min(end, height);
     HtmlPage whole{.kind = "figure"};
     auto keys = Json::array();
     if (auto releases = figure.experiment->releases()) {
@@ -113,7 +127,7 @@ std::string figure_page(const FigurePreset& figure, Figure drawn) {
     whole.body = fmt::format(R"html({0}<main>
 <div id="frame"><div id="figure" tabindex="0" role="application" aria-label="{1}: arrow keys move through its numbers">
 <img src="{2}" width="{3}" height="{4}" alt="{1}"/>
-<svg viewBox="0 0 {3} {4}" aria-hidden="true"><rect/></svg>
+<svg viewBox="0 {9} {3} {10}" aria-hidden="true"><rect/></svg>
 <output></output>
 </div></div>
 </main>
@@ -121,13 +135,15 @@ std::string figure_page(const FigurePreset& figure, Figure drawn) {
 {8})html",
                              heading, markup(figure.title), picture_url(figure, drawn.panels, page), width, height,
                              captions, drawn.panels.size() > 1 ? " Page Up and Page Down change the panel." : "",
-                             keys.empty() ? "" : " A click or Enter releases the pendulum there.", whole.body);
+                             keys.empty() ? "" : " A click or Enter releases the pendulum there.", whole.body, top,
+                             bottom - top);
     const auto file = [](std::string_view name) { return embedded_file(figure_files(), name); };
     whole.kind = "figure";
     whole.title = figure.title;
     whole.styles.insert(whole.styles.begin(), file("figure/page.css"));
     whole.scripts.insert(whole.scripts.begin(), file("figure/page.js"));
-    whole.data["size"] = {width, height};
+    whole.data["size"] = {width, bottom - top};
+    whole.data["above"] = top;
     whole.data["release"] = keys;
     whole.data["panels"] = Json::array();
     for (std::size_t i = 0; i < drawn.panels.size(); ++i)

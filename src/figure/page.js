@@ -1,8 +1,9 @@
 // Shows the numbers of the cell or the curve's point under the pointer or selected by keys.
 "use strict";
 const figure = $("#figure"), mark = $("#figure rect"), readout = $("#figure output");
-const { size, panels, release } = pageData;  // pixels of the picture; keys of a preset
-let chosen = null, again = false;            // a place; whether the pointer was at the same place before
+// pixels of the picture that are shown, and those above them; keys of a preset
+const { size, above, panels, release } = pageData;
+let chosen = null, again = false;  // a place; whether the pointer was at the same place before
 
 const numbersIn = text => text ? text.split(" ").map(Number) : [];
 const isInPanel = ([px, py], { x, y }) =>
@@ -48,8 +49,8 @@ function choose(place) {
     if (value !== undefined) readout.append(element("b", {}, written(shortened(value, 6))));
   }
   const beside = (px, side) => px < side / 2 ? "16px" : "calc(-100% - 16px)";  // on the side with more space
-  Object.assign(readout.style, { left: `${100 * x / size[0]}%`, top: `${100 * y / size[1]}%`,
-    transform: `translate(${beside(x, size[0])}, ${beside(y, size[1])})` });
+  Object.assign(readout.style, { left: `${100 * x / size[0]}%`, top: `${100 * (y - above) / size[1]}%`,
+    transform: `translate(${beside(x, size[0])}, ${beside(y - above, size[1])})` });
 }
 function open() {
   if (chosen && release.length)
@@ -58,7 +59,8 @@ function open() {
 
 figure.onpointermove = figure.onpointerdown = event => {
   const area = figure.getBoundingClientRect(), before = chosen;
-  const x = (event.clientX - area.left) / area.width * size[0], y = (event.clientY - area.top) / area.height * size[1];
+  const x = (event.clientX - area.left) / area.width * size[0];
+  const y = above + (event.clientY - area.top) / area.height * size[1];
   const panel = panels.find(one => isInPanel([x, y], one));
   choose(panel ? nearest(panel, x, y) : null);
   if (event.type === "pointerdown") again = before?.x === chosen?.x && before?.y === chosen?.y;
@@ -90,6 +92,8 @@ for (const panel of panels) {
       .filter(point => isInPanel(point.at, panel));
   }
 }
-figure.parentElement.style.maxWidth = `max(680px, ${85 * size[0] / size[1]}vh)`;
+figure.parentElement.style.maxWidth = `max(780px, ${85 * size[0] / size[1]}vh)`;
+figure.style.aspectRatio = `${size[0]} / ${size[1]}`;
+$("#figure img").style.marginTop = `${-100 * above / size[0]}%`;
 figure.classList.toggle("releases", release.length > 0);
 choose(null);
