@@ -73,7 +73,17 @@ Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJ
     return json;
 }
 
-/// A picture of the film's layout: pixels of `scene`'s size. `first`: the snapshot at the start.
+/// Without the limits that strips mark, which are those of the film's motion.
+Scene without_limits(Scene scene) {
+    for (auto* side : {&scene.a, &scene.b})
+        if (side->choice) side->choice->horizon = scene.samples;
+    scene.certificate.reset();
+    scene.preset.video.model_limit_s.reset();
+    return scene;
+}
+
+/// A picture of the film's layout: pixels of `scene`'s size. `first`: the snapshot at the start. "marks": the numbers
+/// of the backdrop's items that mark limits.
 Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first) {
     const FilmState state{scene, make_layout(scene, bounds), first};
     const auto& layout = state.layout;
@@ -107,9 +117,17 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
         json["phase"] = {
             {"area", json_of(phase->area)}, {"angle", axis_json(phase->angle)}, {"rate", axis_json(phase->rate)}};
     for (const auto& strip : layout.strips) json["strips"].push_back(strip_json(state, strip, json_of, backdrop));
-    json["backdrop"] = json_of.all(backdrop);
     for (const auto& [key, label] : {std::pair("clock", &layout.clock), {"speed", &layout.speed}})
         if (*label) json[key] = json_of(**label);
+    json["backdrop"] = json_of.all(backdrop);
+    json["marks"] = Json::array();
+    if (limits_of(scene).empty()) return json;
+    const auto others = picture_json(without_limits(scene), bounds, first)["backdrop"];
+    for (std::size_t i = 0, k = 0; i < backdrop.size(); ++i)
+        if (k < others.size() && json["backdrop"][i] == others[k])
+            ++k;
+        else
+            json["marks"].push_back(i);
     return json;
 }
 

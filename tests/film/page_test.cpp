@@ -255,9 +255,17 @@ TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
 
 TEST(Page, SaysTheLimitsThatTheFilmMarks) {
     const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
-    EXPECT_EQ(data_of(page_of(text)).at("limits"), Json::array());
-    EXPECT_EQ(data_of(page_of(text + "model_limit_s = 0.5\n")).at("limits").dump(),
-              R"([[0.5,"predictability limit of the model 0.5 s"]])");
+    const auto without = data_of(page_of(text)), with = data_of(page_of(text + "model_limit_s = 0.5\n"));
+    EXPECT_EQ(without.at("limits"), Json::array());
+    EXPECT_EQ(with.at("limits").dump(), R"([[0.5,"predictability limit of the model 0.5 s"]])");
+    for (const std::size_t k : {0u, 1u}) {
+        auto backdrop = with.at("pictures")[k].at("backdrop");
+        const auto& marks = with.at("pictures")[k].at("marks");
+        EXPECT_GT(marks.size(), 3u) << "dashes";
+        for (auto mark = marks.rbegin(); mark != marks.rend(); ++mark) backdrop.erase(mark->get<std::size_t>());
+        EXPECT_EQ(backdrop, without.at("pictures")[k].at("backdrop")) << "what a release by hand shows";
+        EXPECT_EQ(without.at("pictures")[k].at("marks"), Json::array());
+    }
 }
 
 /// A wide film also has an upright picture; the pictures equal those of the film.
@@ -270,6 +278,16 @@ TEST(Page, HasThePicturesOfTheFilm) {
     const auto layout = make_layout(scene_of_text(text));
     EXPECT_NEAR(data.at("pictures")[0].at("panels")[0].at("center")[0], layout.panels[0].center.x, 0.01);
     EXPECT_EQ(data_of(page_of(text + "size = [720, 1280]\n")).at("pictures").size(), 1u);
+}
+
+TEST(Page, CutsNoHeadingThatJustFits) {
+    auto preset = find_preset("raindrop");
+    const auto scene = make_scene(read_preset(preset, {{"video.size", "[1080, 1920]", "test"}}));
+    const auto words = make_layout(scene).words;
+    EXPECT_TRUE(std::ranges::any_of(words, [](const Item& item) {
+        const auto* label = std::get_if<Label>(&item);
+        return label && label->text == "raindrop of 34 mg";
+    }));
 }
 
 }  // namespace doppel::page_test

@@ -7,7 +7,7 @@ const isOfFigure = pageData.panels !== undefined;
 
 let isPlaying = false, lastFrame = 0;
 function seek(to) {
-  time = clamp(to, 0, film.duration_s);
+  time = motion?.isStill ? 0 : clamp(to, 0, film.duration_s);
   const distance = motion?.curves?.distance?.[0][sampleNow()];
   const told = distance >= 0 ? `, distance ${scientific(distance)}` : "";
   $("#time").value = time;
@@ -51,6 +51,9 @@ const steps = Math.ceil(4000 * film.sample_s);  // in a sample
 let isFilmInForm = true;                        // whether its pendulums differ as the form says
 const numbersOf = ({ chain }) => quantities.map(([name, , , per]) => [chain[name]].flat().map(v => v * per));
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
+// The difference of two numbers that were rounded: the shortest decimal that gives the second one, of at most 6 digits.
+const decimalBetween = (a, b) => [1, 2, 3, 4, 5, 6].map(digits => shortened(b - a, digits))
+  .find((by, i) => i === 5 || Math.abs(a + by - b) <= 4e-16 * Math.abs(b));
 // With the film's numbers, also after form.reset().
 function makeForm() {
   const [first, last] = [bodies[0], bodies.at(-1)].map(numbersOf);
@@ -60,7 +63,7 @@ function makeForm() {
       const label = `${name}${first[q].length > 1 ? ` ${i + 1}` : ""}, ${unit}`, value = shortened(number);
       row.append(element("input", { name: name + i, type: "number", step: "any", "aria-label": label, value }));
       form.key.append(new Option(label, name + i, number !== last[q][i]));
-      if (number !== last[q][i]) form.by.defaultValue = shortened(last[q][i] - number, 6);
+      if (number !== last[q][i]) form.by.defaultValue = decimalBetween(number, last[q][i]);
     });
     $("#numbers").append(row);
   });
@@ -85,11 +88,13 @@ function faultOfForm() {
   if (all.flat(2).some(Number.isNaN)) return "every field needs a number";
   if (all.some(([, , ...positive]) => positive.flat().some(v => v <= 0)))
     return "masses, lengths and gravity must be greater than 0";
+  if (layout !== "single" && String(all[0]) === String(all.at(-1))) return "the pendulums must differ";
   return all.some(([angles]) => angles.some(v => Math.abs(v) > 1e6)) ? "angles must be within 10⁶ degrees" : "";
 }
 // Shows how the pendulums start, and with it, once they are known, the curves of the new motion; then plays it.
 async function releaseAnew(playsThen) {
-  const of = bodies.map((_, k) => chainOfForm(k)), { curves, since } = motion ?? {}, fault = faultOfForm();
+  const of = bodies.map((_, k) => chainOfForm(k)), fault = faultOfForm();
+  const { curves, since } = motion === original ? {} : motion;  // until those of this one are known
   if (fault) return say(fault);
   play(false);
   motion = { ...motionOf(of, of.map(({ angle, rate }) => [...angle, ...rate])), curves, since, isStill: true };
@@ -111,7 +116,8 @@ async function releaseAnew(playsThen) {
 function presetOfForm() {
   const [samples, seconds] = film.sample_hz, sections = film.preset.split(/^(?=\[)/m);
   const side = (name, k) => [`[${name}]`, `links = ${bodies[k].mass.length}`, ...numbersOfForm(k).map((list, q) => {
-    const numbers = list.map(v => shortened(v, 15)).join(", ");
+    const isClose = v => Math.abs(shortened(v, 15) - v) <= 1e-3 * Math.abs(form.by.valueAsNumber);
+    const numbers = list.map(v => isClose(v) ? shortened(v, 15) : v).join(", ");
     return `${quantities[q][1]} = ${q === 4 ? numbers : `[${numbers}]`}`;
   }), 'integrator = "rk4"', `step_s = "${seconds}/${samples * steps}"`, "\n"].join("\n");
   return ['title = "Released anew"\n\n', ...sections.filter(section => section.startsWith("[scene]")), side("a", 0),
@@ -168,14 +174,14 @@ canvas.onpointerup = ({ type }) => {
   else play(type === "pointerup" ? !plays : plays);
 };
 canvas.onpointercancel = canvas.onpointerup;
+canvas.ontouchstart = () => !held?.bob && !held?.strip;  // other touches scroll
 
 // Controls
 
-const playOrPause = () => play(!isPlaying);
-onKeys({ " ": playOrPause, ArrowLeft: goBy(-1), ArrowRight: goBy(1), Home: () => go(0),
+onKeys({ " ": () => play(!isPlaying), ArrowLeft: goBy(-1), ArrowRight: goBy(1), Home: () => go(0),
   End: () => go(film.duration_s) });
 const clicks = {
-  play: playOrPause,
+  play: () => play(!isPlaying),
   close: () => { play(false); $(".player").hidden = true; },
   open: ({ target }) => {
     form.hidden = !form.hidden;
@@ -207,8 +213,7 @@ form.oninput = () => releaseAnew(false);
 form.onsubmit = () => false;
 addEventListener("resize", resize);
 addEventListener("beforeprint", () => { play(false); seek(film.poster_s ?? time); });
-addEventListener("afterprint", () => seek(addressNumbers().t ?? time));
-addEventListener("hashchange", () => seek(addressNumbers().t ?? time));
+for (const after of ["afterprint", "hashchange"]) addEventListener(after, () => seek(addressNumbers().t ?? time));
 
 // The player of a figure is hidden until a place of the figure is chosen: angles in degrees by their keys.
 function releaseAt(angles) {

@@ -85,22 +85,24 @@ function divergence(distance) {
 }
 
 // The motion of chains, computed beside the page. While one is computed the others wait; of these only the last one is
-// computed at all.
+// computed at all, and ends one that takes more than half a second, except the film's own.
 let worker = null, turn = Promise.resolve(), wanted = null;
 function compute(of) {
   wanted = of;
-  worker ??= new Worker(URL.createObjectURL(new Blob([`const chains = (${makeChains})();
-    onmessage = ({ data: { of, samples } }) => {
-      let next = Date.now() + 500;
-      const states = of.map((p, k) => chains.run(p, p.method, p.step, p.steps, samples, sample => {
-        if (Date.now() > next) next = Date.now() + 200, postMessage({ share: (k + sample / samples) / of.length });
-      }));
-      postMessage({ states }, states.map(list => list.buffer));
-    };`], { type: "text/javascript" })));
   return turn = turn.then(() => wanted === of && new Promise(done => {
+    worker ??= new Worker(URL.createObjectURL(new Blob([`const chains = (${makeChains})();
+      onmessage = ({ data: { of, samples } }) => {
+        let next = Date.now() + 500;
+        const states = of.map((p, k) => chains.run(p, p.method, p.step, p.steps, samples, sample => {
+          if (Date.now() > next) next = Date.now() + 200, postMessage({ share: (k + sample / samples) / of.length });
+        }));
+        postMessage({ states }, states.map(list => list.buffer));
+      };`], { type: "text/javascript" })));
     worker.onmessage = ({ data: { share, states } }) => {
-      if (states) done(motionOf(of, states));
-      else if (wanted === of) say(`computing the motion: ${Math.round(100 * share)} %`);
+      if (states) return done(motionOf(of, states));
+      if (wanted !== of && (original || isOfFigure)) return worker.terminate(), done(worker = null);
+      say(`computing the motion: ${Math.round(100 * share)} %`);
+      if (motion?.curves) motion.curves = null, draw();
     };
     worker.postMessage({ of, samples: film.samples });
   }));

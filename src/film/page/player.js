@@ -235,7 +235,7 @@ function drawStrip(strip) {
   const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
-  const marks = motion === original ? [...film.limits] : [];  // their lines are in the backdrop
+  const marks = motion === original ? [...film.limits] : [];
   if (kind === kindOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6)) {
     marks.push([since, `diverged at ${since.toFixed(1)} s${motion === original ? film.true_divergence : ""}`]);
     dashedLine(strip, since);
@@ -278,26 +278,34 @@ function drawPhase({ area, angle, rate }) {
 }
 
 // Of a release by hand the angles above the pendulums, and another number in which they differ, in place of the film's
-// words.
+// words; of an ensemble those of the first and the last one, and the colours between them.
 function drawWords() {
   if (motion === original) return drawAll(picture.words);
   if (shows("title") && picture.words.length) drawLabel(picture.words[0], "Released anew");
-  const [, name, at] = /(\D+)(\d+)/.exec(form.key.value), [what, unit] = form.key.selectedOptions[0].text.split(", ");
-  const number = k => [motion.of[k][name]].flat()[at] * quantities.find(([key]) => key === name)[3];
-  for (const { area, shown } of picture.panels)
-    (isEnsemble ? shown.slice(0, 1) : shown).forEach((k, i, all) => {
-      const words = motion.of[k].angle.map(a => `${written(shortened(a * degrees, 8))}°`);
-      if (name !== "angle" && !isEnsemble) words.push(`${what} = ${written(shortened(number(k), 8))} ${unit}`);
-      text(words.join("   "), [area[2 * i], area[1] - 12 * picture.text], picture.font, i ? "right" : "left", 700,
-        isEnsemble ? theme.text : bodies[k].color, (area[2] - area[0]) / all.length - picture.font);
+  const [, name, nth] = /(\D+)(\d+)/.exec(form.key.value), [what, unit] = form.key.selectedOptions[0].text.split(", ");
+  const number = k => [motion.of[k][name]].flat()[nth] * quantities.find(([key]) => key === name)[3];
+  const apart = Math.abs(number(0) / (number(bodies.length - 1) - number(0) || 1));
+  const digits = clamp(Math.ceil(Math.log10(apart)) + 1, 8, 16), rounded = v => written(shortened(v, digits));
+  for (const { area: [left, top, right], shown } of picture.panels) {
+    const at = share => left + share * (right - left), base = top - 12 * picture.text, size = picture.font;
+    (isEnsemble ? [0, bodies.length - 1] : shown).forEach((k, i, all) => {
+      const words = name === "angle" || !isEnsemble ? motion.of[k].angle.map(a => `${rounded(a * degrees)}°`) : [];
+      if (name !== "angle") words.push(`${what} = ${rounded(number(k))} ${unit}`);
+      text(words.join("   "), [at(i), base], size, i ? "right" : "left", 700,
+        isEnsemble ? theme.text : bodies[k].color, (isEnsemble ? at(0.4) : at(1 / all.length)) - left - size);
     });
+    if (!isEnsemble) continue;
+    const colors = g.createLinearGradient(at(0.4), 0, at(0.6), 0);
+    bodies.forEach(({ color }, k, { length }) => colors.addColorStop(k / (length - 1), color));
+    fill(colors, () => g.rect(at(0.4), base - 0.6 * size, at(0.2) - left, 0.6 * size));
+  }
 }
 
 function draw() {
   const [width, height] = picture.size, scale = canvas.width / width;
   g.setTransform(scale, 0, 0, scale, 0, 0);
   g.clearRect(0, 0, width, height + 1);
-  drawAll(picture.backdrop);
+  drawAll(motion === original ? picture.backdrop : picture.backdrop.filter((_, i) => !picture.marks.includes(i)));
   if (!motion) return;
   const poses = posesNow();
   drawWords();
@@ -308,11 +316,12 @@ function draw() {
   if (picture.speed) drawLabel(picture.speed, speedAt(time)[2]);
 }
 
-// The picture that fits the page, upright ones into upright pages.
+// The picture that fits the page, upright ones into upright pages; it scrolls where letters would have less than 9 px.
 function resize() {
   const { width, height } = canvas.parentElement.getBoundingClientRect();
-  picture = film.pictures[height > 1.2 * width ? 1 : 0] ?? film.pictures[0];
-  const [w, h] = picture.size, scale = Math.min(width / w, height / h);
+  picture = film.pictures[Math.max(height / width, innerHeight / innerWidth) > 1.2 ? 1 : 0] ?? film.pictures[0];
+  const sizes = picture.words.concat(picture.backdrop).map(([kind, , , size]) => kind === "text" ? size : picture.em);
+  const [w, h] = picture.size, scale = Math.max(Math.min(width / w, height / h), 9 / Math.min(...sizes));
   Object.assign(canvas.style, { width: `${scale * w}px`, height: `${scale * h}px` });
   setSize(canvas, scale * w, scale * h);
   draw();
