@@ -9,17 +9,29 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <future>
+#include <iterator>
 #include <limits>
+#include <vector>
 
 namespace doppel {
 namespace {
 
+/// How far a probe has come.
+struct ProbePoint {
+    double cpu_s = 0;
+    long done = 0, steps = 0;
+};
+
 SimulationEstimate estimated_side(const Scene& scene, Side side, char name, const std::atomic<bool>& stop) {
-    constexpr double probe_s = 0.025, patience_s = 0.3;
+    // methods with their own steps are probed longer: a whip takes most of them after its crack
+    const bool adaptive = side.method.adaptive;
+    const double probe_s = adaptive ? 1 : 0.025;
+    constexpr double patience_s = 0.3, longest_s = 4;  // of the first sample; of all, if other programs run
+    constexpr double recent = 2.0 / 3;  // from this share of the probe on, its steps are like those of the rest
     // one sample may take many steps: parts of it are timed
     constexpr long few_steps = 250;
     constexpr double shortened_s = 0.01, max_parts = 1e12;
-    const bool adaptive = side.method.adaptive;
     auto& interval = side.motion.sample_interval;
     const long steps_per_sample = side.motion.steps_per_sample;
     long parts = adaptive ? std::llround(std::clamp(std::ceil(interval.value() / shortened_s), 1.0, max_parts))
@@ -30,25 +42,36 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
         parts = 1;
     const double all = static_cast<double>(scene.samples) * static_cast<double>(parts);
     SideRun run(scene, side, name);
-    const TimeLimit limit(patience_s, stop);
-    double start = seconds_of(CLOCK_MONOTONIC), elapsed = 0;
-    long done = 0;
+    const TimeLimit first_limit(patience_s, stop), limit(longest_s, stop);
+    std::vector<ProbePoint> points(1);
+    double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    const auto add_point = [&] {
+        points.push_back(
+            {seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, points.back().done + 1, std::max(run.effort().steps, 1L)});
+    };
+    bool at_least = false;
     try {
-        run.next(limit.reached());
-        start = seconds_of(CLOCK_MONOTONIC);
-        while (static_cast<double>(done) < all && elapsed < probe_s) {
-            run.next(limit.reached());
-            elapsed = seconds_of(CLOCK_MONOTONIC) - start;
-            ++done;
+        run.next(first_limit.reached());
+        start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+        while (static_cast<double>(points.back().done) < all && points.back().cpu_s < probe_s) {
+            run.next((points.size() == 1 ? first_limit : limit).reached());
+            add_point();
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
-        elapsed = seconds_of(CLOCK_MONOTONIC) - start;
+        at_least = points.size() == 1;
+        if (at_least) add_point();
     }
-    const double share = all / static_cast<double>(std::max(done, 1L));
-    const double steps = adaptive ? static_cast<double>(run.effort().steps) * share
-                                  : static_cast<double>(scene.samples) * static_cast<double>(steps_per_sample);
-    return {elapsed * share, steps, done < 1};
+    const auto& last = points.back();
+    const auto& from = *std::prev(std::ranges::upper_bound(points, recent * last.cpu_s, {}, &ProbePoint::cpu_s));
+    const double rest = all - static_cast<double>(last.done),
+                 rate = static_cast<double>(last.steps - from.steps) / static_cast<double>(last.done - from.done),
+                 probed = static_cast<double>(last.steps);
+    if (!adaptive)
+        return {last.cpu_s * all / static_cast<double>(last.done),
+                static_cast<double>(scene.samples) * static_cast<double>(steps_per_sample), at_least};
+    const double steps = probed + rest * rate;
+    return {last.cpu_s * steps / probed, steps, at_least};
 }
 
 /// Time for the motion of an ensemble's members, s per sample.
@@ -56,11 +79,11 @@ double seconds_of_members(const Scene& scene, const std::atomic<bool>& stop) {
     if (scene.members.empty()) return 0;
     constexpr double probe_s = 0.05;
     MotionBatch members(scene.members, 1);
-    const double start = seconds_of(CLOCK_MONOTONIC);
+    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     double elapsed = 0, samples = 0;
     for (; elapsed < probe_s; ++samples) {
         members.advance(stop);
-        elapsed = seconds_of(CLOCK_MONOTONIC) - start;
+        elapsed = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     }
     return elapsed / samples;
 }
@@ -161,14 +184,13 @@ double lookahead_bytes(const VideoSpec& video) {
 }  // namespace
 
 SimulationEstimate estimated_simulation(const Scene& scene, const std::atomic<bool>& stop) {
-    SimulationEstimate all;
-    for (const char letter : scene.letters()) {
+    const auto probe = [&](char letter) {
         const auto& side = scene.side(letter);
-        if (side.replay) continue;
-        const auto one = estimated_side(scene, side, letter, stop);
-        all = {all.seconds + one.seconds, all.steps + one.steps, all.at_least || one.at_least};
-    }
-    return all;
+        return side.replay ? SimulationEstimate{} : estimated_side(scene, side, letter, stop);
+    };
+    auto other = std::async([&] { return scene.is_single() ? SimulationEstimate{} : probe('b'); });
+    const auto a = probe('a'), b = other.get();  // an error of side a comes first
+    return {a.seconds + b.seconds, a.steps + b.steps, a.at_least || b.at_least};
 }
 
 Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation, const std::atomic<bool>& stop) {

@@ -9,7 +9,7 @@ namespace doppel {
 
 /// The time to simulate a scene, extrapolated from the beginning of its run.
 struct SimulationEstimate {
-    double seconds = 0;
+    double seconds = 0;  // of one core
     double steps = 0;
     bool at_least = false;  // the beginning was too short for an estimate: a lower bound
 };
