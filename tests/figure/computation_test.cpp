@@ -1,6 +1,7 @@
 // Resuming from a record.
 #include "figure/computation.hpp"
 
+#include "figure/run.hpp"
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>
@@ -176,6 +177,25 @@ TEST(Computation, IsEstimatedFromAPartOfLongTrials) {
     EXPECT_FALSE(needs.at_least);
     EXPECT_GT(needs.cpu_s, spent_s / 2);
     EXPECT_LT(needs.cpu_s, spent_s * 2);
+}
+
+TEST(Computation, EstimatesTheSizeOfAllFormats) {
+    const auto folder = fresh_folder();
+    const std::vector<std::string> few_cells{"grid.x.points=20", "grid.y.points=20"};
+    for (const auto& [name, keys] :
+         {std::pair{"fig2-right", std::vector<std::string>{}}, {"fig2-left", {}}, {"parting-map", few_cells}})
+        for (const std::string format : {"png", "pdf", "svg", "html"}) {
+            auto all = keys;
+            all.push_back("chart.format=\"" + format + '"');
+            const auto figure = figure_of(name, all);
+            const auto out = folder / format;
+            run_figures({figure}, {.out = out}, never_stopped, {});
+            double bytes = 0;
+            for (const auto& file : fs::directory_iterator(out / name)) bytes += static_cast<double>(file.file_size());
+            const double ratio = bytes / estimated_computation(figure, 1, never_stopped).disk_bytes;
+            EXPECT_GT(ratio, 0.5) << name << ' ' << format;
+            EXPECT_LT(ratio, 2) << name << ' ' << format;
+        }
 }
 
 }  // namespace doppel::computation_test
