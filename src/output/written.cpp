@@ -1,6 +1,7 @@
 #include "output/written.hpp"
 
 #include "base/error.hpp"
+#include "output/libav_encoder.hpp"
 
 extern "C" {
 #include <libavutil/mem.h>
@@ -61,6 +62,38 @@ void add_files(WrittenFiles& written, const Json& files, const std::string& kind
                             WrittenFile{about.value("bytes", std::uintmax_t{0}), about.value("sha256", ""), kind});
 }
 
+/// The last bytes of a file, at most `bytes`.
+std::string end_of_file(const fs::path& path, std::size_t bytes) {
+    const Stream file = open_file(path);
+    std::string end(std::min<std::uintmax_t>(bytes, fs::file_size(path)), '\0');
+    std::fseek(file.get(), -static_cast<long>(end.size()), SEEK_END);
+    end.resize(std::fread(end.data(), 1, end.size(), file.get()));
+    return end;
+}
+
+/// The comment in the metadata of a film in a container that libav calls `format`; empty if there is none.
+std::string comment_of_film(const fs::path& path, const char* format) {
+    capture_libav_log();
+    AVFormatContext* input = nullptr;
+    if (avformat_open_input(&input, ("file:" + path.string()).c_str(), av_find_input_format(format), nullptr) < 0)
+        return {};
+    const auto* entry = av_dict_get(input->metadata, "comment", nullptr, 0);
+    std::string comment = entry ? entry->value : "";
+    avformat_close_input(&input);
+    return comment;
+}
+
+/// The text of the comment before the end of a GIF, without the sizes of its blocks; see comment_and_end() in gif.cpp.
+std::string comment_of_gif(const fs::path& path) {
+    const auto end = end_of_file(path, 2048);
+    std::string comment;
+    auto block = end.rfind("\x21\xfe");
+    if (block == std::string::npos) return {};
+    for (block += 2; block < end.size() && end[block] != '\0'; block += 1 + static_cast<unsigned char>(end[block]))
+        comment += end.substr(block + 1, static_cast<unsigned char>(end[block]));
+    return comment;
+}
+
 }  // namespace
 
 WrittenFiles written_files(const fs::path& folder) {
@@ -98,13 +131,13 @@ bool made_by(const fs::path& path, std::string_view program) {
     const auto head = start_of_file(path, std::size_t{1} << 12);
     if (head.starts_with("\x89PNG\r\n\x1a\n"))
         return head.find(fmt::format("tEXtSoftware{}{}", '\0', program)) != std::string::npos;
-    if (head.starts_with("%PDF-")) {
-        const Stream file = open_file(path);
-        std::array<char, 128> end{};
-        std::fseek(file.get(), -static_cast<long>(end.size()), SEEK_END);
-        const auto bytes = std::fread(end.data(), 1, end.size(), file.get());
-        return std::string_view(end.data(), bytes).find(fmt::format("%%EOF\n% {}", program)) != std::string::npos;
-    }
+    if (head.starts_with("%PDF-"))
+        return end_of_file(path, 128).find(fmt::format("%%EOF\n% {}", program)) != std::string::npos;
+    if (head.starts_with("GIF89a"))
+        return comment_of_gif(path).find(fmt::format("encoder: {} ", program)) != std::string::npos;
+    const bool is_mp4 = head.find("ftyp") == 4, is_webm = head.starts_with("\x1a\x45\xdf\xa3");
+    if (is_mp4 || is_webm)
+        return comment_of_film(path, is_mp4 ? "mov" : "matroska").starts_with(fmt::format("{} ", program));
     const auto begins = [&](std::string_view start) {
         return head.starts_with(fmt::format("{}<!-- {} ", start, program));
     };

@@ -30,8 +30,9 @@ struct Origin {
 /// The origin of "x.csv" or "frames/000000.png" in the folder whose manifests list `written`.
 Origin origin_of(const std::filesystem::path& folder, const std::string& name, const WrittenFiles& written);
 
-/// Whether `program` made the file. This is stated in the "Software" of a PNG, in the first comment of an SVG, HTML or
-/// XML page, and in the last comment of a PDF. Files with results of a figure count, too.
+/// Whether `program` made the file. This is stated in the "Software" of a PNG, in the comment of an MP4, WebM or GIF, in
+/// the first comment of an SVG, HTML or XML page, and in the last one of a PDF. Files with results of a figure count,
+/// too.
 bool made_by(const std::filesystem::path& path, std::string_view program = "Doppel");
 
 /// SHA-256 of a file, 64 lower-case hexadecimal digits. Throws Error (exit 4) if it cannot be read.

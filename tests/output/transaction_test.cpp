@@ -2,6 +2,7 @@
 
 #include "output/fixtures.hpp"
 #include "output/png.hpp"
+#include "output/sink.hpp"
 #include "output/system_calls.hpp"
 #include "output/written.hpp"
 
@@ -217,6 +218,23 @@ TEST_F(Transactions, KnowsWhatDoppelMadeByItsContentToo) {
     expect_io_failed({"y.csv"}, [&] { files.file("y.csv"); });
     write_bytes(folder / "y.png", bytes_of(folder / "x.png").substr(0, 33));  // without its text chunks
     expect_io_failed({"y.png"}, [&] { files.file("y.png"); });
+}
+
+TEST_F(Transactions, KnowsDoppelsFilmsByTheirMetadata) {
+    for (const auto& [format, name] : {std::pair{FilmFormat::mp4, "x.mp4"},
+                                       {FilmFormat::webm, "x.webm"},
+                                       {FilmFormat::gif, "x.gif"},
+                                       {FilmFormat::apng, "x.apng"}})
+        for (const std::string maker : {"Doppel", "Other"})
+            for (const std::size_t letters : {9, 200}) {  // the second comment takes several blocks of a GIF
+                VideoOptions options{.format = format, .size = {64, 36}, .fps_numerator = 25};
+                options.metadata = {{"title", std::string(letters, 't')},
+                                    {"comment", maker + " 1.0.0, preset x"},
+                                    {"encoder", maker + " 1.0.0"}};
+                EXPECT_EQ(made_by(film(folder / name, options, 2)), maker == "Doppel") << name << ' ' << letters;
+            }
+    write_bytes(folder / "x.mp4", bytes_of(folder / "x.mp4").substr(0, 40));
+    EXPECT_FALSE(made_by(folder / "x.mp4"));
 }
 
 TEST_F(Transactions, ReplacesChangedFilesOnlyIfForced) {
