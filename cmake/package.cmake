@@ -8,9 +8,12 @@ install(FILES python/doppel.py DESTINATION lib/python3/dist-packages)  # Debian'
 install(PROGRAMS .ci/golden DESTINATION ${CMAKE_INSTALL_DATADIR}/doppel/ci)
 install(FILES packaging/doppel.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES packaging/copyright README.md action.yml DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# pictures would be nine tenths of it
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
-        PATTERN *.png EXCLUDE PATTERN gallery EXCLUDE PATTERN update-gallery EXCLUDE)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN update-gallery EXCLUDE)
+set(track presets/data/double-pendulum-track)
+foreach(linked CHANGELOG.md debian-packages.txt fonts/LICENSE-DejaVu ${track}/LICENSE ${track}/README.md)  # by the pages
+    cmake_path(GET linked PARENT_PATH folder)
+    install(FILES ${linked} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
 
 add_custom_command(
     OUTPUT ${pages}/made

@@ -83,9 +83,10 @@ TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
     EXPECT_TRUE(has(half.out, "the manual pages and completions are not built"));
     EXPECT_TRUE(fs::exists(folder / "first/share/doppel/presets/calm.toml"));
     EXPECT_FALSE(fs::exists(folder / "first/share/man"));
-    // its pages link to files that are there, but for pictures, and folders of the source
-    const auto lost = shell(folder, R"(cd first/share/doc/doppel/docs && ls ../action.yml >/dev/null &&
-        grep -oh ']([^.)#:][^)#:]*' *.md | cut -c3- | grep -v 'png$' | while read f; do [ -e "$f" ] || echo "$f"; done)");
+    // its pages link to files that are there
+    const auto lost = shell(folder, R"(cd first/share/doc/doppel && ls docs/fit.md >/dev/null &&
+        grep -roP --include='*.md' '(\]\(|src="|href=")\K[^)#:" ]+(?=[)#"])' . | while IFS=: read page link; do
+            [ -e "$(dirname $page)/$link" ] || echo "$page: $link"; done)");
     EXPECT_EQ(lost.out + lost.err, "");
 
     fs::remove(folder / "half/doppel");
