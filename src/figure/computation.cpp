@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace doppel {
@@ -337,19 +338,22 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     const auto map = figure.experiment->map();
     const double cells = map ? 1.0 * map->columns * map->rows * static_cast<double>(map->panels) : 0;
     if (map) numbers = cells * static_cast<double>(map->numbers);
-    if (numbers == 0) numbers = parallel * numbers_done / std::max(trials_done, 1.0);
+    if (numbers == 0)
+        numbers = parallel * numbers_done / std::max(trials_done, 1.0) / figure.experiment->merged_trials();
     const double rows = map ? cells : static_cast<double>(figure.experiment->trials());
     const auto size = layout_of(figure.chart).picture;
     const bool has_pixels = figure.chart.format == PictureFormat::png;
     const double pixels = has_pixels ? 1.0 * size.width * size.height : 0;
     constexpr double drawn_bytes = 8;  // of a pixel
-    estimate.memory_bytes = peak_memory() + sizeof(TrialNumbers) * rows + sizeof(double) * (numbers + needed_numbers) +
+    estimate.memory_bytes = peak_memory() + sizeof(TrialNumbers) * rows +
+                            sizeof(double) * (numbers * figure.experiment->merged_trials() + needed_numbers) +
                             drawn_bytes * pixels;
     // of the table: a cell of a map, a number of others; measured, as in picture_bytes()
     constexpr double cell_bytes = 12.5, text_bytes = 22;
     const double table_bytes =
         map ? cell_bytes * static_cast<double>(figure.experiment->columns().size()) * cells : text_bytes * numbers;
     estimate.disk_bytes = table_bytes + picture_bytes(figure.chart.format, pixels, map ? 0 : numbers);
+    if (numbers == 0) estimate.disk_bytes = std::numeric_limits<double>::quiet_NaN();  // no trial was completed
     estimate.most_shards = static_cast<long>(std::min<std::size_t>(trials.size(), max_parts));
     return estimate;
 }

@@ -103,6 +103,8 @@ public:
     virtual std::size_t trials() const = 0;
     /// Whether trials measure time. They are then computed one after the other, without other work.
     virtual bool measures_time() const { return false; }
+    /// How many trials the table merges into one.
+    virtual double merged_trials() const { return 1; }
     /// The unit of progress, "pairs", and how many of them a trial counts; 0 for trials that others require first.
     const std::string& unit() const { return unit_; }
     virtual double units(std::size_t /*trial*/) const { return 1; }

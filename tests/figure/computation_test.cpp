@@ -196,6 +196,8 @@ TEST(Computation, EstimatesTheSizeOfAllFormats) {
             EXPECT_GT(ratio, 0.5) << name << ' ' << format;
             EXPECT_LT(ratio, 2) << name << ' ' << format;
         }
+    // its table has one row for all repetitions of a trial: 685 kB with the picture
+    EXPECT_LT(estimated_computation(figure_of("speed-accuracy"), 1, never_stopped).disk_bytes, 1.4e6);
 }
 
 }  // namespace doppel::computation_test
