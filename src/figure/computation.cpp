@@ -349,7 +349,7 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
                             sizeof(double) * (numbers * figure.experiment->merged_trials() + needed_numbers) +
                             drawn_bytes * pixels;
     // of the table: a cell of a map, a number of others; measured, as in picture_bytes()
-    constexpr double cell_bytes = 12.5, text_bytes = 22;
+    constexpr double cell_bytes = 11.5, text_bytes = 22;
     const double table_bytes =
         map ? cell_bytes * static_cast<double>(figure.experiment->columns().size()) * cells : text_bytes * numbers;
     estimate.disk_bytes = table_bytes + picture_bytes(figure.chart.format, pixels, map ? 0 : numbers);

@@ -228,7 +228,7 @@ TEST_F(Program, ACheckEndsHoweverManyStepsThereAre) {
     check(endless, "more than ");
 
     const auto child = start(folder, with("check butterfly", endless));
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
     kill(child, SIGINT);
     EXPECT_EQ(wait_for(child), 130);
 }
