@@ -314,7 +314,10 @@ void check_figure(Findings& found, const FigurePreset& figure, const std::atomic
     const auto format = name_of(figure.chart.format);
     found.line("  kind   {}: {} trial{}; {}: {}", figure.kind, grouped(static_cast<long>(trials)),
                trials == 1 ? "" : "s", experiment.unit(), grouped(std::lround(units)));
-    if (figure.chart.width_cm || figure.chart.format != PictureFormat::png)
+    if (figure.chart.format == PictureFormat::html && !figure.chart.width_cm)
+        found.line("  chart  {}×{} px, {}, {}", figure.chart.size.width, figure.chart.size.height, format,
+                   figure.chart.theme);
+    else if (figure.chart.width_cm || figure.chart.format != PictureFormat::png)
         found.line("  chart  {:.3g}×{:.3g} cm, {}, {}", width_cm, width_cm * height / width, format,
                    figure.chart.theme);
     else

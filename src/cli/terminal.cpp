@@ -2,6 +2,7 @@
 
 #include "base/machine.hpp"
 #include "base/text.hpp"
+#include "scene/captions.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -63,6 +64,11 @@ std::string bar_line(const std::string& name, double share, const std::string& n
     std::string bar;
     for (long i = 0; i < width; ++i) bar += i < static_cast<long>(share * static_cast<double>(width)) ? "━" : "─";
     return name + " " + bar + " " + numbers;
+}
+
+/// Per second, with two digits if it is below 10.
+std::string rate_text(double rate) {
+    return rate < 10 ? two_digits(rate) : fmt::format("{:.0f}", rate);
 }
 
 /// Prints to standard error; if nobody reads it, the run continues.
@@ -170,13 +176,13 @@ void ProgressReport::operator()(const Progress& progress) {
                      {"per_second", rate},
                      {"seconds_left", left}});
     } else if (style_ == ProgressStyle::bar) {
-        const auto numbers = fmt::format("{:3.0f} %  {}/{} {}  {:.0f} {}/s  {} left", 100 * share, progress.done,
-                                         progress.total, unit_, rate, unit_, duration_text(left));
+        const auto numbers = fmt::format("{:3.0f} %  {}/{} {}  {} {}/s  {} left", 100 * share, progress.done,
+                                         progress.total, unit_, rate_text(rate), unit_, duration_text(left));
         tell("\r\033[K{}", bar_line(name_, share, numbers));
         on_screen_ = true;
     } else {
-        tell("{}: {}/{} {} ({:.0f} %), {:.0f} {}/s, {} left\n", name_, progress.done, progress.total, unit_,
-             100 * share, rate, unit_, duration_text(left));
+        tell("{}: {}/{} {} ({:.0f} %), {} {}/s, {} left\n", name_, progress.done, progress.total, unit_, 100 * share,
+             rate_text(rate), unit_, duration_text(left));
     }
 }
 
@@ -219,8 +225,8 @@ void ProgressReport::done(const RunResult& result) {
     if (style_ != ProgressStyle::none && count < few)
         tell("{}: done in {:.1f} s\n", name_, result.wall_s);
     else if (style_ != ProgressStyle::none)
-        tell("{}: {} {} in {:.1f} s, {:.0f} {}/s\n", name_, count, unit_, result.wall_s,
-             static_cast<double>(count) / result.wall_s, unit_);
+        tell("{}: {} {} in {:.1f} s, {} {}/s\n", name_, count, unit_, result.wall_s,
+             rate_text(static_cast<double>(count) / result.wall_s), unit_);
     if (!streamed_.empty()) return;
     std::string lines;
     for (const auto& file : result.files) lines += file_line(file) + "\n";

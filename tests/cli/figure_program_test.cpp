@@ -1,4 +1,5 @@
 #include "cli/process.hpp"
+#include "cli/terminal.hpp"
 #include "output/png.hpp"
 
 #include <nlohmann/json.hpp>
@@ -43,11 +44,25 @@ TEST_F(FigureProgram, DrawsByNameAndByPath) {
 TEST_F(FigureProgram, IsChecked) {
     const auto check = done(with("check fig2-right", "--set grid.x.to=9"));
     EXPECT_TRUE(has(check.out, "pairs: 10"));
+    const auto page = done(with("check fig2-right", "--set grid.x.to=9 --set chart.format=html"));
+    EXPECT_TRUE(has(page.out, "chart  1600×900 px, html, light")) << page.out;
     // On a slow machine one row of exponents takes longer than the second allowed for the estimate: a lower bound.
     const auto map = doppel("check parting-map --set grid.quantity=exponent");
     EXPECT_TRUE(has(map.out, "takes  about ") || has(map.out, "takes  more than "));
     EXPECT_FALSE(has(map.out, "about 0 s") || has(map.out, "more than 0 s"));
     EXPECT_FALSE(fs::exists(folder / "out"));
+}
+
+TEST(ProgressReport, RatesBelowTenHaveTwoDigits) {
+    for (const auto& [count, words] :
+         {std::pair(21, "21 motions in 53.8 s, 0.39 motions/s\n"), {2100, "2100 motions in 53.8 s, 39 motions/s\n"}}) {
+        RunResult result;
+        result.samples = count;
+        result.wall_s = 53.8;
+        testing::internal::CaptureStderr();
+        ProgressReport(ProgressStyle::plain, "drift", "motions").done(result);
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), fmt::format("drift: {}", words));
+    }
 }
 
 TEST_F(FigureProgram, ReportsProgressAsJson) {
