@@ -154,13 +154,15 @@ Curve curve_of(const StepStudy& study, const WorkDiagram& diagram) {
     return curve;
 }
 
+constexpr double shown_spread = 0.05;  // of measured times; less is hidden by the curve
+
 /// The range of measured times of a curve, as pale bars.
 Curve spread_bars(const StepStudy& study, const WorkDiagram& diagram, int hue) {
     Curve bars{.hue = hue, .background = Background::line};
-    constexpr double shows = 0.05, maximum = 0.9;
+    constexpr double maximum = 0.9;
     for (const auto& point : pareto_front({&study, 1}, Cost::time, range_of(diagram))) {
         const double spread = std::min(point.spread, maximum);
-        if (spread < shows) continue;
+        if (spread < shown_spread) continue;
         add_point(bars, point.cpu_s * (1 - spread), shown(point.error));
         add_point(bars, point.cpu_s * (1 + spread), shown(point.error));
         add_point(bars, NAN, NAN);
@@ -473,8 +475,8 @@ std::string timing_caption(const WorkComparison::Studies& studies, int repeats) 
     const auto [typical, worst] = time_spread(studies);
     return fmt::format(
         "CPU time of one thread, warm, the median of {}; half of them lie within ± {:.1f} % of it, at worst within "
-        "± {:.0f} %, shown as bars.",
-        repeats, 100 * typical, 100 * worst);
+        "± {:.0f} %. Bars: where a coloured curve has more than ± {:g} %.",
+        repeats, 100 * typical, 100 * worst, 100 * shown_spread);
 }
 
 const FigureKind work_precision_kind = kind_of<WorkPrecision>("work-precision");

@@ -1,4 +1,5 @@
 #include "figure/support.hpp"
+#include "figure/work_precision.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,6 +56,12 @@ TEST(WorkPrecisionChart, NamesAllWhereTheyAreFew) {
     EXPECT_EQ(faint_ones(page.panels[0]), 0);
     EXPECT_TRUE(labels_of(page.panels[0]).contains("midpoint"));
     EXPECT_TRUE(page.captions[0].starts_with("Each method in its best model;")) << page.captions[0];
+}
+
+TEST(WorkPrecisionChart, SaysFromWhichSpreadOnTimesHaveBars) {
+    EXPECT_TRUE(timing_caption({}, 5).ends_with("Bars: where a coloured curve has more than ± 5 %."))
+        << timing_caption({}, 5);
+    EXPECT_EQ(timing_caption({}, 1), "CPU time of one thread, warm, measured once.");
 }
 
 }  // namespace doppel::work_precision_chart_test
