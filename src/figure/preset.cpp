@@ -1,14 +1,15 @@
 #include "figure/preset.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
-#include <variant>
 
 namespace doppel {
 namespace {
 
 constexpr double pt_per_cm = 72 / 2.54, cm_per_inch = 2.54;
-constexpr double most_growth = 3;                 // of the height, where only the width on paper is given
+constexpr double most_growth = 5;                 // of the height, where only the width on paper is given
 constexpr double label_px = 20;                   // text size of labels for unit 1 (plot/panel.hpp), layout px
 constexpr double paths_scale = 4;                 // for output made of paths
 constexpr double page_scale = 2;                  // for a page, whose picture may be pixels
@@ -94,20 +95,19 @@ ChartLayout layout_of(const ChartSpec& chart, double growth) {
 }
 
 Page compose_chart(const ChartSpec& chart, const Figure& figure) {
-    constexpr float readable_panel = 90, readable_text = 16;  // px, where labels have 20
-    const auto is_small = [](const PageItem& item) {
-        const auto* text = std::get_if<Label>(&item);
-        return text && text->size < readable_text;
-    };
-    std::optional<Page> with_small_text;
+    // px, where labels have 20
+    const float readable_width = std::ranges::any_of(figure.panels, &Plot::square) ? 160 : 120;
+    constexpr float readable_height = 90;
+    std::optional<Page> best;
+    std::size_t fewest = 0;
     for (double growth = 1;; growth += 0.1) {
         const auto layout = layout_of(chart, growth);
         auto made = compose(figure, layout.picture, chart.colors(), layout.scale, layout.unit);
+        const bool is_readable = have_sides(made.panels, readable_width, readable_height);
+        const std::size_t faults = made.notes.size() + (is_readable ? 0 : 1);
+        if (!best || faults < fewest) best = std::move(made), fewest = faults;
         const bool may_grow = chart.width_cm && !chart.height_cm && growth < most_growth;
-        const bool has_all = made.notes.empty() && smallest_side(made.panels) >= readable_panel;
-        if (has_all && std::ranges::none_of(made.items, is_small)) return made;
-        if (!may_grow) return std::move(with_small_text).value_or(std::move(made));
-        if (has_all && !with_small_text) with_small_text = std::move(made);
+        if (fewest == 0 || !may_grow) return std::move(*best);
     }
 }
 

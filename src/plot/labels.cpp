@@ -68,8 +68,10 @@ void wrap_paragraph(std::string_view text, const Measure& width_of, float width,
         }
         // wider than a line by itself
         while (width_of(line) > width) {
-            const std::size_t part = bytes_within(line, width_of, width);
+            std::size_t part = bytes_within(line, width_of, width);
             if (part == line.size()) break;
+            // rather after a hyphen
+            if (const auto hyphen = line.substr(0, part).rfind('-'); hyphen != std::string::npos) part = hyphen + 1;
             lines.push_back(line.substr(0, part));
             line.erase(0, part);
         }
@@ -264,18 +266,16 @@ std::optional<Found> label_beside(const DrawnCurve& curve, std::size_t owner, co
     return best;
 }
 
-/// The position on the curve at which the label hides the least of the other curves.
+/// A position on the curve at which the label hides no other curve.
 std::optional<Found> label_on_curve(const DrawnCurve& curve, std::size_t owner, const LabelText& text,
                                     const LabelPlacer& placer) {
-    std::optional<Found> best;
     const float w = text.width(), h = text.height(), margin = 0.15f * text.size;
     for (const Point& p : places(curve)) {
         const Area box{p.x - w / 2, p.y - h / 2, p.x + w / 2, p.y + h / 2};
-        if (!placer.is_free(box.grown(2 * margin, margin))) continue;
-        const auto cost = static_cast<float>(placer.ink(box.grown(margin, margin), owner));
-        if (!best || cost < best->cost) best = Found{text.at(box.left, box.top), cost};
+        if (placer.is_free(box.grown(2 * margin, margin)) && placer.ink(box.grown(margin, margin), owner) == 0)
+            return Found{text.at(box.left, box.top), 0};
     }
-    return best;
+    return {};
 }
 
 /// A position above or below a single mark that touches no line, and the leader line to it.
@@ -296,7 +296,8 @@ std::optional<Found> with_leader(Point mark, const LabelText& text, const LabelP
 
 LabelText text_for(const Curve& curve, float size, const Panel& panel) {
     const Theme& theme = panel.style.theme;
-    if (curve.quiet && !panel.is_map()) return {curve.label, 0.9f * size, Weight::regular, theme.quiet_text};
+    if (curve.quiet && !panel.is_map())
+        return {curve.label, std::max(0.9f * size, panel.style.least), Weight::regular, theme.quiet_text};
     return {curve.label, size, Weight::bold, curve_color(curve, theme, panel.is_map())};
 }
 
@@ -444,8 +445,15 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
     if (given.legend > 0) {  // beside the panel, with all names
         for (std::size_t i = 0; i < curves.size(); ++i)
             if (!curves[i].label.empty() && !is_empty(drawn[i])) others.push_back(i);
-        const Area& held = panel.held;
-        const Area beside{held.right - given.legend, panel.area.top, held.right, held.bottom};
+        // in the order of the curves' ends, because curves may share a colour
+        std::ranges::stable_sort(others, {}, [&](std::size_t i) {
+            return drawn[i].lines.empty() ? drawn[i].points.back().y : drawn[i].lines.back().back().y;
+        });
+        const float right = panel.held.right;
+        // down to the end of the axis's texts, unless the label is so long that it is below the legend, too
+        const bool is_short = text_width(panel.plot.x.label, style.axis) <= panel.area.width();
+        const float bottom = is_short ? panel.held.bottom : panel.area.bottom;
+        const Area beside{right - given.legend, panel.area.top, right, bottom};
         if (!others.empty()) draw_legend(legend_in(beside, curves, others, style.text), panel);
         return given;
     }
@@ -467,7 +475,7 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
     std::optional<Legend> legend;
     while (!made.left_out.empty()) {
         others.insert(others.end(), made.left_out.begin(), made.left_out.end());
-        legend = fitted_legend(curves, others, size, placer);
+        if (!dense) legend = fitted_legend(curves, others, size, placer);
         LabelPlacer left = placer;
         if (legend) left.add_text(legend->box);
         made = tried(size, left);
@@ -488,7 +496,8 @@ void label_rules(const Panel& panel, LabelPlacer& placer) {
         const bool level = rule.orientation == Rule::Orientation::horizontal;
         const Axis& axis = level ? panel.axes.y : panel.axes.x;
         if (const double share = axis.share(rule.at); !(share >= 0 && share <= 1)) continue;
-        const float size = 0.9f * panel.style.text, at = axis.at(rule.at), gap = 0.35f * size;
+        const float size = std::max(0.9f * panel.style.text, panel.style.least), at = axis.at(rule.at),
+                    gap = 0.35f * size;
         const Color color = panel.is_map() ? rgb(0xffffff) : panel.style.theme.quiet_text;
         LabelText text{rule.label, size, Weight::regular, color};
         text.size = fitting_size(text.text, size, text.weight, 0.94f * area.width());

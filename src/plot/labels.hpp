@@ -45,7 +45,7 @@ LabelNeeds label_curves(const std::vector<DrawnCurve>& drawn, const LabelNeeds& 
                         const Panel& panel);
 
 /// `text` in lines no wider than `width` px. Lines break at spaces and '\n', but not within a number, or between a
-/// number and its unit. A word that is wider than a line is broken anywhere.
+/// number and its unit. A word that is wider than a line is broken after a hyphen, or anywhere.
 std::vector<std::string> wrapped(std::string_view text, float size, Weight weight, float width,
                                  const Typeface& type = {});
 

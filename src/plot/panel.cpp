@@ -12,7 +12,7 @@ Axis placed(const Axis& axis, float from, float to) {
     return {axis.low, axis.high, from, to, axis.logarithmic};
 }
 
-constexpr float label_line = 1.4f;  // em of a label above the panel
+constexpr float label_line = 1.4f, title_line = 1.2f;  // em of a label above the panel, and of a line of its title
 
 /// The colour of a vertical axis: that of its curves if they share one, otherwise that of text.
 Color axis_color(const Plot& plot, bool right, const PlotStyle& style) {
@@ -87,6 +87,10 @@ float axis_labels_height(const Plot& plot, float width, const AxisWords& words, 
     return side_by_side(all, width, style) ? line : line * static_cast<float>(all.size());
 }
 
+std::vector<std::string> title_lines(const Plot& plot, float width, const PlotStyle& style) {
+    return wrapped(plot.title, style.heading, Weight::bold, style.on_paper ? width : INFINITY);
+}
+
 /// The panel's title in the uppermost `title` px. The labels of the vertical axes and of the map's bar are in the
 /// `labels` px below.
 void draw_headings(const Panel& panel, float title, float labels) {
@@ -95,17 +99,25 @@ void draw_headings(const Panel& panel, float title, float labels) {
     const bool own_words = plot.right || (plot.map && !plot.map->shares_bar);
     const float left = words.y ? held.left : area.left;
     const float right = own_words ? held.right : area.right;
-    const auto write = [&, &into = list](const Heading& heading, float baseline, float em, Weight weight) {
-        const float x = heading.align == Align::left ? left : right;
+    const auto write = [&, &into = list, &cell = held](const Heading& heading, float baseline, float em,
+                                                       Weight weight) {
+        // further to the left if it would end beyond the panel
+        const float first = std::max(cell.left, cell.right - text_width(heading.text, em, weight));
+        const float x = heading.align == Align::left ? std::min(left, first) : right;
         into.push_back(Label{heading.text, {x, baseline}, em, heading.align, weight, heading.color});
     };
-    const float first = held.top + 0.95f * style.heading;
-    if (!plot.title.empty()) write({plot.title, Align::left, style.theme.text}, first, style.heading, Weight::bold);
-    if (style.has_notes && !plot.note.empty())
-        write({plot.note, Align::right, style.theme.quiet_text}, first, style.tick, Weight::regular);
+    float baseline = held.top + 0.95f * style.heading;
+    if (style.notes == PlotStyle::Notes::beside && !plot.note.empty())
+        write({plot.note, Align::right, style.theme.quiet_text}, baseline, style.tick, Weight::regular);
+    for (const auto& line : title_lines(plot, held.width(), style)) {
+        if (!line.empty()) write({line, Align::left, style.theme.text}, baseline, style.heading, Weight::bold);
+        baseline += title_line * style.heading;
+    }
+    if (style.notes == PlotStyle::Notes::below && !plot.note.empty())
+        write({plot.note, Align::left, style.theme.quiet_text}, baseline, style.tick, Weight::regular);
     const auto all = headings(plot, words, style);
     const bool together = !all.empty() && side_by_side(all, held.width(), style);
-    float baseline = held.top + title + labels - 0.35f * style.axis;
+    baseline = held.top + title + labels - 0.35f * style.axis;
     // upwards from the line next to the panel
     for (std::size_t i = all.size(); i-- > 0;) {
         write(all[i], baseline, style.axis, Weight::regular);
@@ -170,11 +182,19 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
         fit(heading.text, style.axis, Weight::regular, width, fitted.axis);
     // shrinks the title a little, so that the note fits beside it
     constexpr float minimum = 0.85f;
-    const float beside = plot.note.empty() ? 0 : 1.5f * style.heading + text_width(plot.note, style.tick);
+    const float note = text_width(plot.note, style.tick), beside = plot.note.empty() ? 0 : 1.5f * style.heading + note;
     const bool has_note =
         fitting_size(plot.title, style.heading, Weight::bold, width - beside) >= minimum * style.heading;
     fit(plot.title, style.heading, Weight::bold, width - (has_note ? beside : 0), fitted.heading);
-    fitted.has_notes = fitted.has_notes && has_note;
+    fitted.heading = std::max(fitted.heading, std::min(style.heading, style.least));
+    if (!has_note)
+        fitted.notes = std::max(fitted.notes, note > width ? PlotStyle::Notes::none : PlotStyle::Notes::below);
+}
+
+float further_lines(const Plot& plot, float width, const PlotStyle& style) {
+    const auto lines = static_cast<float>(title_lines(plot, width, style).size()) - 1;
+    return title_line * style.heading * lines +
+           (style.notes == PlotStyle::Notes::below && !plot.note.empty() ? label_line * style.tick : 0);
 }
 
 Gutters gutters(const Plot& plot, const PlotRanges& ranges, float width, float height, const AxisWords& words,

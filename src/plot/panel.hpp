@@ -15,10 +15,12 @@ struct PlotStyle {
     float unit;             // px of this page to one of a 1600 × 900 picture
     float scale;            // final pixels per px, for drawing images
     bool on_paper = false;  // for a page with the requested text size: the title is only slightly larger than the text
-    bool has_notes = true;  // notes beside the titles of panels are drawn, because all fit
+    enum class Notes { beside, below, none } notes = Notes::beside;  // place of all notes: by the titles of panels
 
     float title = (on_paper ? 26 : 37) * unit, subtitle = 21 * unit, heading = 24 * unit;
-    float axis = 20 * unit, tick = 18.5f * unit, text = 20 * unit, caption = 18 * unit;
+    float axis = 20 * unit, tick = (on_paper ? 20 : 18.5f) * unit, text = 20 * unit,
+          caption = (on_paper ? 20 : 18) * unit;
+    float least = on_paper ? text : 0;  // on paper no text is smaller if it can be broken or left out
     float hairline = unit > 0.9f ? unit : 1, line = std::max(1.0f, std::round(hairline));  // line: of whole pixels
     float curve = unit > 0.47f ? 3.2f * unit : 1.5f, thin = unit > 0.5f ? 2 * unit : 1;
     float marker = unit > 0.4f ? 5.2f * unit : 2.1f;  // radius
@@ -50,9 +52,12 @@ struct Panel {
     const Axis& y_of(const Curve& curve) const { return curve.right && axes.right ? *axes.right : axes.y; }
 };
 
-/// Reduces the text sizes in `fitted` (initially `style`) until the labels and titles of a panel of this width, px,
-/// fit.
+/// Reduces the text sizes in `fitted` (initially `style`) until the labels and titles of a panel of this width, px, fit.
+/// On paper titles are broken into lines instead. Moves notes below the titles if they do not fit beside them.
 void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle& fitted);
+
+/// Height of the title's further lines and of a note below it, px.
+float further_lines(const Plot& plot, float width, const PlotStyle& style);
 
 /// The cells of the plot's map on these axes.
 CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme);

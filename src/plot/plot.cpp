@@ -166,15 +166,28 @@ Cells cells_of(const std::vector<Gutters>& own, const PanelGrid& grid, float wid
     return cells;
 }
 
-/// The figure's number of columns, or the one that makes the panels largest.
-PanelGrid grid_of(const Figure& figure, const Area& body) {
+/// Space between panels, px.
+float gap_across(const PlotStyle& style) {
+    return std::round(1.9f * style.tick);
+}
+
+/// The figure's number of columns, or the one that makes the panels largest; fewer if panels would be too narrow for
+/// their texts.
+PanelGrid grid_of(const Figure& figure, const Area& body, const PlotStyle& style) {
+    constexpr float narrowest = 9;  // em of ticks, with the texts
     const int panels = static_cast<int>(figure.panels.size());
+    const HeatMap* map = shared_map(figure);
+    const float bar = map ? bar_gutter(*map, body.height(), style) : 0, gap = gap_across(style);
     const auto grid = [&](int columns) { return PanelGrid{columns, (panels + columns - 1) / columns}; };
-    if (figure.columns > 0) return grid(std::min(figure.columns, panels));
+    const auto is_narrow = [&](int columns) {
+        const auto all = static_cast<float>(columns);
+        return columns > 1 && body.width() - bar + gap < all * (narrowest * style.tick + gap);
+    };
+    if (const int own = std::min(figure.columns, panels); own > 0 && !is_narrow(own)) return grid(own);
     const float shape = figure.panels.front().square ? 1.0f : 1.6f;  // preferred ratio of width to height
     PanelGrid best = grid(1);
     float maximum = 0;
-    for (int columns = 1; columns <= panels; ++columns) {
+    for (int columns = 1; columns <= panels && !is_narrow(columns); ++columns) {
         const PanelGrid tried = grid(columns);
         const float room = std::min(body.width() / static_cast<float>(columns),
                                     shape * (body.height() / static_cast<float>(tried.rows)));
@@ -183,23 +196,27 @@ PanelGrid grid_of(const Figure& figure, const Area& body) {
     return best;
 }
 
-/// Draws all panels of the figure, and the colour bar that they share. Returns the axes of each, with their pixels.
-std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotStyle& style, PageList& list) {
-    const PanelGrid grid = grid_of(figure, body);
+/// Draws all panels of the figure, and the colour bar that they share, and sets the axes of each, with their pixels.
+/// Returns whether the notes of all panels are drawn.
+bool draw_panels(const Figure& figure, Area body, const PlotStyle& style, Page& page) {
+    PageList& list = page.items;
+    std::vector<PlotRanges>& ranges = page.panels;
+    const PanelGrid grid = grid_of(figure, body, style);
     if (const HeatMap* map = shared_map(figure)) {
         const float gutter = bar_gutter(*map, body.height(), style);
         draw_bar(*map, body, body.right - gutter, style, list);
         body.right -= gutter;
     }
     const auto columns = static_cast<std::size_t>(grid.columns);
-    const float across = std::round(1.9f * style.tick), down = std::round(1.3f * style.tick);
+    const float across = gap_across(style), down = std::round(1.3f * style.tick);
     const float width = body.width() - across * static_cast<float>(grid.columns - 1);
     const float height = body.height() - down * static_cast<float>(grid.rows - 1);
-    std::vector<PlotRanges> ranges;
+    ranges.clear();
     for (const auto& panel : figure.panels) ranges.push_back(fitted_ranges(panel));
     if (figure.shares_axes) share_ranges(figure.panels, ranges);
     // drawn again if the labels need more space than they were given
     const std::size_t before = list.size();
+    std::vector<float> titles(figure.panels.size());  // height of further lines and of notes below them
     for (LabelNeeds given;;) {
         std::vector<Gutters> own;
         for (std::size_t i = 0; i < figure.panels.size(); ++i) {
@@ -207,16 +224,27 @@ std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotS
                                   std::floor(height / static_cast<float>(grid.rows)), axis_words(figure, i, columns),
                                   style));
             own.back().right += given.legend;
+            own.back().title += titles[i];
         }
         const Cells cells = cells_of(own, grid, width, height, figure.shares_axes, style);
         PlotStyle fitted = style;
-        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-            const auto& panel = figure.panels[i];
+        const auto width_of = [&](std::size_t i) {
             const Gutters around = cells.around(i % columns, i / columns);
-            const float wide = panel.square ? std::min(cells.width, cells.height) : cells.width;
-            fit_labels(panel, around.left + wide + around.right, style, fitted);
-        }
+            const float wide = figure.panels[i].square ? std::min(cells.width, cells.height) : cells.width;
+            return around.left + wide + around.right;
+        };
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) fit_labels(figure.panels[i], width_of(i), style, fitted);
+        constexpr float lowest = 5;  // em of ticks: a panel above which there is space for notes
+        if (std::ranges::max(titles) == 0 && cells.height < lowest * style.tick &&
+            fitted.notes == PlotStyle::Notes::below)
+            fitted.notes = PlotStyle::Notes::none;
         LabelNeeds needs = given;
+        bool grown = false;
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const float height = further_lines(figure.panels[i], width_of(i), fitted);
+            grown = grown || height > titles[i];
+            titles[i] = std::max(titles[i], height);
+        }
         float left = body.left, top = body.top;
         for (std::size_t i = 0; i < figure.panels.size(); ++i) {
             const Gutters around = cells.around(i % columns, i / columns);
@@ -224,11 +252,12 @@ std::vector<PlotRanges> draw_panels(const Figure& figure, Area body, const PlotS
             const float bottom = top + around.top(style) + cells.height + around.bottom;
             const auto own_needs = draw_panel(figure.panels[i], ranges[i], {left, top, right, bottom}, around,
                                               axis_words(figure, i, columns), given, fitted, list);
-            needs = {needs.small || own_needs.small, std::max(needs.legend, own_needs.legend)};
+            needs.small = needs.small || own_needs.small;
+            needs.legend = std::max(needs.legend, own_needs.legend);
             left = right + across;
             if ((i + 1) % columns == 0) left = body.left, top = bottom + down;
         }
-        if (needs == given) return ranges;
+        if (needs == given && !grown) return fitted.notes != PlotStyle::Notes::none;
         given = needs;
         list.resize(before);
     }
@@ -256,15 +285,15 @@ struct Layout {
 /// Whether the contents of the body are large enough to read.
 bool legible(const Figure& figure, const Area& body, const Area& sheet, const PlotStyle& style) {
     if (figure.panels.empty()) return body.height() >= 0;
-    const auto rows = static_cast<float>(grid_of(figure, body).rows);
+    const auto rows = static_cast<float>(grid_of(figure, body, style).rows);
     return body.height() >= std::max(0.5f * sheet.height(), (style.on_paper ? 9.5f : 12.5f) * style.tick * rows);
 }
 
 /// Whether the panels have space besides their labels and ticks.
 bool has_room(const Figure& figure, const Area& body, const PlotStyle& style) {
     if (figure.panels.empty()) return true;
-    const auto [columns, rows] = grid_of(figure, body);
-    return body.height() >= (style.on_paper ? 7 : 13) * style.tick * static_cast<float>(rows) &&
+    const auto [columns, rows] = grid_of(figure, body, style);
+    return body.height() >= (style.on_paper || figure.shares_axes ? 7 : 13) * style.tick * static_cast<float>(rows) &&
            body.width() >= 9 * style.tick * static_cast<float>(columns);
 }
 
@@ -313,10 +342,10 @@ Color MapScale::color(double share) const {
     return map_color(!step ? share : share > *step ? above : below);
 }
 
-float smallest_side(const std::vector<PlotRanges>& panels) {
-    float smallest = std::numeric_limits<float>::infinity();
-    for (const auto& [x, y, right] : panels) smallest = std::min({smallest, x.to - x.from, y.from - y.to});
-    return smallest;
+bool have_sides(const std::vector<PlotRanges>& panels, float width, float height) {
+    return std::ranges::all_of(panels, [&](const PlotRanges& panel) {
+        return panel.x.to - panel.x.from >= width && panel.y.from - panel.y.to >= height;
+    });
 }
 
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale, std::optional<float> unit) {
@@ -332,7 +361,7 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         const float across = std::round((style.on_paper ? 8 : 34) * style.unit);
         const float down = std::round((style.on_paper ? 8 : 28) * style.unit);
         const Area sheet{across, down, width - across, height - down};
-        const Layout page = figure_layout(figure, sheet, style);
+        Layout page = figure_layout(figure, sheet, style);
         // with many panels in a small picture, shrinks the text to leave space for the panels
         constexpr float min_scale = 0.1f;
         if (!has_room(figure, page.body, style) && made.scale > min_scale) continue;
@@ -340,8 +369,9 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         made.items = {Box{0, 0, width, height, 0, theme.background}};
         page.title.draw({sheet.left, sheet.top}, made.items);
         page.subtitle.draw({sheet.left, sheet.top + page.title.height()}, made.items);
-        if (!figure.panels.empty()) made.panels = draw_panels(figure, page.body, style, made.items);
-        if (smallest_side(made.panels) < drawn_side && made.scale > min_scale) continue;
+        if (!figure.panels.empty() && !draw_panels(figure, page.body, style, made))
+            page.left_out.emplace_back("the notes of panels");
+        if (!have_sides(made.panels, drawn_side, drawn_side) && made.scale > min_scale) continue;
         float top = page.captions_top;
         for (const TextBlock& caption : page.captions) {
             caption.draw({sheet.left, top}, made.items);
@@ -349,9 +379,11 @@ Page compose(const Figure& figure, Size size, const Theme& theme, float scale, s
         }
         if (!page.left_out.empty())
             made.notes.push_back(fmt::format("there is no space for {}", fmt::join(page.left_out, " and ")));
-        if (unit && made.scale < scale)
-            made.notes.push_back(
-                fmt::format("text is reduced to {:.2g} times its size for lack of space", made.scale / scale));
+        float least = style.text;
+        for (const PageItem& item : made.items)
+            if (const auto* text = std::get_if<Label>(&item)) least = std::min(least, text->size);
+        if (const float part = made.scale / scale * least / style.text; unit && part < 0.99f)
+            made.notes.push_back(fmt::format("text is reduced to {:.2g} times its size for lack of space", part));
         return made;
     }
 }

@@ -102,9 +102,9 @@ Picture cell_picture(const HeatMap& map, const Theme& theme);
 /// shrunk in all panels alike, moved to the legend, which covers no data, or left out (tick labels).
 Page compose(const Figure& figure, Size size, const Theme& theme, float scale = 1, std::optional<float> unit = {});
 
-/// Smaller panels are not drawn, px.
+/// Panels with a shorter side are not drawn, px.
 inline constexpr float drawn_side = 8;
-/// The smallest width or height of these panels, px.
-float smallest_side(const std::vector<PlotRanges>& panels);
+/// Whether all have these sides, px.
+bool have_sides(const std::vector<PlotRanges>& panels, float width, float height);
 
 }  // namespace doppel

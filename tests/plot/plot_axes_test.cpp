@@ -84,9 +84,16 @@ TEST(Plot, ANoteStandsBesideTheTitleWhereThereIsRoom) {
     EXPECT_EQ(words_in(composed(figure, size, light))["17 s"], 4);
     for (auto& plot : figure.panels)
         plot.title = "a title of a panel that is so long that it leaves a note no room at all";
-    const auto words = words_in(composed(figure, size, light));
-    EXPECT_EQ(words.count("17 s"), 0u);
-    EXPECT_EQ(words.count(figure.panels[0].title), 1u);
+    // where they have no space beside the titles, they are below them
+    const auto below = composed(figure, size, light);
+    EXPECT_EQ(words_in(below)["17 s"], 4);
+    EXPECT_EQ(words_in(below)[figure.panels[0].title], 4);
+    for (const auto& text : items_of<Label>(below)) EXPECT_TRUE(text.text != "17 s" || text.align == Align::left);
+    // and in low panels they are left out, which is said
+    const auto low = compose(figure, {600, 250}, light);
+    EXPECT_EQ(words_in(low.items).count("17 s"), 0u);
+    ASSERT_FALSE(low.notes.empty());
+    EXPECT_EQ(low.notes[0], "there is no space for the notes of panels");
 }
 
 /// The width of the longest stroke, px.

@@ -112,6 +112,20 @@ TEST(Plot, ALegendCoversNoDataAndHasAllNames) {
     EXPECT_LT(labels_of(composed(figure, size, light), "one orbit").at(0).anchor.x, right);
 }
 
+TEST(Plot, NamesThatWouldHideOtherCurvesStandInALegendBesideThePanel) {
+    // level lines, closer than a line of text
+    Plot plot{.x = {.low = 0, .high = 10}, .y = {.low = 0, .high = 1}};
+    for (int i = 0; i < 14; ++i)
+        plot.curves.push_back({.label = fmt::format("method {}", i), .x = {0, 10}, .y = {0.05 * i, 0.05 * i}});
+    plot.curves.push_back({.label = "method alone", .x = {0, 10}, .y = {0.98, 0.98}});
+    Page page = compose({.panels = {plot}}, {800, 260}, light);
+    const auto names = labels_of(page.items, "method");
+    ASSERT_EQ(names.size(), 15u);
+    EXPECT_EQ(names.front().text, "method alone");  // in the order of the curves' ends
+    EXPECT_EQ(names.back().text, "method 0");
+    for (const auto& name : names) EXPECT_GT(name.anchor.x, page.panels[0].x.to) << name.text;
+}
+
 TEST(Plot, ARuleOverAMapIsSeenOnAllColors) {
     Figure figure = map(false);
     figure.panels[0].rules = {{Rule::Orientation::vertical, 60, ""}};

@@ -134,7 +134,7 @@ TEST(Plot, ReportsTextsLeftOut) {
     EXPECT_EQ(compose(figure, {609, 260}, light, 1, 1.0f).notes,
               (Notes{"there is no space for the subtitle and the captions"}));
     EXPECT_EQ(compose(figure, {480, 180}, light, 1, 1.0f).notes.back(),
-              "text is reduced to 0.8 times its size for lack of space");
+              "text is reduced to 0.71 times its size for lack of space");
 }
 
 TEST(Plot, TextOnPaperIsAsHighAsAskedFor) {
