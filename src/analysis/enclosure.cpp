@@ -226,7 +226,7 @@ private:
     BallSeries<B> middle_{order_of<Scalar>};
     BallSeries<TangentBall> tangent_{12};
     Zonotope<Scalar> set_;
-    Ball<Wide> part_;                                             // s
+    Ball<Wide> part_;                                                      // s
     long parts_ = 1, length_ = 0, next_length_ = first_length, done_ = 0;  // of a sample; of the step; since the start
 };
 
