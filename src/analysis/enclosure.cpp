@@ -166,13 +166,12 @@ private:
             middle_.expand(B(h));
             const double longest = static_cast<double>(length_) * longer();
             next_length_ = static_cast<long>(std::clamp(longest, 1.0, 4.0 * static_cast<double>(length_)));
-            if (longest < 1) {  // faster than the period of small swings
-                if (!divide(first_length)) return false;
-                length_ = first_length;
+            if (longest + 1 < static_cast<double>(length_)) {
+                length_ = std::max(1L, static_cast<long>(longest));
                 continue;
             }
-            if (longest + 1 < static_cast<double>(length_)) {
-                length_ = static_cast<long>(longest);
+            if (longest < 1 && !std::exchange(is_divided_, true) && divide(4096)) {  // much faster than small swings
+                length_ = first_length;
                 continue;
             }
             tangent_.expand(TangentBall(DoubleBall(h)));
@@ -226,7 +225,8 @@ private:
     BallSeries<B> middle_{order_of<Scalar>};
     BallSeries<TangentBall> tangent_{12};
     Zonotope<Scalar> set_;
-    Ball<Wide> part_;                                                      // s
+    Ball<Wide> part_;  // s
+    bool is_divided_ = false;
     long parts_ = 1, length_ = 0, next_length_ = first_length, done_ = 0;  // of a sample; of the step; since the start
 };
 
