@@ -70,6 +70,10 @@ struct Mechanism : ConstraintSet<S> {
             factor_and_check_path(q, gradients_);
         find_multipliers(gradients_, v, a);
         this->add_multipliers(gradients_, lambda_, a);
+        if (!has_light_mass_) return;
+        // its acceleration is a small difference of large forces: what rounding left of C″ is taken away
+        find_multipliers(gradients_, v, a);
+        this->add_multipliers(gradients_, lambda_, a);
     }
 
     bool depends_on_velocity() const { return !parts.conserves_energy(); }
@@ -153,6 +157,7 @@ private:
         : Set(assembly.constraints, masses.w),
           parts(assembly),
           masses_(masses),
+          has_light_mass_(Scalar(1000) * masses.m.minCoeff() < masses.m.maxCoeff()),
           matrix_(this->blank_matrix()),
           lambda_(Multipliers::Zero(this->constraints())),
           gradients_(this->blank_gradients()),
@@ -246,6 +251,7 @@ private:
     }
 
     Masses<Scalar> masses_;
+    bool has_light_mass_;  // below a thousandth of another
     EnvelopeMatrix<Scalar> matrix_;
     Multipliers lambda_;
     Gradients gradients_, gradients_before_;  // at the last and the previous solution

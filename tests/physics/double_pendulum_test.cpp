@@ -1,6 +1,7 @@
 #include "numeric/quad.hpp"
 #include "physics/angle_chain.hpp"
 #include "physics/force.hpp"
+#include "physics/mechanism.hpp"
 #include "physics/oracles.hpp"
 #include "physics/pendulums.hpp"
 #include "physics/physical_chain.hpp"
@@ -182,16 +183,19 @@ using Rods = RodChain<S, Eigen::Dynamic>;
 
 TEST(LightMasses, KeepTheirAccelerations) {
     for (const double light : {1e-2, 1e-4, 1e-6, 1e-8}) {
-        double angles = 0, rods = 0;
+        double angles = 0, rods = 0, mechanism = 0;
         const auto note = [](double& worst, double error) { worst = std::max(worst, error); };
         for (const std::size_t links : {2u, 3u, 5u})
             for_each_pattern(links, light, [&](const auto& p) {
                 note(angles, error_of<Angles>(p)), note(rods, error_of<Rods>(p));
+                note(mechanism, error_of<Mechanism>(parts_of(p)));
                 if (links == 2) note(angles, error_of<Double>(p)), note(rods, error_of<Rods2>(p));
                 if (links == 3) note(rods, error_of<Rods3>(p));
             });
         EXPECT_LT(angles, 5e-15) << light;  // measured 7e-16
         EXPECT_LT(rods, 5e-15) << light;    // measured 1.1e-15
+        EXPECT_LT(mechanism, 5e-13)
+            << light;  // measured 1.6e-13; positions have 1e-16 m, rods are 1e-3 rad from aligned
     }
 }
 
