@@ -17,7 +17,10 @@ function(embed module)
         DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/embed_files.cmake
         COMMENT "Embedding the files of ${module}"
         VERBATIM)
-    set_source_files_properties(${output} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    target_sources(${module} PRIVATE ${output} ${folder}/embedded/${module}.hpp)
+    # by a target of its own: what a target generates would wait for all that it links, and its files for that
+    add_library(embedded_${module} OBJECT ${output} ${folder}/embedded/${module}.hpp)
+    target_include_directories(embedded_${module} PRIVATE ${PROJECT_SOURCE_DIR}/src ${folder})
+    target_link_libraries(embedded_${module} PRIVATE fmt::fmt)
+    target_sources(${module} PRIVATE $<TARGET_OBJECTS:embedded_${module}>)
     target_include_directories(${module} PRIVATE ${folder})
 endfunction()
