@@ -59,7 +59,7 @@ TEST(ChoiceStudy, TakesLittleMoreTimeThanTheBestMethod) {
     double worst = 0, sum = 0;
     int scenes = 0;
     for (const auto& kind : drawn::kinds)
-        drawn::choose_for_each(kind, lot, enough, 11, 2, hz, [&](const Preset& preset, const Side& side) {
+        drawn::choose_for_each(kind, lot, enough, 11, 2, 9, hz, [&](const Preset& preset, const Side& side) {
             const auto& spec = preset.a;
             const double taken = seconds_of_run(side.motion, side.choice->horizon);
             double best = taken;

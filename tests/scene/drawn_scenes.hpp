@@ -154,16 +154,17 @@ inline const std::vector<Kind> kinds{
      },
      true}};
 
-/// Calls use(preset, side) for so many random scenes of a kind with an accuracy that can be kept.
+/// Calls use(preset, side) for so many random scenes of a kind, of `least_s` to `most_s`, with an accuracy that can be
+/// kept.
 template <class Use>
-void choose_for_each(const Kind& kind, Lot& lot, int enough, std::size_t most_tenths, long least_s, const Rational& hz,
-                     const Use& use) {
+void choose_for_each(const Kind& kind, Lot& lot, int enough, std::size_t most_tenths, long least_s, long most_s,
+                     const Rational& hz, const Use& use) {
     int reached = 0;
     for (int drawing = 0; reached < enough && drawing < 4 * enough; ++drawing) {
         auto spec = kind.drawn(lot);
         spec.accuracy = Quad(1);
         for (std::size_t tenths = 2 + lot.of(most_tenths); tenths > 0; --tenths) *spec.accuracy /= 10;
-        const Rational seconds{least_s + static_cast<long>(lot.of(8)), 1};
+        const Rational seconds{least_s + static_cast<long>(lot.of(static_cast<std::size_t>(most_s - least_s + 1))), 1};
         const Preset preset{.duration_s = seconds, .sample_hz = hz, .a = spec, .b = spec};
         std::optional<Side> side;
         const auto [code, message] = error_of([&] { side = *MethodChooser(preset, never).choose(1, never)[0]; });

@@ -66,12 +66,13 @@ TEST(Choice, MeetsTheAccuracyAndEstimatesTheErrorOnRandomScenes) {
     for (const auto& kind : drawn::kinds) {
         const int enough = all || !kind.is_slow ? 6 : 0;
         double largest_share = 0;
-        drawn::choose_for_each(kind, lot, enough, 12, 1, {10, 1}, [&](const Preset& preset, const Side& side) {
-            const double error = true_error(preset.a, side);
-            EXPECT_LE(error, side.choice->accuracy) << kind.name << ": " << side.method.name;
-            most_optimistic = std::max(most_optimistic, error / side.choice->estimated_error);
-            largest_share = std::max(largest_share, error / side.choice->accuracy);
-        });
+        drawn::choose_for_each(kind, lot, enough, 12, 1, all ? 8 : 4, {10, 1},
+                               [&](const Preset& preset, const Side& side) {
+                                   const double error = true_error(preset.a, side);
+                                   EXPECT_LE(error, side.choice->accuracy) << kind.name << ": " << side.method.name;
+                                   most_optimistic = std::max(most_optimistic, error / side.choice->estimated_error);
+                                   largest_share = std::max(largest_share, error / side.choice->accuracy);
+                               });
         if (enough > 0) {
             EXPECT_GT(largest_share, 0.1) << kind.name;  // the estimate is not too cautious
         }
@@ -138,7 +139,7 @@ TEST(Choice, KeepsTheAccuracyUpToTheHorizonWhereChaosLeavesNoMore) {
     spec.accuracy.reset();
     spec.integrator = "taylor";
     spec.precision = Precision::in_quad;
-    spec.tolerance = parse_quad("1e-28");
+    spec.tolerance = parse_quad("1e-22");
     const auto truth = make_motion(make_side(spec, scene.preset.sample_hz).motion), run = make_motion(scene.a.motion);
     double error = 0;
     const long past = choice.horizon + 120;  // one second later
@@ -274,16 +275,16 @@ TEST(Choice, NamesAPossibleAccuracy) {
               "x.toml:2:1: [system] accuracy chooses integrator, step and tolerance; remove it, or step_s");
     EXPECT_EQ(error_of("[system]\naccuracy = 2"), "x.toml:2:1: [system] accuracy must be at most 1 rad; it is 2");
     EXPECT_EQ(error_of("[system]\naccuracy = 0"), "x.toml:2:1: [system] accuracy must be > 0; it is 0");
-    const auto beyond = error_of("[scene]\nduration_s = 30\n[system]\naccuracy = 1e-15");
+    const auto beyond = error_of("[scene]\nduration_s = 10\n[system]\naccuracy = 1e-15");
     EXPECT_EQ(beyond.find("x: side a: accuracy = 1e-15 rad is beyond double here: it would be kept for "), 0u)
         << beyond;
     EXPECT_TRUE(says(beyond, "; precision = \"quad\" allows more"));
     // the accuracy that the message calls possible for a chaotic motion is accepted
     const auto at = beyond.find("possible: ") + 10;
     const auto reachable = beyond.substr(at, beyond.find(' ', at) - at);
-    EXPECT_EQ(error_of("[scene]\nduration_s = 30\n[system]\naccuracy = " + reachable), "no error");
+    EXPECT_EQ(error_of("[scene]\nduration_s = 10\n[system]\naccuracy = " + reachable), "no error");
     // so is the one that a regular motion keeps to the end
-    const std::string gentle = "[scene]\nduration_s = 30\n[system]\nangle_deg = [30, 0]\naccuracy = ";
+    const std::string gentle = "[scene]\nduration_s = 10\n[system]\nangle_deg = [30, 0]\naccuracy = ";
     const auto to_end = error_of(gentle + "1e-16");
     const auto end = to_end.find(" to the end;"), start = to_end.rfind(' ', end - 1);
     ASSERT_NE(end, std::string::npos) << to_end;
@@ -301,10 +302,11 @@ TEST(Choice, NamesAPossibleAccuracy) {
         const auto words = error_of(bounce + "[1e-5, 1]\nmodel = \"mechanism\"", {asked});
         return words.substr(std::min(words.find("possible: "), words.size()));
     };
-    EXPECT_EQ(possible("system.accuracy=1e-11"), possible("system.accuracy=1e-13"));
-    EXPECT_EQ(possible("system.accuracy=1e-11").find("possible: 5e-11 for 2 s"), 0u);
+    const auto least = possible("system.accuracy=1e-11");
+    EXPECT_EQ(least, possible("system.accuracy=1e-13"));
+    EXPECT_EQ(least.find("possible: 5e-11 for 2 s"), 0u);
     const std::string particle = "[[system.particle]]\nname = \"p\"\nmass_kg = 1\nposition_m = [1, 0]\n";
-    EXPECT_TRUE(says(error_of("[system]\naccuracy = 1e-17\n" + particle +
+    EXPECT_TRUE(says(error_of("[scene]\nduration_s = 2\n[system]\naccuracy = 1e-17\n" + particle +
                               "[[system.constraint]]\nkind = \"rod\"\nfrom = \"p\"\nto = [0, 0]"),
                      "accuracy = 1e-17 of its size is beyond double"));
     EXPECT_EQ(error_of("[scene]\nduration_s = 5\n[system]\naccuracy = 1e-15\nprecision = \"quad\""), "no error");
