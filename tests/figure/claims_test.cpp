@@ -75,12 +75,15 @@ SideSpec with_droplet(SideSpec spec) {
     return spec;
 }
 
-/// The distances of a pair at samples 0 … count.
-std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count) {
-    const auto scene = make_scene({.name = "study", .duration_s = *reduced(count, 120), .a = a, .b = b});
+/// The distances of a pair at samples 0 … count, up to the first above `enough`.
+std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, long hz = 120,
+                              double enough = INFINITY) {
+    const auto scene =
+        make_scene({.name = "study", .duration_s = *reduced(count, hz), .sample_hz = {hz, 1}, .a = a, .b = b});
     PairRun run(scene);
     std::vector<double> all;
-    for (long n = 0; n <= count; ++n) all.push_back(run.next(never).distance);
+    while (static_cast<long>(all.size()) <= count && (all.empty() || all.back() <= enough))
+        all.push_back(run.next(never).distance);
     return all;
 }
 
@@ -236,10 +239,10 @@ Found energy_gain() {
 
 /// Greatest distance with and without the droplet within 75 s, and the time when it first exceeds 1, s; 0 = never.
 std::pair<double, double> parted_by_droplet(int angle_deg) {
+    constexpr long hz = 20;
     const auto start = exactly(side({angle_deg, angle_deg}));
-    const auto d = distances(with_droplet(start), start, 9000);
-    const auto seen = std::find_if(d.begin(), d.end(), [](double x) { return x > 1; });
-    return {largest(d), seen == d.end() ? 0 : static_cast<double>(seen - d.begin()) / 120};
+    const auto d = distances(with_droplet(start), start, 75 * hz, hz, 1);
+    return {largest(d), d.back() > 1 ? static_cast<double>(d.size() - 1) / hz : 0};
 }
 
 Found droplet_79() {
