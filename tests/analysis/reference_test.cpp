@@ -119,7 +119,7 @@ TEST(Reference, OfARunWithStabilisedRodsIsThatOfTheTrueMotion) {
 }
 
 TEST(Reference, RefusesWhereTheTwoDisagree) {
-    const auto [code, said] = test::thrown_by([] { reference_end(chain({170, 100}), {60, 1}, never); });
+    const auto [code, said] = test::thrown_by([] { reference_end(chain({170, 100}), {50, 1}, never); });
     EXPECT_EQ(code, ExitCode::method_failed);
     EXPECT_NE(said.find("no reference"), std::string::npos) << said;
 }

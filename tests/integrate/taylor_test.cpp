@@ -184,7 +184,7 @@ TEST(Taylor, KeepsTheDigitsOfALightMass) {
             spec.precision = precision;
             return Course(spec).advance(1);
         };
-        const auto found = end("1e-15", Precision::in_double), truth = end("1e-20", Precision::in_quad);
+        const auto found = end("1e-15", Precision::in_double), truth = end("1e-18", Precision::in_quad);
         for (std::size_t i = 0; i < links; ++i) EXPECT_NEAR(found.bobs[i].theta, truth.bobs[i].theta, 4e-12) << links;
     }
 }

@@ -19,7 +19,7 @@ using Mp4 = InFolder;
 
 namespace fs = std::filesystem;
 
-constexpr Size small{480, 270};
+constexpr Size small{480, 270}, tiny{192, 108};
 
 // libav opens a file by its name after it was created
 TEST(Video, FollowsNoLinkWithItsName) {
@@ -44,14 +44,18 @@ TEST(Video, FollowsNoLinkWithItsName) {
 }
 
 TEST_F(Mp4, HasTheFramesTimesAndTagsAskedFor) {
-    for (const Ratio rate :
-         {Ratio{120, 1}, Ratio{24, 1}, Ratio{25, 1}, Ratio{30, 1}, Ratio{60, 1}, Ratio{30000, 1001}}) {
-        const VideoOptions options{.size = small,
+    for (const auto& [rate, size] : {std::pair{Ratio{120, 1}, small},
+                                     {{24, 1}, tiny},
+                                     {{25, 1}, tiny},
+                                     {{30, 1}, tiny},
+                                     {{60, 1}, tiny},
+                                     {{30000, 1001}, tiny}}) {
+        const VideoOptions options{.size = size,
                                    .fps_numerator = static_cast<int>(rate.numerator),
                                    .fps_denominator = static_cast<int>(rate.denominator),
                                    .metadata = {{"title", "Three thousandths of a degree"}}};
         const Video video = read_video(film(folder / "x.mp4.part", options, 61));
-        EXPECT_EQ(video.size, small);
+        EXPECT_EQ(video.size, size);
         expect_tags(video);
         EXPECT_EQ(video.title, "Three thousandths of a degree");
         EXPECT_EQ(video.average_rate, rate);
@@ -164,7 +168,7 @@ TEST_F(Mp4, HasEqualQualityWithBothPresetsAndDepths) {
 
 TEST_F(Mp4, AFullDiskIsAlwaysAnError) {
     const auto path = fresh_folder() / "x.mp4.part";
-    const VideoOptions options{.size = small};
+    const VideoOptions options{.size = tiny};
     const auto size = static_cast<long>(fs::file_size(film(path, options, 60)));
     // in the header, the packets, the index, and while the packets move to make space for the index at the front
     for (const long room : {0L, 10L, size / 2, size - 5000, size - 1500, size - 500, size - 1}) {
