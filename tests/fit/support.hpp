@@ -46,15 +46,16 @@ inline Track simulated(const Parameters& truth, Drag drag, const Measuring& meas
         if (k == 0 || every_s == 0)
             start = {amplitude * even(random), amplitude * even(random), 4 * even(random), 4 * even(random)};
         auto& piece = track.pieces.emplace_back(TrackPiece{.name = "simulated.csv"});
-        std::array flows{Flow<>({.drag = drag}, truth, start, step), Flow<>({.drag = drag}, truth, start, step)};
+        // the second angle is measured later by the lag: only then it needs a flow of its own
+        std::vector<Flow<>> flows(truth[lag] == 0 ? 1 : 2, Flow<>({.drag = drag}, truth, start, step));
         const auto samples = static_cast<std::size_t>(std::lround(piece_s * hz)) + 1;
         for (std::size_t i = 0; i < samples; ++i) {
             piece.time_s.push_back(static_cast<double>(i) / hz);
             for (std::size_t arm = 0; arm < 2; ++arm) {
                 const double t = piece.time_s[i] + static_cast<double>(arm) * truth[lag];
-                flows[arm].reach(t);
-                piece.angle[arm].push_back(truth[offset_1 + arm] + flows[arm].angle(arm, t)[0] +
-                                           noise * normal(random));
+                auto& flow = flows[std::min(arm, flows.size() - 1)];
+                flow.reach(t);
+                piece.angle[arm].push_back(truth[offset_1 + arm] + flow.angle(arm, t)[0] + noise * normal(random));
                 piece.is_outlier[arm].push_back(0);
             }
         }
