@@ -51,8 +51,26 @@ void expect_large_and_central(const Scene& scene, const Layout& layout, const st
     }
 }
 
-void expect_words_in_place(const Scene& scene, const Layout& layout, const std::string& what) {
-    const auto labels = labels_of(scene, std::min(scene.samples, 240L));
+/// The bounds and the beginning of a motion, for pictures of any size.
+struct Motion {
+    MotionBounds bounds;
+    std::vector<Snapshot> beginning;
+
+    explicit Motion(const Scene& scene) {
+        Recording recording(scene, {std::min(scene.samples, 240L) + 1}, true, never_stopped);
+        bounds = recording.bounds();
+        recording.play([&](const Snapshot& snapshot) { beginning.push_back(snapshot); });
+    }
+    std::vector<Label> labels(const Scene& scene) const {
+        Composer composer(scene, bounds);
+        for (const auto& snapshot : beginning)
+            if (snapshot.pair.share == 0) composer.add(snapshot);
+        return labels_in({composer.backdrop(), composer.frame()});
+    }
+};
+
+void expect_words_in_place(const Scene& scene, const Layout& layout, const std::vector<Label>& labels,
+                           const std::string& what) {
     expect_apart(labels, scene.preset.video.size, what);
     for (const auto& label : labels) {
         EXPECT_GE(label.size, 0.58f * layout.text * 21) << what << ": " << label.text;
@@ -62,12 +80,13 @@ void expect_words_in_place(const Scene& scene, const Layout& layout, const std::
 }
 
 void expect_in_place_at_all_sizes(const Scene& scene, const std::string& name) {
+    const Motion motion(at_size(scene, sizes[0]));
     for (const auto& size : sizes) {
         const auto sized = at_size(scene, size);
-        const auto layout = make_layout(sized);
+        const auto layout = doppel::make_layout(sized, motion.bounds);
         const auto what = fmt::format("{} {}x{}", name, size.width, size.height);
         expect_large_and_central(sized, layout, what);
-        expect_words_in_place(sized, layout, what);
+        expect_words_in_place(sized, layout, motion.labels(sized), what);
     }
 }
 
@@ -86,8 +105,9 @@ TEST(LargePendulums, AnUprightFilmLeavesRoomForAnAppsButtonsAndHasLargeWords) {
     const auto scene = at_size(scene_of("pendulum-portrait"), {1080, 1920});
     const auto layout = make_layout(scene);
     expect_large_and_central(scene, layout, "portrait");
-    expect_words_in_place(scene, layout, "portrait");
-    for (const auto& label : labels_of(scene, 240)) {
+    const auto labels = labels_of(scene, 240);
+    expect_words_in_place(scene, layout, labels, "portrait");
+    for (const auto& label : labels) {
         EXPECT_GE(box_of(label).top, 110) << label.text;
         EXPECT_LE(box_of(label).bottom, 1920 - 260) << label.text;
         EXPECT_GE(label.size, 28) << label.text;  // 1.6 times 20, or slightly less where it must fit
