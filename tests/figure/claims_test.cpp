@@ -76,10 +76,8 @@ SideSpec with_droplet(SideSpec spec) {
 }
 
 /// The distances of a pair at samples 0 … count, up to the first above `enough`.
-std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, long hz = 120,
-                              double enough = INFINITY) {
-    const auto scene =
-        make_scene({.name = "study", .duration_s = *reduced(count, hz), .sample_hz = {hz, 1}, .a = a, .b = b});
+std::vector<double> distances(const SideSpec& a, const SideSpec& b, long count, double enough = INFINITY) {
+    const auto scene = make_scene({.name = "study", .duration_s = *reduced(count, 120), .a = a, .b = b});
     PairRun run(scene);
     std::vector<double> all;
     while (static_cast<long>(all.size()) <= count && (all.empty() || all.back() <= enough))
@@ -239,10 +237,9 @@ Found energy_gain() {
 
 /// Greatest distance with and without the droplet within 75 s, and the time when it first exceeds 1, s; 0 = never.
 std::pair<double, double> parted_by_droplet(int angle_deg) {
-    constexpr long hz = 20;
     const auto start = exactly(side({angle_deg, angle_deg}));
-    const auto d = distances(with_droplet(start), start, 75 * hz, hz, 1);
-    return {largest(d), d.back() > 1 ? static_cast<double>(d.size() - 1) / hz : 0};
+    const auto d = distances(with_droplet(start), start, 9000, 1);
+    return {largest(d), d.back() > 1 ? static_cast<double>(d.size() - 1) / 120 : 0};
 }
 
 Found droplet_79() {
