@@ -20,7 +20,7 @@ int code_with_threads(int count, const std::filesystem::path& folder, const Word
 
 TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
     const auto film = [](const Words& more) {
-        return with("render butterfly --size 128x72 --frames 0:5 --progress none", more);
+        return with("render butterfly --size 128x72 --set scene.duration_s=0.2 --frames 0:5 --progress none", more);
     };
     const std::vector<Words> lines{
         film({}),
@@ -55,7 +55,8 @@ TEST(FewThreads, AreEnoughOrReportedWithoutLeavingFiles) {
 TEST(FewThreads, AreEnoughForPictures) {
     // one instead of three threads that compress
     const auto folder = fresh_folder();
-    const Words line = "render butterfly --size 128x72 --frames 0:20 --jobs 3 --format png --progress none";
+    const Words line =
+        "render butterfly --size 128x72 --set scene.duration_s=0.2 --frames 0:20 --jobs 3 --format png --progress none";
     int needed = 1;
     while (needed < 8 && code_with_threads(needed, folder, line) != 0) ++needed;
     EXPECT_LT(needed, 8);  // measured 3: two are OpenGL's

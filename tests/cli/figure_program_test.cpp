@@ -19,8 +19,8 @@ using Recipe = ProgramTest;
 
 const Words small = "--set grid.x.to=9 --set scene.duration_s=0.5 --size 320x180 --progress none";
 
-/// A map that takes about 2 to 10 s on one core.
-const Words long_map = "figure flip-map --set grid.x.points=600 --set grid.y.points=600 --size 320x320";
+/// A map that takes about 1 to 5 s on one core.
+const Words long_map = "figure flip-map --set grid.x.points=400 --set grid.y.points=400 --size 320x320";
 
 /// Waits until the file exists.
 bool appears(const fs::path& file) {
@@ -105,7 +105,7 @@ protected:
     void SetUp() override {
         child_ = start(folder, with(long_map, "--jobs 1 --progress none"));
         // stopped for 2 s, so that it counts as a long run
-        for (int i = 0; i < 60'000 && cpu_s() < 0.5; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        for (int i = 0; i < 60'000 && cpu_s() < 0.2; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         kill(child_, SIGSTOP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2050));
         kill(child_, SIGCONT);

@@ -75,7 +75,10 @@ TEST_F(Init, WritesAPresetOfEveryKindOfFigure) {
         const std::string name(kind.name), file = name + ".toml";
         EXPECT_EQ(done({"init", "--figure", name}).out, file + ": edit it, then: doppel check " + file + "\n");
         // `check` of a work-precision figure computes the references of all problems, 5 s
-        done(with(name == "work-precision" ? "figure --list-outputs" : "check", file));
+        const Words check = name == "work-precision" ? "figure --list-outputs"
+                            : name == "section"      ? "check"
+                                                     : "check --set scene.duration_s=1";
+        done(with(check, file));
         const auto text = bytes_of(folder / file);
         EXPECT_EQ(doppel({"show", file}).out, text);
         EXPECT_EQ(kind_of_preset({name, file, text, file}), name);
@@ -123,8 +126,9 @@ TEST_F(Init, EachKeyOfAFigureCanBeUncommented) {
 
 TEST_F(Init, WritesAFigureThatIsDrawn) {
     done("init mine.toml --figure section");
-    const auto figure =
-        done("figure mine.toml --set section.orbits=2 --set section.crossings=10 --set chart.scale=0.25");
+    const auto figure = done(
+        "figure mine.toml --set section.orbits=2 --set section.crossings=10 --set section.exponent_duration_s=100 "
+        "--set chart.scale=0.25");
     EXPECT_TRUE(fs::exists(folder / "out/mine/mine.png"));
     // pairs that differ
     for (const auto& [kind, small, column] :

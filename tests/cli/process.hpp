@@ -74,9 +74,9 @@ inline int wait_for(pid_t child) {
 
 /// Waits until `happened` returns true; false after 30 s.
 inline bool wait_until(const std::function<bool()>& happened) {
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 15'000; ++i) {
         if (happened()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return false;
 }
@@ -84,9 +84,9 @@ inline bool wait_until(const std::function<bool()>& happened) {
 /// Like wait_for(), but kills the program after `seconds` (−SIGKILL).
 inline int wait_at_most(pid_t child, double seconds) {
     int status = 0;
-    for (double waited = 0; waited < seconds; waited += 0.01) {
+    for (double waited = 0; waited < seconds; waited += 0.002) {
         if (waitpid(child, &status, WNOHANG) == child) return code_of(status);
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     kill(child, SIGKILL);
     return wait_for(child);

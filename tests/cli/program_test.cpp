@@ -80,7 +80,7 @@ TEST_F(Program, ListsShowsAndChecks) {
 }
 
 TEST_F(Program, AnAccuracyIsChosenByExplainedAndRecorded) {
-    Words arguments = "check calm --set system.accuracy=1e-6 --set scene.duration_s=10";
+    Words arguments = "check calm --set system.accuracy=1e-6 --set scene.duration_s=10 --set 'video.size=[64, 64]'";
     const auto check = done(arguments);
     EXPECT_TRUE(
         has(check.out,
@@ -201,7 +201,7 @@ TEST_F(Program, AnEstimateIsNearWhatRenderingTakesAndLeavesNothing) {
     fs::create_directory(temporary);
     for (const char* format : {"gif", "webm", "apng"}) {
         const Words film =
-            fmt::format("fan --set video.format={} --set video.size=[320,180] --set scene.duration_s=1.5", format);
+            fmt::format("fan --set video.format={} --set video.size=[320,180] --set scene.duration_s=0.5", format);
         const auto said = done(with("check", film), [&] { setenv("TMPDIR", temporary.c_str(), 1); });
         const auto start = std::chrono::steady_clock::now();
         done(with(with("render", film), "--progress none"));
@@ -282,7 +282,8 @@ TEST_F(Program, ExitsWith130WithinASecondOfCtrlC) {
     for (const char* command : {"render", "simulate"}) {
         fresh_folder();  // empties it
         const auto child = start(folder, with(command, "butterfly --set scene.duration_s=3600 --progress none"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(700));
+        EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/.doppel-run"); }));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // until it simulates
         const auto requested = std::chrono::steady_clock::now();
         kill(child, SIGINT);
         EXPECT_EQ(wait_for(child), 130);

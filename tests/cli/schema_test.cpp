@@ -40,7 +40,7 @@ TEST_F(Schema, LineOfAShownPresetIsRightForACopy) {
 TEST_F(Schema, LineThatIsWrongIsToldInOneLine) {
     const auto note = [&](const std::string& line) {
         write_bytes(folder / "mine.toml", "# mine\n" + line + "\n[system]\nintegrator = \"taylor\"\n");
-        const auto result = done("check mine.toml --set scene.duration_s=0.1");
+        const auto result = done("check mine.toml --set scene.duration_s=0.1 --set 'video.size=[64, 64]'");
         const auto end = result.out.find("\n") + 1;
         return result.out.starts_with("mine.toml:") ? result.out.substr(0, end) : "";
     };
