@@ -70,11 +70,15 @@ std::string tick_text(const Step& step, long long k, double maximum) {
     return fmt::format("{} × {}", decimal(number, step.exponent - power), power_of_ten(power));
 }
 
+bool is_named(const Tick& tick) {
+    return !tick.text.empty();
+}
+
 /// Whether labels and ticks are far enough apart.
 bool fits(const std::vector<Tick>& ticks, const Axis& axis, const TickLabels& labels) {
     const Tick* before = nullptr;
     for (const Tick& tick : ticks) {
-        if (tick.text.empty()) continue;
+        if (!is_named(tick)) continue;
         if (before) {
             const float distance = std::abs(axis.at(tick.value) - axis.at(before->value));
             const float need = (labels.length(before->text) + labels.length(tick.text)) / 2 + labels.gap;
@@ -119,10 +123,12 @@ std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
         }
     }
     // better than a single label: the first and the last of the largest step whose ends are far enough apart
-    for (int exponent = decade_below(span); exponent >= decade_below(minimum); --exponent) {
+    constexpr std::size_t many = 12;  // ticks that would be a grey band
+    for (int exponent = decade_below(span); exponent >= decade_below(minimum) - 1; --exponent) {
         for (const long long nice : {5, 2, 1}) {
             auto ticks = multiples({nice, exponent}, low, high);
             for (std::size_t i = 1; i + 1 < ticks.size(); ++i) ticks[i].text = "";
+            if (ticks.size() > many) ticks.erase(ticks.begin() + 1, ticks.end() - 1);
             if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
         }
     }
@@ -186,7 +192,12 @@ std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels) 
     for (const int n : {1, 2, 3, 5, 10, 20, 30, 50, 100, 200})
         if (span >= 1) all.push_back(decades(axis, low, high, n));
     if (span < 2) all.push_back(subdivided({1, 3}));
-    const auto is_named = [](const Tick& tick) { return !tick.text.empty(); };
+    // the first and the last decade, or 1, 2 or 5 times one
+    for (auto ticks : {decades(axis, low, high, 1), subdivided({1, 2, 5})}) {
+        std::erase_if(ticks, [](const Tick& tick) { return !is_named(tick); });
+        if (ticks.size() > 2) ticks.erase(ticks.begin() + 1, ticks.end() - 1);
+        all.push_back(std::move(ticks));
+    }
     for (auto& ticks : all)
         if (std::ranges::count_if(ticks, is_named) >= 2 && fits(ticks, axis, labels)) return std::move(ticks);
     return linear_ticks(axis, labels);
@@ -222,6 +233,10 @@ std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::opt
     TickLabels labels{.size = em, .gap = (across ? 1.1f : 0.5f) * em, .spacing = 0, .across = across};
     if (!own.empty() && fits(own, axis, labels)) return own;
     labels.spacing = spacing;
+    auto ticks = chart_ticks(axis, labels, every);
+    if (across || std::ranges::count_if(ticks, is_named) >= 2) return ticks;
+    labels.spacing = 1.15f * em;  // two lines of text are better than one
+    labels.gap = 0;
     return chart_ticks(axis, labels, every);
 }
 
@@ -240,10 +255,10 @@ DisplayList axis_items(const Axis& axis, const std::vector<Tick>& ticks, const A
         list.push_back(across ? vertical_line(at, low, high, style.line, color)
                               : horizontal_line(at, low, high, style.line, color));
     };
-    const auto last = std::find_if(ticks.rbegin(), ticks.rend(), [](const Tick& tick) { return !tick.text.empty(); });
+    const auto last = std::find_if(ticks.rbegin(), ticks.rend(), is_named);
     for (const Tick& tick : ticks) {
         const float at = axis.at(tick.value);
-        const bool named = !tick.text.empty();
+        const bool named = is_named(tick);
         if (named && style.has_grid)
             add_line(at, across ? area.top : area.left, across ? area.bottom : area.right, style.grid);
         add_line(at, edge, edge + out * (named ? 0.34f : 0.18f) * em, style.frame);

@@ -99,7 +99,11 @@ AxisWords axis_words(const Figure& figure, std::size_t panel, std::size_t column
     const auto& all = figure.panels;
     const Plot& plot = all[panel];
     AxisWords words;
-    words.x = panel + columns >= all.size() || all[panel + columns].x != plot.x;
+    const auto ends = [&](std::size_t i) { return i + columns >= all.size() || all[i + columns].x != all[i].x; };
+    words.x = ends(panel);
+    // beside the words of another axis, each panel has its own
+    for (std::size_t i = panel - panel % columns; i < std::min(panel - panel % columns + columns, all.size()); ++i)
+        words.x = words.x || (ends(i) && all[i].x != plot.x);
     words.y = panel % columns == 0 || all[panel - 1].y != plot.y;
     words.y_name = words.y && (panel < columns || all[panel - columns].y != plot.y);
     return words;

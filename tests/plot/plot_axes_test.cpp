@@ -63,6 +63,15 @@ TEST(Plot, AxesThatDifferAreNotShared) {
     EXPECT_EQ(words["angle, °"], 2);  // that of the first map, and the one beside it
 }
 
+TEST(Plot, AMapBesideOneWithAnotherAxisHasItsOwnWords) {
+    auto figure = four_maps(true, false), other = four_maps(true, true);
+    figure.panels.insert(figure.panels.begin() + 3, other.panels.begin() + 2, other.panels.end());
+    figure.panels.back() = other.panels.back();  // rows: steps; a step and a tolerance; tolerances
+    auto words = words_in(composed(figure, size, light));
+    EXPECT_EQ(words["step, s"], 2);    // the last of each column
+    EXPECT_EQ(words["tolerance"], 3);  // also beside the last step
+}
+
 TEST(Plot, CurvesOnSharedAxesHaveOneRange) {
     Figure figure{.columns = 2, .shares_axes = true};
     for (const double maximum : {3.0, 40.0})

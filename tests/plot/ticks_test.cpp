@@ -191,4 +191,19 @@ TEST(AxisItems, HaveNumbersInTheMarginAndTheirUnitAfterTheLast) {
         EXPECT_TRUE(std::holds_alternative<Label>(item));
 }
 
+TEST(Ticks, TwoLinesOfTextAreEnoughForTwoLabels) {
+    std::mt19937 random(5);
+    for (int trial = 0; trial < 2000; ++trial) {
+        constexpr float em = 20;
+        auto axis = any_axis(random, 1 + trial % 2, trial % 2 == 0);
+        axis.to = 2 * em;
+        const auto ticks = spaced_ticks(axis, false, em);
+        const Tick *first = nullptr, *last = nullptr;
+        for (const auto& tick : ticks)
+            if (!tick.text.empty()) last = &tick, first = first ? first : last;
+        ASSERT_NE(first, last) << axis.low << " " << axis.high;
+        EXPECT_GE(std::abs(axis.at(first->value) - axis.at(last->value)), em) << axis.low << " " << axis.high;
+    }
+}
+
 }  // namespace doppel::ticks_test
