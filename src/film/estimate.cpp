@@ -10,9 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <future>
-#include <iterator>
 #include <limits>
-#include <vector>
 
 namespace doppel {
 namespace {
@@ -43,27 +41,25 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
     const double all = static_cast<double>(scene.samples) * static_cast<double>(parts);
     SideRun run(scene, side, name);
     const TimeLimit first_limit(patience_s, stop), limit(longest_s, stop);
-    std::vector<ProbePoint> points(1);
+    ProbePoint from, last;  // from: where the recent part of the probe begins
     double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     const auto add_point = [&] {
-        points.push_back(
-            {seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, points.back().done + 1, std::max(run.effort().steps, 1L)});
+        if (last.cpu_s <= recent * probe_s) from = last;
+        last = {seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, last.done + 1, std::max(run.effort().steps, 1L)};
     };
     bool at_least = false;
     try {
         run.next(first_limit.reached());
         start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-        while (static_cast<double>(points.back().done) < all && points.back().cpu_s < probe_s) {
-            run.next((points.size() == 1 ? first_limit : limit).reached());
+        while (static_cast<double>(last.done) < all && last.cpu_s < probe_s) {
+            run.next((last.done == 0 ? first_limit : limit).reached());
             add_point();
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::interrupted || stop) throw;
-        at_least = points.size() == 1;
+        at_least = last.done == 0;
         if (at_least) add_point();
     }
-    const auto& last = points.back();
-    const auto& from = *std::prev(std::ranges::upper_bound(points, recent * last.cpu_s, {}, &ProbePoint::cpu_s));
     const double rest = all - static_cast<double>(last.done),
                  rate = static_cast<double>(last.steps - from.steps) / static_cast<double>(last.done - from.done),
                  probed = static_cast<double>(last.steps);
