@@ -5,9 +5,10 @@
 #include "render/typeface.hpp"
 #include "scene/captions.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -61,7 +62,10 @@ DisplayList Composer::backdrop(std::optional<Color> page) const {
     const auto& video = state_.scene.preset.video;
     if (!video.transparent && !page) page = page_color();
     if (page) list.push_back(filled(video.size, *page));
-    for (const auto& layer : layers_) layer->backdrop(list);
+    for (const auto& layer : layers_) {
+        layer->marks(list);
+        layer->backdrop(list);
+    }
     list.insert(list.end(), state_.layout.words.begin(), state_.layout.words.end());
     return list;
 }
@@ -84,6 +88,19 @@ DisplayList Composer::frame() const {
         list.push_back(*label);
     }
     return list;
+}
+
+std::string Composer::left_out() const {
+    if (is_low(state_.scene.preset.video)) return {};  // a thumbnail
+    std::vector<std::string> texts;
+    for (const auto& layer : layers_) std::ranges::move(layer->left_out(), std::back_inserter(texts));
+    for (const auto& list : {backdrop(), frame()})
+        for (const auto& item : list)
+            if (const auto* one = std::get_if<Label>(&item); one && one->text.ends_with("…"))
+                texts.push_back(fmt::format("the rest of \"{}\"", one->text));
+    if (texts.empty()) return {};
+    const auto& size = state_.scene.preset.video.size;
+    return fmt::format("{} × {}: there is no space for {}", size.width, size.height, fmt::join(texts, ", "));
 }
 
 /// Lines above and below a picture of the pendulums; without it, all lines in the middle.

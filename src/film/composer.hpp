@@ -3,6 +3,7 @@
 #include "film/layer.hpp"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace doppel {
@@ -24,6 +25,10 @@ public:
     void add(const Snapshot& snapshot);
 
     DisplayList frame() const;
+
+    /// "there is no space for …": the texts of the last frame that are left out or cut. Empty if there are
+    /// none, and for thumbnails (is_low()), which have few.
+    std::string left_out() const;
 
     Color page_color() const { return state_.layout.style.theme.background; }
 

@@ -163,6 +163,7 @@ void Film::finish(const std::vector<FilmEvent>& events) {
     for (const auto& [frame, title] : chapters_of(scene_, events, *record_.shown)) sink_->add_chapter(frame, title);
     if (options_.merge) join_parts();
     sink_->finish();
+    if (auto words = composer_.left_out(); !words.empty()) record_.warnings.push_back(std::move(words));
     if (options_.shard && !folder_.empty()) pack_pictures();
     parts_.finished(film_name_);
     if (poster_) write(".poster.png", *poster_);

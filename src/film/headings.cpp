@@ -202,14 +202,16 @@ float place_header(Layout& layout, const Scene& scene) {
     const bool tall = is_tall(video), changes = video.speed.changes_over_time(), has_clock = video.shows("clock");
     const auto title = video.shows("title") ? scene.preset.title : "";
     auto below = video.shows("subtitle") ? scene_caption(scene, tall ? Wording::plain : Wording::exact) : "";
+    if (is_low(video)) below.clear();
     if (title.empty() && below.empty() && !has_clock) return page.top;
     const auto width_of = [&](const std::string& text, double size, Weight weight = Weight::regular) {
         return layout.style.type.width(text, px(size), weight);
     };
     // a small picture has a short subtitle: the system in readable text, without the integrator
-    if (!scene.preset.subtitle && 0.8f * width_of(below, font.subtitle) > 0.85f * page.width())
+    if (!below.empty() && !scene.preset.subtitle && 0.8f * width_of(below, font.subtitle) > 0.85f * page.width())
         below = scene_caption(scene, Wording::plain);
-    const auto speed = has_clock ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
+    const auto speed =
+        has_clock && !is_low(video) ? changes ? std::string("slow motion ×0.25") : speed_text(scene, 0) : std::string();
     if (tall && has_clock && !changes && video.speed.constant != Rational{1, 1})
         below += (below.empty() ? "" : " · ") + speed;
     // long text is shrunk a little to fit beside the text at the right, then continues below; in a low picture it ends
@@ -235,14 +237,15 @@ float place_header(Layout& layout, const Scene& scene) {
     const float speed_width = width_of(speed, font.subtitle);
     const float line = std::max((tall ? 52 : 36) * t, 0.25f * title_px + 0.94f * below_px);
     add(title, font.title, Weight::bold, theme.text, !tall ? clock : changes ? speed_width : 0);
-    const float second = base += line;
+    if (!is_low(video) || tall) base += line;
+    const float second = base;
     add(below, font.subtitle, Weight::regular, theme.quiet_text, tall ? clock : speed_width);
     if (has_clock) {
         const auto words =
             label(speed, {page.right, tall ? first : second}, px(font.subtitle), theme.quiet_text, Align::right);
-        if (changes)
+        if (changes && !speed.empty())
             layout.speed = words;
-        else if (!tall)
+        else if (!tall && !speed.empty())
             layout.words.push_back(words);
         layout.clock = label("", {page.right, tall ? second : first}, px(font.clock), theme.text, Align::right);
     }
@@ -266,6 +269,8 @@ Regions place_headings(Layout& layout, const Scene& scene, const Area& room, Reg
     if (needs.panels == 0 || !scene.preset.video.shows("labels")) return split(room, needs);
     const float t = layout.text;
     auto headings = headings_of(scene);
+    for (auto& words : headings)
+        if (is_low(scene.preset.video)) words.said.note.clear();
     needs.heading = std::max(46 * t, 12 * t + 0.99f * px(layout.style.font.heading));
     auto regions = split(room, needs);
     if (!scene.preset.video.members.releases.empty()) {

@@ -1,6 +1,5 @@
 #include "film/layer.hpp"
 
-#include "film/strip_layer.hpp"
 #include "numeric/state.hpp"
 #include "render/stroke.hpp"
 #include "scene/captions.hpp"

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace doppel {
@@ -68,11 +69,15 @@ public:
     explicit Layer(const FilmState& state) : state_(state) {}
     virtual ~Layer() = default;
 
+    /// What marks the limits of the motion, below the backdrop.
+    virtual void marks(DisplayList& /*list*/) const {}
     virtual void backdrop(DisplayList& list) const = 0;
     /// Adds the state's snapshot, which is the next sample from 0 on.
     virtual void add() {}
     /// Draws the last snapshot over the backdrop.
     virtual void frame(DisplayList& list) const = 0;
+    /// Texts that frame() does not draw for lack of space.
+    virtual std::vector<std::string> left_out() const { return {}; }
 
 protected:
     using Edge = AxisStyle::Edge;
@@ -99,6 +104,8 @@ protected:
 
 /// The pendulums of a panel and their trails.
 std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel);
+/// A strip, with its curves and marks.
+std::unique_ptr<Layer> make_strip_layer(const FilmState& state, const StripLayout& strip);
 /// Of the panels of pendulums, the phase portrait and the strips, from back to front.
 std::vector<std::unique_ptr<Layer>> layers_of(const FilmState& state);
 

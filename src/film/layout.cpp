@@ -141,9 +141,11 @@ void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& c
         const float below = is_lowest ? numbers_height(layout) : 0.35f * em;
         // captions have priority over curves, unless many strips share little space
         const float high = cell.height() - below - above_curves(layout);
-        const int maximum = std::max(1, static_cast<int>(0.4f * high / caption_line(layout)));
+        const bool is_low = high - caption_line(layout) < em;  // curves would be lower than their numbers
+        const int maximum = is_low ? 0 : std::max(1, static_cast<int>(0.4f * high / caption_line(layout)));
         const int lines = std::min(caption_lines(kind, scene, layout, cell.width()), maximum);
-        const float words = static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
+        const float words =
+            is_low ? 0.35f * em : static_cast<float>(lines) * caption_line(layout) + above_curves(layout);
         const Area area{cell.left, std::round(cell.top + words), cell.right, std::round(cell.bottom - below)};
         const auto& requested = video.ranges[static_cast<std::size_t>(kind)];
         const auto range = requested ? *requested : fitted_range(kind, seen);
@@ -159,7 +161,8 @@ void place_strips(Layout& layout, const Scene& scene, const std::vector<Area>& c
                        .logarithmic = is_logarithmic(kind)},
              .lines = lines,
              .baseline = area.top - words + caption_line(layout)});
-        left = std::max(left, widest(spaced_ticks(layout.strips.back().value, false, em), em) + 0.55f * em);
+        if (!is_low)
+            left = std::max(left, widest(spaced_ticks(layout.strips.back().value, false, em), em) + 0.55f * em);
     }
     for (auto& strip : layout.strips) {
         strip.time.from = strip.area.left = std::round(strip.cell.left + left);
@@ -295,6 +298,16 @@ std::vector<Area> panel_areas(const Area& room, const RegionNeeds& needs, bool s
                     top = room.top + (stacked ? i * (height + needs.gap) : 0);
         areas.push_back({left, std::round(top + needs.heading), left + width, std::round(top + height)});
     }
+    if (areas.size() != 2 || needs.chart_heading == 0) return areas;
+    constexpr float wider = 0.1f, first = 0.52f;  // shares of the width of a panel, and of the height of both
+    if (stacked) {
+        const float both = room.height() - needs.gap - needs.heading - needs.chart_heading;
+        areas[0].bottom = std::round(areas[0].top + first * both);
+        areas[1].top = areas[0].bottom + needs.gap + std::round(needs.chart_heading);
+    } else {
+        areas[0].right -= std::round(wider * width);
+        areas[1].left -= std::round(wider * width);
+    }
     return areas;
 }
 
@@ -382,10 +395,10 @@ float size_of_many(std::size_t pendulums) {
 }
 
 Color member_color(const Theme& theme, double share) {
-    // leaves out the end of the scale with too little contrast to the background
-    const auto& ground = theme.background;
-    const bool is_dark = 0.2126f * ground.r + 0.7152f * ground.g + 0.0722f * ground.b < 0.5f;
-    return is_dark ? map_color(0.4 + 0.6 * share) : map_color(0.75 * share);
+    // on dark without the dark end of the maps' scale; on light another one, from indigo to coral
+    if (theme.is_dark()) return map_color(0.4 + 0.6 * share);
+    const auto from_middle = px(2 * share - 1);
+    return mixed(rgb(0xa8327d), rgb(from_middle < 0 ? 0x352a8c : 0xe0683c), std::abs(from_middle));
 }
 
 double ShownPendulum::least_bob() const {
@@ -407,10 +420,11 @@ std::vector<ShownPendulum> shown_pendulums(const Scene& scene, const Style& styl
         const auto& side = scene.side(letter);
         shown.push_back({side.motion, side, side.mass, theme.sides[shown.size()]});
     }
-    // if several share a panel, each has its own hue; many are more transparent
-    const bool is_alone = !is_ensemble && (shown.size() == 1 || !share_panel);
+    // if several share a panel, each has its own hue, and on light always, where grey ones look black; many are more
+    // transparent
+    const bool is_grey = theme.is_dark() && !is_ensemble && (shown.size() == 1 || !share_panel);
     for (auto& one : shown) {
-        const auto hued = [&](Color color, float share) { return is_alone ? color : mixed(color, one.color, share); };
+        const auto hued = [&](Color color, float share) { return is_grey ? color : mixed(color, one.color, share); };
         const auto clear = [&](float opacity) {
             if (size_of_many(shown.size()) == 1) return one.color;
             return one.color.with_alpha(
@@ -468,6 +482,7 @@ Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind kin
                        {.panels = panel_count(video),
                         .strips = video.strips.size(),
                         .tall = tall,
+                        .chart_heading = tall && video.layout == Arrangement::phase ? 46 * layout.text : 0,
                         .gap = std::round(24 * u),
                         .height = height,
                         .numbers = numbers_height(layout),

@@ -8,6 +8,7 @@
 #include "scene/captions.hpp"
 #include "scene/scene.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -79,7 +80,7 @@ struct StripLayout {
     Area cell;                    // including captions and numbers
     Area area;                    // inside the axes
     Axis time, value;             // horizontal; vertical
-    int lines = 1;                // of the caption
+    int lines = 1;                // of the caption; 0 = it is too low for texts
     float baseline = 0;           // of the caption's first line, px
     std::vector<Area> covered{};  // by the curve of the whole film, if it is the distance
 };
@@ -87,6 +88,11 @@ struct StripLayout {
 /// Upright, for telephones.
 inline bool is_tall(const VideoSpec& video) {
     return video.size.height > video.size.width;
+}
+
+/// Too low for more than one line above the panels, and one above each of them.
+inline bool is_low(const VideoSpec& video) {
+    return std::min(video.size.width, video.size.height) < 120;
 }
 
 inline bool has_panel_for_each(const VideoSpec& video) {
@@ -126,6 +132,7 @@ Size tile_size(const Scene& scene, int width);
 struct RegionNeeds {
     std::size_t panels = 2, strips = 0;  // numbers of them
     bool tall = false;                   // strips one below the other, below the panels
+    float chart_heading = 0;             // if the second panel is a chart, which is wider, or lower with this heading
     float heading = 0;                   // height of the heading of each panel
     float gap = 0;                       // between panels, and between panels and strips
     float height = 0;                    // of the whole picture

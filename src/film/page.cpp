@@ -73,15 +73,6 @@ Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJ
     return json;
 }
 
-/// Without the limits that strips mark, which are those of the film's motion.
-Scene without_limits(Scene scene) {
-    for (auto* side : {&scene.a, &scene.b})
-        if (side->choice) side->choice->horizon = scene.samples;
-    scene.certificate.reset();
-    scene.preset.video.model_limit_s.reset();
-    return scene;
-}
-
 /// A picture of the film's layout: pixels of `scene`'s size. `first`: the snapshot at the start. "marks": the numbers
 /// of the backdrop's items that mark limits.
 Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first) {
@@ -93,6 +84,7 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     Json json{{"size", {video.size.width, video.size.height}},
               {"unit", layout.unit},
               {"text", layout.text},
+              {"min_text", layout.min_text},
               {"reach", layout.reach},
               {"bob", layout.bob_radius},
               {"last_bob", layout.last_bob_radius},
@@ -106,7 +98,13 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     for (const auto& width : width_names) json[std::string(width.key)] = style.width.*width.member;
     DisplayList backdrop;
     if (!video.transparent) backdrop.push_back(filled(video.size, style.theme.background));
-    for (const auto& layer : layers_of(state)) layer->backdrop(backdrop);
+    json["marks"] = Json::array();
+    for (const auto& layer : layers_of(state)) {
+        const auto first_mark = backdrop.size();
+        layer->marks(backdrop);
+        for (auto mark = first_mark; mark < backdrop.size(); ++mark) json["marks"].push_back(mark);
+        layer->backdrop(backdrop);
+    }
     for (const auto& panel : layout.panels)
         json["panels"].push_back({{"area", json_of(panel.area)},
                                   {"shown", panel.shown},
@@ -120,14 +118,6 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     for (const auto& [key, label] : {std::pair("clock", &layout.clock), {"speed", &layout.speed}})
         if (*label) json[key] = json_of(**label);
     json["backdrop"] = json_of.all(backdrop);
-    json["marks"] = Json::array();
-    if (limits_of(scene).empty()) return json;
-    const auto others = picture_json(without_limits(scene), bounds, first)["backdrop"];
-    for (std::size_t i = 0, k = 0; i < backdrop.size(); ++i)
-        if (k < others.size() && json["backdrop"][i] == others[k])
-            ++k;
-        else
-            json["marks"].push_back(i);
     return json;
 }
 

@@ -111,7 +111,10 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
         throw_if_set(stop);
         return parts.publish();
     });
-    return {.files = std::move(files), .frames = 1, .samples = samples, .wall_s = seconds_of(CLOCK_MONOTONIC) - start};
+    RunResult result{.files = std::move(files), .frames = 1, .samples = samples};
+    if (auto words = composer.left_out(); !words.empty()) result.warnings.push_back(std::move(words));
+    result.wall_s = seconds_of(CLOCK_MONOTONIC) - start;
+    return result;
 }
 
 Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,

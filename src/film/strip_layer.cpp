@@ -1,5 +1,4 @@
-#include "film/strip_layer.hpp"
-
+#include "film/layer.hpp"
 #include "film/strips.hpp"
 #include "plot/labels.hpp"
 #include "render/stroke.hpp"
@@ -8,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace doppel {
@@ -17,23 +17,26 @@ class StripLayer final : public Layer {
 public:
     StripLayer(const FilmState& state, const StripLayout& strip) : Layer(state), strip_(strip) {}
 
-    void backdrop(DisplayList& list) const override {
+    void marks(DisplayList& list) const override {
         const auto& area = strip_.area;
-        const float em = px(style_.font.axis), line = px(style_.width.grid);
         // times after the predictability limit are dimmed
         if (const auto limit = state_.scene.horizon())
             list.push_back(Box{strip_.time.at(*limit), area.top, area.right, area.bottom, 0, theme_.panel});
+        if (const auto& proof = state_.scene.certificate)  // a band along the axis
+            list.push_back(Box{area.left, area.bottom - band * px(style_.font.axis),
+                               strip_.time.at(proof->run_until_s()), area.bottom, 0, theme_.trace.with_alpha(0.5f)});
+        for (const auto& mark : limits_) draw_line(mark, list);
+    }
+    void backdrop(DisplayList& list) const override {
+        const auto& area = strip_.area;
+        const float em = px(style_.font.axis), line = px(style_.width.grid);
         const bool has_times = strip_.cell.bottom > area.bottom + em;
         add_axis(strip_.time, area, strip_.cell, {.edge = Edge::bottom, .has_numbers = has_times, .unit = " s"}, list);
-        add_axis(strip_.value, area, strip_.cell, {.edge = Edge::left}, list);
+        add_axis(strip_.value, area, strip_.cell, {.edge = Edge::left, .has_numbers = strip_.lines > 0}, list);
         if (line > 0) {
             list.push_back(vertical_line(area.left, area.top, area.bottom, line, theme_.frame));
             list.push_back(horizontal_line(area.bottom, area.left, area.right, line, theme_.frame));
         }
-        if (const auto& proof = state_.scene.certificate)  // a band along the axis
-            list.push_back(Box{area.left, area.bottom - band * em, strip_.time.at(proof->run_until_s()), area.bottom, 0,
-                               theme_.trace.with_alpha(0.5f)});
-        for (const auto& mark : limits_) draw_line(mark, list);
     }
 
     void add() override {
@@ -46,16 +49,12 @@ public:
         const auto& area = strip_.area;
         for (auto& words : placed_caption(strip_, state_.scene, layout_, now, state_.outcome.start_distance == 0))
             list.push_back(std::move(words));
-        auto marks = is_of_pair() ? limits_ : std::vector<TimeMark>();
-        if (const auto since = state_.outcome.divergence.since(); since && is_of_pair()) {
-            marks.push_back(
-                {*since, fmt::format("diverged at {:.1f} s{}", *since, true_divergence_words(state_.scene))});
-            draw_line(marks.back(), list);
-        }
+        const auto marks = texts();
+        if (marks.size() > limits_.size()) draw_line(marks.back(), list);
         const float x = strip_.time.at(state_.time());
         if (style_.width.mark > 0)
             list.push_back(vertical_line(x, area.top, area.bottom, px(style_.width.mark), theme_.cursor));
-        const auto rows = rows_of(marks);
+        const auto rows = rows_of(marks).first;
         for (const auto& row : video_.transparent ? std::vector<Label>() : rows) {
             // no grid line crosses the text; curves lie between it and its background
             const auto [left, top, right, bottom] = box_of(row);
@@ -73,7 +72,22 @@ public:
         list.push_back(Capsule{head, head, std::max(2.3f * px(style_.width.trace), 2.0f), now[0].color});
     }
 
+    std::vector<std::string> left_out() const override {
+        auto words = rows_of(texts()).second;
+        if (strip_.lines == 0) words.push_back(fmt::format("\"{}\"", title_of(strip_.kind, state_.scene)));
+        return words;
+    }
+
 private:
+    /// The marks with texts: limits and the divergence.
+    std::vector<TimeMark> texts() const {
+        if (!is_of_pair()) return {};
+        auto marks = limits_;
+        if (const auto since = state_.outcome.divergence.since())
+            marks.push_back(
+                {*since, fmt::format("diverged at {:.1f} s{}", *since, true_divergence_words(state_.scene))});
+        return marks;
+    }
     std::vector<StripCurve> curves() const {
         return strip_curves(strip_.kind, state_.scene, state_.snapshot.pair, state_.outcome.start_distance, style_);
     }
@@ -121,51 +135,78 @@ private:
         const float room = 4 * layout_.text, right = row.anchor.x + style_.type.width(row.text, row.size) + room;
         return {row.anchor.x - room, row.anchor.y - 0.9f * row.size, right, row.anchor.y + 0.28f * row.size};
     }
-    /// The text of a mark beside its line, in rows if there is little space; none if a word is wider than the strip.
-    std::vector<Label> words_at(const TimeMark& mark) const {
-        const auto& area = strip_.area;
-        const float t = layout_.text, size = px(style_.font.strip), x = strip_.time.at(mark.time_s), gap = 10 * t;
-        const float right = area.right - x - 2 * gap, left = x - area.left - 2 * gap, first = area.left + 2 * t;
+    /// The text of a mark beside its line, in rows if there is little space; none if a word is too wide for the space
+    /// between the lines of other marks.
+    std::vector<Label> words_at(const TimeMark& mark, const std::vector<TimeMark>& marks, float size) const {
+        const float t = layout_.text, x = strip_.time.at(mark.time_s), gap = 10 * t;
+        float from = strip_.area.left, to = strip_.area.right;
+        for (const auto& other : marks) {
+            const float at = strip_.time.at(other.time_s);
+            if (at < x) from = std::max(from, at);
+            if (at > x) to = std::min(to, at);
+        }
+        const float right = to - x - 2 * gap, left = x - from - 2 * gap, first = from + 2 * t;
         const auto& type = style_.type;
         const bool is_right = right >= std::min(type.width(mark.text, size), left);
-        const float width = std::clamp(is_right ? right : left, 5 * size, std::max(5 * size, area.width()));
+        const float width = std::clamp(is_right ? right : left, 5 * size, std::max(5 * size, to - from));
         const auto rows = wrapped(mark.text, size, Weight::regular, width, type);
         std::vector<Label> words;
         if (fmt::format("{}", fmt::join(rows, " ")) != mark.text) return words;
         for (const auto& row : rows) {
-            const float length = type.width(row, size), last = area.right - length - 2 * t;
+            const float length = type.width(row, size), last = to - length - 2 * t;
             if (last < first) return {};
-            const float from = std::clamp(is_right ? x + gap : x - gap - length, first, last);
-            words.push_back(label(row, {from, 0}, size, theme_.text));
+            const float start = std::clamp(is_right ? x + gap : x - gap - length, first, last);
+            words.push_back(label(row, {start, 0}, size, theme_.text));
         }
         return words;
     }
-    /// The texts of marks one above the other, at the foot of the lines, or at their top if there they cover less of the
-    /// film's curve. If they are too high, the first are left out, which are those of limits.
-    std::vector<Label> rows_of(const std::vector<TimeMark>& marks) const {
-        const float size = px(style_.font.strip), line = 1.2f * size;
-        const float above = state_.scene.certificate ? band * px(style_.font.axis) : 0;
-        const float foot = strip_.area.bottom - 0.45f * size - above, maximum = (foot - strip_.area.top) / line + 0.25f;
+    /// Their texts, each as low as it covers least of the film's curve, and smaller if need be; and the texts for which
+    /// there is no space. The last, that of the divergence, has the first choice.
+    std::pair<std::vector<Label>, std::vector<std::string>> rows_of(const std::vector<TimeMark>& marks) const {
         std::vector<Label> rows;
+        std::vector<std::string> left_out;
+        const float size = px(style_.font.strip);
         for (auto mark = marks.rbegin(); mark != marks.rend(); ++mark) {
-            const auto words = words_at(*mark);
-            if (static_cast<float>(rows.size() + words.size()) > maximum) break;
-            rows.insert(rows.begin(), words.rbegin(), words.rend());
+            std::vector<Label> words;
+            for (const float share : {1.0f, 0.85f, 0.7f, 0.6f})
+                if (words.empty() && strip_.lines > 0)
+                    words =
+                        placed(words_at(*mark, marks, std::max(share * size, std::min(layout_.min_text, size))), rows);
+            if (words.empty()) left_out.push_back(fmt::format("\"{}\"", mark->text));
+            rows.insert(rows.end(), words.begin(), words.end());
         }
-        // sets the positions from this one up; returns how often the curve is covered
-        const auto place = [&](float lowest) {
-            std::ptrdiff_t covered = 0;
-            for (auto& row : rows) {
-                row.anchor.y = std::exchange(lowest, lowest - line);
-                covered += std::ranges::count_if(strip_.covered,
-                                                 [&](const Area& curve) { return curve.overlaps(box_of(row)); });
-            }
-            return covered;
+        return {rows, left_out};
+    }
+    /// The rows of a text where they cover least of the curve, and no other text; none if there is no such place.
+    std::vector<Label> placed(std::vector<Label> words, const std::vector<Label>& others) const {
+        if (words.empty()) return words;
+        const float size = words[0].size, line = 1.2f * size;
+        const float above = state_.scene.certificate ? band * px(style_.font.axis) : 0;
+        const float top = strip_.area.top + size, high = line * (static_cast<float>(words.size()) - 1);
+        const float foot = strip_.area.bottom - 0.45f * size - above - high, slack = 0.25f * line;
+        std::optional<float> best;
+        float least = 0;
+        const auto place = [&](float first) {
+            for (auto& row : words) row.anchor.y = std::exchange(first, first + line);
         };
-        const float top = strip_.area.top + size + line * (static_cast<float>(rows.size()) - 1);
-        const auto at_foot = place(foot), at_top = place(top);
-        if (at_foot <= at_top) place(foot);
-        return rows;
+        for (float first = foot; foot >= top - slack; first = std::max(first - line / 2, top)) {
+            place(first);
+            float covered = 0;  // px²
+            bool is_free = true;
+            for (const auto& row : words) {
+                const auto box = box_of(row);
+                for (const auto& other : others) is_free = is_free && !box.overlaps(box_of(other));
+                for (const auto& curve : strip_.covered)
+                    if (curve.overlaps(box))
+                        covered += (std::min(curve.right, box.right) - std::max(curve.left, box.left)) *
+                                   (std::min(curve.bottom, box.bottom) - std::max(curve.top, box.top));
+            }
+            if (is_free && (!best || covered < least)) best = first, least = covered;
+            if (first <= top || (best && least == 0)) break;
+        }
+        if (!best) return {};
+        place(*best);
+        return words;
     }
 
     static constexpr float band = 0.25f;  // height of the band of a proof, em

@@ -31,22 +31,6 @@ std::string side_name(const Scene& scene, bool is_a) {
     return scene.members.empty() ? is_a ? "a" : "b" : is_a ? "first" : "last";
 }
 
-std::string strip_title(StripKind kind, const Scene& scene) {
-    const auto &a = scene.preset.a, &b = scene.preset.b;
-    std::string title = titles[static_cast<std::size_t>(kind)];
-    const bool is_a = kind == StripKind::energies_a;
-    if ((is_a || kind == StripKind::energies_b) && !scene.is_single())
-        return fmt::format("energy of {}, J", (is_a ? a : b).label.value_or(side_name(scene, is_a)));
-    const auto is_driven = [&](const SideSpec& side) {
-        return drive_period(side, scene.preset.duration_s).has_value();
-    };
-    if (kind == StripKind::total_energy && (is_driven(a) || is_driven(b))) return title + ", mean over a drive period";
-    if (kind != StripKind::distance) return title;
-    if (wording_of(scene) == Wording::plain) title = "their distance";
-    if (!scene.members.empty()) return title + ", first to last";
-    return differ_in_kind(a, b) ? title + ", of the last masses" : title;
-}
-
 /// A part of a caption. With `room` > 0 it is not broken, and has that width in px whatever its text.
 struct Piece {
     std::string text;
@@ -63,7 +47,7 @@ std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& l
                              const std::vector<StripCurve>& curves, bool starts_equal) {
     const auto& theme = layout.style.theme;
     const auto width = [&](const char* text) { return layout.style.type.width(text, px(layout.style.font.strip)); };
-    std::vector<Piece> pieces{{strip_title(kind, scene), theme.text}};
+    std::vector<Piece> pieces{{title_of(kind, scene), theme.text}};
     if (kind == StripKind::distance)
         pieces.push_back({distance_text(*curves[0].value), curves[0].color, width("8.8 × 10⁻⁸⁸")});
     else if (kind == StripKind::exponent && starts_equal)
@@ -124,10 +108,30 @@ std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layou
 
 }  // namespace
 
+std::string title_of(StripKind kind, const Scene& scene) {
+    const auto &a = scene.preset.a, &b = scene.preset.b;
+    std::string title = titles[static_cast<std::size_t>(kind)];
+    const bool is_a = kind == StripKind::energies_a;
+    if ((is_a || kind == StripKind::energies_b) && !scene.is_single())
+        return fmt::format("energy of {}, J", (is_a ? a : b).label.value_or(side_name(scene, is_a)));
+    const auto is_driven = [&](const SideSpec& side) {
+        return drive_period(side, scene.preset.duration_s).has_value();
+    };
+    if (kind == StripKind::total_energy && (is_driven(a) || is_driven(b))) return title + ", mean over a drive period";
+    if (kind != StripKind::distance) return title;
+    if (wording_of(scene) == Wording::plain) title = "their distance";
+    if (!scene.members.empty()) return title + ", first to last";
+    return differ_in_kind(a, b) ? title + ", of the last masses" : title;
+}
+
 std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const PairState& state, double start_distance,
                                      const Style& style) {
     const auto& theme = style.theme;
     const double width = style.width.trace;  // of single curves
+    // a second curve of the same side: on light only as pale as can be seen, because dark ones look black
+    const auto paler = [&](Color color, Color other, float share) {
+        return theme.is_dark() ? mixed(color, other, share) : mixed(color, theme.background, 0.27f);
+    };
     if (kind == StripKind::distance) return {{state.distance, theme.trace, width}};
     if (kind == StripKind::exponent) return {{growth_rate(scene, state, start_distance), theme.trace, width}};
     std::vector<StripCurve> curves;
@@ -145,7 +149,7 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
             for (std::size_t k = 0; k < count; ++k)
                 if (const bool is_last = k + 1 == count; count <= maximum || k == 0 || is_last)
                     curves.push_back(
-                        {value(k), mixed(color, theme.text, is_last ? 0 : 0.6f), of_side,
+                        {value(k), is_last ? color : paler(color, theme.text, 0.6f), of_side,
                          fmt::format("{}{}{}", side_name(scene, is_a), scene.members.empty() ? "" : " ", k + 1)});
         };
         switch (kind) {
@@ -173,7 +177,7 @@ std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const P
                 if (is_a != (kind == StripKind::energies_a)) break;
                 curves.push_back({seen.kinetic_energy, color, 0.8 * width, "kinetic"});
                 curves.push_back({seen.energy - side.lowest_potential - seen.kinetic_energy,
-                                  mixed(color, theme.background, 0.35f), 0.8 * width, "potential"});
+                                  paler(color, theme.background, 0.35f), 0.8 * width, "potential"});
                 curves.push_back({seen.energy - side.lowest_potential, theme.text, 0.6 * width, "total"});
         }
     }

@@ -23,6 +23,9 @@ struct StripCurve {
 std::vector<StripCurve> strip_curves(StripKind kind, const Scene& scene, const PairState& state, double start_distance,
                                      const Style& style = {});
 
+/// What it shows, with its unit: the beginning of its caption.
+std::string title_of(StripKind kind, const Scene& scene);
+
 /// ln(d/d0) / t, 1/s. Nothing in the first twentieth of the scene, where it is not meaningful yet, or if a distance is
 /// 0.
 std::optional<double> growth_rate(const Scene& scene, const PairState& state, double start_distance);

@@ -64,6 +64,10 @@ struct Theme {
     float glow;                  // glow radius of trails, px of a 1920×1080 picture; 0 = no glow
     std::array<Color, 8>
         palette;  // colours of curves, beginning with the two sides'; contrast at least 3:1 on the background
+
+    constexpr bool is_dark() const {
+        return 0.2126f * background.r + 0.7152f * background.g + 0.0722f * background.b < 0.5f;
+    }
 };
 
 inline constexpr std::array<Theme, 3> themes{{
@@ -95,7 +99,7 @@ inline constexpr std::array<Theme, 3> themes{{
      .frame = rgb(0xc3cad4),
      .cursor = rgb(0x8791a1),
      .rod = rgb(0x4a5464),
-     .bob = rgb(0x27303d),
+     .bob = rgb(0x4a5464),
      .pivot = rgb(0x9aa4b3),
      .sides = {rgb(0xb85200), rgb(0x0068b8)},
      .trace = rgb(0x1b7a3d),
@@ -103,8 +107,8 @@ inline constexpr std::array<Theme, 3> themes{{
      .open = rgb(0x8a6100),
      .none = rgb(0xdde1e7),
      .glow = 0,
-     .palette = {rgb(0xb85200), rgb(0x0068b8), rgb(0x2e9398), rgb(0x8e3f7e), rgb(0x1c5406), rgb(0x7f7ff5),
-                 rgb(0x560a14), rgb(0x1a2458)}},
+     .palette = {rgb(0xb85200), rgb(0x0068b8), rgb(0x2e9398), rgb(0x8e3f7e), rgb(0x1e9a5c), rgb(0x7f7ff5),
+                 rgb(0x763423), rgb(0x6133fb)}},
     {.name = "high-contrast",
      .background = rgb(0x000000),
      .panel = rgb(0x000000),

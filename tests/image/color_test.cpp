@@ -101,6 +101,10 @@ TEST(Themes, HaveEightDistinguishableHues) {
     }
 }
 
+TEST(Themes, NoHueOnLightLooksBlack) {
+    for (const Color& color : themes[1].palette) EXPECT_GT(lab(linear(color))[0], 28);  // measured 30.3; below 15
+}
+
 TEST(Themes, CanBeRead) {
     // WCAG 2.1 §1.4.3: 4.5 for text; 7 is its enhanced level
     for (const auto& theme : themes) {

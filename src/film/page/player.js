@@ -194,35 +194,51 @@ function dashedLine({ area: [, top, , bottom], time }, at) {
   for (let y = top; y < bottom; y += 10 * picture.text)
     verticalLine(along(time, at), y, Math.min(y + 5 * picture.text, bottom), theme.quiet_text);
 }
-// The texts of marks beside their lines, in rows that fit, at the foot, or at the top if there they cover less of the curve:
-// draws what is behind them, returns what draws them. If they are too high, the first are left out, which are those of limits.
+// The texts of marks beside their lines, in rows that cross no other line, each text as low as it covers least of the curve, and
+// smaller if need be: draws what is behind them, returns what draws them. A text for which there is no space is left out.
 function placeMarks({ area: [left, top, right, bottom], time }, marks, axis, curve) {
-  const t = picture.text, size = picture.font, style = [size, "left", 400, theme.text];
-  text("", [0, 0], ...style);
+  const t = picture.text, size = picture.font, style = ["left", 400, theme.text], rows = [];
   const widthOf = words => g.measureText(words).width;
-  let rows = [];
-  for (const [at, words] of [...marks].reverse()) {
-    const x = along(time, at), after = right - x - 20 * t, before = x - left - 20 * t, lines = [];
-    const isRight = after >= Math.min(widthOf(words), before), room = Math.max(isRight ? after : before, 5 * size);
-    for (const word of words.split(/ (?!s\b)/)) {  // a number keeps its unit
-      const longer = `${lines.at(-1)} ${word}`, fits = lines.length && widthOf(longer) <= room;
-      lines.splice(fits ? -1 : lines.length, 1, fits ? longer : word);
+  const boxOf = ({ from, foot, width, em }) => [from - 4 * t, foot - 0.9 * em, from + width + 4 * t, foot + 0.28 * em];
+  const overlap = ([a, b, c, d], [e, f, g, h]) => a < g && e < c && b < h && f < d;
+  const covered = row => curve.filter((v, k) => isIn([along(time, k * film.sample_s), along(axis, v)], boxOf(row))).length;
+  for (const [at, words] of [...marks].reverse())
+    for (const share of [1, 0.85, 0.7, 0.6]) {
+      const x = along(time, at), others = marks.map(([other]) => along(time, other));
+      const first = Math.max(left, ...others.filter(other => other < x)), end = Math.min(right, ...others.filter(other => other > x));
+      const after = end - x - 20 * t, before = x - first - 20 * t;
+      const em = Math.max(share * size, Math.min(picture.min_text, size)), lines = [];
+      text("", [0, 0], em, ...style);  // sets the font that is measured
+      const isRight = after >= Math.min(widthOf(words), before), room = Math.max(isRight ? after : before, 5 * em);
+      for (const word of words.split(/ (?!s\b)/)) {  // a number keeps its unit
+        const longer = `${lines.at(-1)} ${word}`, fits = lines.length && widthOf(longer) <= room;
+        lines.splice(fits ? -1 : lines.length, 1, fits ? longer : word);
+      }
+      const own = lines.map(line => {
+        const width = widthOf(line), from = isRight ? x + 10 * t : x - 10 * t - width;
+        return { line, width, em, from: Math.max(Math.min(from, end - width - 2 * t), first + 2 * t) };
+      });
+      const place = foot => own.forEach((row, i) => row.foot = foot + 1.2 * i * em);
+      const lowest = bottom - (0.45 + 1.2 * (lines.length - 1)) * em, highest = top + em;
+      if (lowest < highest - 0.3 * em || own.some(({ width }) => width > end - first - 4 * t)) continue;
+      let best = null, least = Infinity;
+      for (let foot = lowest; ; foot = Math.max(foot - 0.6 * em, highest)) {
+        place(foot);
+        const count = own.reduce((sum, row) => sum + covered(row), 0);
+        const isFree = !own.some(row => rows.some(other => overlap(boxOf(row), boxOf(other))));
+        if (isFree && count < least) [best, least] = [foot, count];
+        if (foot <= highest || least === 0) break;
+      }
+      if (best === null) continue;
+      place(best);
+      rows.push(...own);
+      break;
     }
-    if ((rows.length + lines.length - 0.25) * 1.2 * size > bottom - 0.45 * size - top) break;
-    rows = [...lines.reverse().map(line => {
-      const width = widthOf(line), from = isRight ? x + 10 * t : x - 10 * t - width;
-      return [line, Math.max(Math.min(from, right - width - 2 * t), left + 2 * t), width];
-    }), ...rows];
+  for (const row of film.transparent ? [] : rows) {
+    const [x, y, end, foot] = boxOf(row);
+    box(x, y, end - x, foot - y, 0, faded(theme.background, 0.85));
   }
-  const baseOf = (i, isHigh) => (isHigh ? top + size + 1.2 * (rows.length - 1) * size : bottom - 0.45 * size) - 1.2 * i * size;
-  const covered = isHigh => rows.reduce((sum, [, from, width], i) => sum + curve.filter((v, k) => {
-    const x = along(time, k * film.sample_s), y = along(axis, v) - baseOf(i, isHigh);
-    return x > from - 4 * t && x < from + width + 4 * t && y > -0.9 * size && y < 0.28 * size;
-  }).length, 0);
-  const isHigh = covered(true) < covered(false), footOf = i => baseOf(i, isHigh);
-  for (const [i, [, from, width]] of film.transparent ? [] : rows.entries())
-    box(from - 4 * t, footOf(i) - 0.9 * size, width + 8 * t, 1.18 * size, 0, faded(theme.background, 0.85));
-  return () => rows.forEach(([line, from], i) => text(line, [from, footOf(i)], ...style));
+  return () => rows.forEach(({ line, from, foot, em }) => text(line, [from, foot], em, ...style));
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
