@@ -9,7 +9,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <set>
+#include <iomanip>
+#include <iterator>
+#include <optional>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -21,7 +23,8 @@ namespace fs = std::filesystem;
 
 using Type = fs::file_type;
 
-/// Contains the process and, once all files are on the disk, a line "publish INODE …" with the new folders.
+/// Contains the process, a line 'part "NAME"' for each name that the run uses in the hidden folder, and, once all files
+/// are on the disk, a line "publish INODE …" with the new folders.
 constexpr const char* lock_name = ".lock";
 /// A replaced folder, if the file system cannot exchange two names.
 constexpr const char* backup_name = ".old";
@@ -60,6 +63,24 @@ void append(const Stream& file, const std::string& text, const fs::path& path) {
     if (written != static_cast<ssize_t>(text.size())) throw cannot(path, "written", written < 0 ? errno : ENOSPC);
 }
 
+/// "000000.png" of a film, "1-0-1.png" of a map of tiles.
+bool is_numbered(const std::string& name) {
+    return name.ends_with(".png") && name.find_first_not_of("0123456789-") == name.size() - 4;
+}
+
+/// Removes a file; or of a folder its numbered pictures, and the folder itself if nothing else is in it.
+void remove_made(const fs::path& path) {
+    const auto remove = [](const fs::path& made) {
+        std::error_code error;
+        if (!fs::remove(made, error) && error && error != std::errc::directory_not_empty)
+            throw cannot(made, "removed", error.value());
+    };
+    if (type_of(path) == Type::directory)
+        for (const auto& file : names_in(path))
+            if (is_numbered(file)) remove(path / file);
+    remove(path);
+}
+
 /// Flushes it to the disk. Ignores errors of file systems that do not support this.
 void sync(int file, const fs::path& path) {
     if (fsync(file) != 0 && errno != EINVAL && errno != ENOSYS && errno != EROFS) throw cannot(path, "written");
@@ -82,22 +103,23 @@ Transaction::Transaction(const fs::path& folder, const std::string& run, std::st
     if (replacing_.reads_manifests) written_ = written_files(folder_);
     recover();
     begin();
+    for (const auto& name : names_in(hidden_))
+        if (name != lock_name) throw not_ours(hidden(name));
 }
 
 Transaction::Transaction(const fs::path& folder, std::string kind, Replacing replacing)
     : folder_(without_detours(folder)), kind_(std::move(kind)), replacing_(std::move(replacing)) {}
 
 Transaction::~Transaction() {
-    std::error_code ignored;
-    for (const Part& part : parts_)
-        if (!part.finished) fs::remove_all(hidden(part.name), ignored);
-    if (lock_ && !keeps_hidden_) {
-        try {
+    try {
+        for (const Part& part : parts_)
+            if (!part.finished) remove_made(hidden(part.name));
+        if (lock_ && !keeps_hidden_) {
             clear();
-        } catch (const Error&) {
-            // files that cannot be removed stay
+            unlink(hidden(lock_name).c_str());  // while this process still has the lock: no other run uses the file
         }
-        unlink(hidden(lock_name).c_str());  // while this process still has the lock, so that no other run uses the file
+    } catch (const Error&) {
+        // files that cannot be removed stay, and their names in the lock file
     }
     rmdir(hidden_.c_str());  // removed if it is empty, as are the folders
     for (auto made = made_.rbegin(); made != made_.rend(); ++made) rmdir(made->c_str());
@@ -149,21 +171,26 @@ bool Transaction::lock() {
         folder_.string(), process, std::generic_category().message(error), hidden_.string());
 }
 
-/// Publishes the files that an interrupted run had committed.
+/// Reads what an earlier run left in the hidden folder, and publishes the files that it had committed.
 void Transaction::recover() {
-    std::string text(4096, '\0'), process, word;
+    std::string text(std::size_t{1} << 16, '\0');
     const auto got = pread(fileno(lock_.get()), text.data(), text.size(), 0);
     if (got < 0) throw cannot(hidden(lock_name), "read");
     text.resize(static_cast<std::size_t>(got));
     std::istringstream notes(text);
-    if (!std::getline(notes, process) || !(notes >> word) || !text.ends_with('\n')) return;
+    std::optional<std::set<ino_t>> fresh;
+    for (std::string word; notes >> word;) {
+        if (word == "part" && notes >> std::quoted(word)) used_.insert(word);
+        if (word != "publish" || !std::getline(notes, word) || notes.eof()) continue;  // its line may be incomplete
+        std::istringstream inodes(word);
+        fresh.emplace(std::istream_iterator<ino_t>(inodes), std::istream_iterator<ino_t>());
+    }
+    if (!fresh) return;
     keeps_hidden_ = true;  // in case this fails
-    std::set<ino_t> fresh;
-    for (ino_t inode = 0; notes >> inode;) fresh.insert(inode);
     auto names = names_in(hidden_);
     std::erase_if(names, [&](const std::string& name) {
-        const bool is_older = fs::is_directory(hidden(name)) && !fresh.contains(inode_of(hidden(name)));
-        return name == lock_name || name == backup_name || is_older;
+        const bool is_older = fs::is_directory(hidden(name)) && !fresh->contains(inode_of(hidden(name)));
+        return !used_.contains(name) || name == backup_name || is_older;
     });
     std::stable_partition(names.begin(), names.end(), [](const auto& name) { return !name.ends_with(".json"); });
     for (const auto& name : names) require(fs::is_directory(hidden(name)) ? name + "/" : name);
@@ -172,18 +199,26 @@ void Transaction::recover() {
     written_ = written_files(folder_);
 }
 
-/// Empties the hidden folder.
-void Transaction::clear() const {
-    std::error_code error;
-    for (const auto& name : names_in(hidden_))
-        if (name != lock_name && fs::remove_all(hidden(name), error) == static_cast<std::uintmax_t>(-1))
-            throw cannot(hidden(name), "removed", error.value());
+/// The path of a name in the hidden folder, recorded as the run's own.
+fs::path Transaction::used(const std::string& name) {
+    if (!used_.insert(name).second) return hidden(name);
+    std::ostringstream note;
+    note << "part " << std::quoted(name) << '\n';
+    append(lock_, note.str(), hidden(lock_name));
+    return hidden(name);
 }
 
-/// Empties the hidden folder and marks it as this process's.
+/// Removes what runs made in the hidden folder.
+void Transaction::clear() const {
+    for (const auto& name : names_in(hidden_))
+        if (used_.contains(name)) remove_made(hidden(name));
+}
+
+/// Clears the hidden folder and marks it as this process's.
 void Transaction::begin() {
     clear();
     if (ftruncate(fileno(lock_.get()), 0) != 0) throw cannot(hidden(lock_name), "written");
+    used_.clear();
     keeps_hidden_ = false;
     append(lock_, fmt::format("{}\n", getpid()), hidden(lock_name));
 }
@@ -195,8 +230,7 @@ void Transaction::require(const std::string& name) const {
     if (type_of(path) == Type::not_found) return;
     if (!is_folder) return refuse_foreign_file(name);
     for (const auto& file : names_in(path)) {
-        const bool is_numbered = file.ends_with(".png") && file.find_first_not_of("0123456789") == file.size() - 4;
-        if (type_of(path / file) != Type::regular || (!is_numbered && !written_.contains(name + file)))
+        if (type_of(path / file) != Type::regular || (!is_numbered(file) && !written_.contains(name + file)))
             throw not_ours(path / file);
         refuse_foreign_file(name + file);
     }
@@ -227,12 +261,12 @@ void Transaction::refuse_foreign_file(const std::string& name) const {
 
 fs::path Transaction::file(const std::string& name) {
     require(name);
-    return hidden(parts_.emplace_back(Part{name}).name);
+    return used(parts_.emplace_back(Part{name}).name);
 }
 
 fs::path Transaction::directory(const std::string& name) {
     require(name + "/");
-    const auto path = hidden(parts_.emplace_back(Part{name}).name);
+    const auto path = used(parts_.emplace_back(Part{name}).name);
     if (mkdir(path.c_str(), 0777) != 0) throw cannot(path, "made");
     return path;
 }
@@ -266,8 +300,8 @@ std::vector<fs::path> Transaction::keeping_finished(const std::function<std::vec
 void Transaction::keep_only(const std::string& name, const std::string& new_name) {
     require(new_name);
     for (const Part& part : parts_)
-        if (part.name != name) fs::remove_all(hidden(part.name));
-    rename_file(hidden(name), hidden(new_name));
+        if (part.name != name) remove_made(hidden(part.name));
+    rename_file(hidden(name), used(new_name));
     parts_ = {{new_name, true}};
 }
 
@@ -332,12 +366,12 @@ std::vector<fs::path> Transaction::publish() {
 }
 
 /// Moves the file to its place; an older folder moves into the hidden folder in exchange.
-void Transaction::move_in(const std::string& name) const {
+void Transaction::move_in(const std::string& name) {
     const auto from = hidden(name), to = folder_ / name;
     if (type_of(to) == Type::directory) {
         if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
         if (errno != EINVAL && errno != ENOSYS && errno != EOPNOTSUPP) throw cannot(from, "renamed to " + to.string());
-        rename_file(to, hidden(backup_name));
+        rename_file(to, used(backup_name));
     }
     rename_file(from, to);
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,8 @@ struct Replacing {
 /// The files of one run in one folder, which appear complete and together, or not at all. They are written to a hidden
 /// folder in it, .doppel-RUN, locked by the file .lock. publish() moves them to their places. If the process is killed
 /// before that, the next run of that name removes them; if it is killed during that, the next run moves in the
-/// remaining ones. The destructor removes the files that are not published, and the folders it made if they are empty.
+/// remaining ones. A run refuses to start while anything else is in its hidden folder. The destructor removes the files
+/// that are not published, and the folders it made if they are empty.
 /// Only unchanged files that Doppel made (see origin_of()) are replaced or removed. No symbolic link to or in the
 /// folder is followed.
 class Transaction {
@@ -82,7 +84,8 @@ private:
     void clear() const;
     void begin();
     void refuse_foreign_file(const std::string& name) const;
-    void move_in(const std::string& name) const;
+    void move_in(const std::string& name);
+    std::filesystem::path used(const std::string& name);
 
     std::filesystem::path folder_, hidden_;
     std::string kind_;
@@ -93,6 +96,7 @@ private:
     WrittenFiles written_;
     std::vector<Part> parts_;
     std::vector<std::string> removed_;
+    std::set<std::string> used_;  // names of this run's and, at first, an earlier run's files in the hidden folder
 };
 
 }  // namespace doppel

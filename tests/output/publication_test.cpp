@@ -280,8 +280,8 @@ TEST_F(Transactions, ALiveRunIsNotDisturbedWithoutLocks) {
     const pid_t child = forked(fork());
     if (child == 0) {
         Transaction killed(folder, "run", "", {.force = true});
-        write_bytes(killed.file("y.csv"), "");
-        fs::rename(folder / "x.csv", file);
+        fs::remove(folder / "x.csv");
+        write_bytes(killed.file("x.csv"), "half a tab");
         raise(SIGKILL);
     }
     waitpid(child, nullptr, 0);

@@ -371,6 +371,30 @@ TEST_F(Transactions, RemovesFilesOfAKilledRun) {
     EXPECT_EQ(listing(folder), Names{"x.mp4.part"});
 }
 
+TEST_F(Transactions, KeepsWhatAUserPutsIntoTheHiddenFolder) {
+    for (const std::string mine : {"thesis", "frames/notes.txt"})
+        for (const bool is_killed : {true, false}) {
+            const auto path = folder / hidden / mine;
+            EXPECT_TRUE(killed_before(0, [&] {
+                {
+                    Transaction files(folder);
+                    write_part(files, "x.mp4", "video");
+                    write_picture(files, "0.png");
+                    write_bytes(path, "mine");
+                    if (is_killed) raise(SIGKILL);
+                }
+                raise(SIGKILL);
+            }));
+            const auto place = (folder / hidden / fs::path(mine).begin()->string()).string();
+            expect_io_failed({place + " was not written by Doppel; move it"}, [&] { Transaction files(folder); });
+            EXPECT_EQ(bytes_of(path), "mine") << is_killed;
+            Names left{hidden, hidden + "/" + mine};
+            if (mine != "thesis") left.insert(hidden + "/frames");
+            EXPECT_EQ(listing(folder), left) << is_killed;
+            fs::remove_all(folder / hidden);
+        }
+}
+
 TEST_F(Transactions, ItsLockFileCannotNameAnotherFolder) {
     write_bytes(folder / "x.csv", "mine");
     fs::create_directories(folder / "a" / hidden);
