@@ -40,29 +40,19 @@ private:
     std::vector<std::string> further_;
 };
 
-/// Wrong usage or input (exit 2).
-template <class... Args>
-Error bad_input(fmt::format_string<Args...> format, Args&&... args) {
-    return {ExitCode::bad_input, fmt::format(format, std::forward<Args>(args)...)};
-}
-
-/// The method failed: divergence, NaN (exit 3).
-template <class... Args>
-Error method_failed(fmt::format_string<Args...> format, Args&&... args) {
-    return {ExitCode::method_failed, fmt::format(format, std::forward<Args>(args)...)};
-}
-
-/// Reading, drawing, encoding or writing failed (exit 4).
-template <class... Args>
-Error io_failed(fmt::format_string<Args...> format, Args&&... args) {
-    return {ExitCode::io_failed, fmt::format(format, std::forward<Args>(args)...)};
-}
-
-/// As above, but trying again may succeed: no space, another run is writing, a shard is missing (exit 75).
-template <class... Args>
-Error try_again(fmt::format_string<Args...> format, Args&&... args) {
-    return {ExitCode::try_again, fmt::format(format, std::forward<Args>(args)...)};
-}
+/// Makes the errors with this exit code: ERROR("{} is missing", name).
+template <ExitCode code>
+inline constexpr auto error_maker = []<class... Args>(fmt::format_string<Args...> format, Args&&... args) {
+    return Error(code, fmt::format(format, std::forward<Args>(args)...));
+};
+/// Wrong usage or input.
+inline constexpr auto bad_input = error_maker<ExitCode::bad_input>;
+/// The method failed: divergence, NaN.
+inline constexpr auto method_failed = error_maker<ExitCode::method_failed>;
+/// Reading, drawing, encoding or writing failed.
+inline constexpr auto io_failed = error_maker<ExitCode::io_failed>;
+/// As above, but trying again may succeed: no space, another run is writing, a shard is missing.
+inline constexpr auto try_again = error_maker<ExitCode::try_again>;
 
 /// The exit code for a failed read or write with this errno.
 inline ExitCode code_of_errno(int reason) {
