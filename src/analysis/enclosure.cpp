@@ -128,8 +128,7 @@ public:
     std::vector<EnclosedState<Scalar>> samples(const Watch& watch) {
         std::vector<EnclosedState<Scalar>> all{set_.state()};
         while (static_cast<long>(all.size()) <= spec_.samples) {
-            watch(static_cast<long>(all.size()));
-            if (!find_step()) break;
+            if (!find_step([&] { watch(static_cast<long>(all.size())); })) break;
             for (long n = parts_ - done_ % parts_; n <= length_; n += parts_) {
                 const auto sample = image(n);
                 if (!(sample.hull() <= spec_.largest_radius).all()) return all;
@@ -154,7 +153,7 @@ private:
         return true;
     }
     /// Finds the length of the step, and proves that the motion exists that long.
-    bool find_step() {
+    bool find_step(const std::function<void()>& watch) {
         const auto now = set_.state();
         State<TangentBall, 4> around;
         for (int i = 0; i < 4; ++i) around[i] = TangentBall::variable(DoubleBall(now[i]), i);
@@ -162,6 +161,7 @@ private:
         begin(tangent_, in_double_, around);
         length_ = std::min(next_length_, spec_.samples * parts_ - done_);
         while (length_ > 0) {
+            watch();
             const auto h = number(length_) * part_;
             middle_.expand(B(h));
             const double longest = static_cast<double>(length_) * longer();

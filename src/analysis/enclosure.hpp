@@ -40,7 +40,7 @@ struct EnclosureSpec {
 template <class Scalar>
 using EnclosedState = State<Ball<Scalar>, 4>;
 
-/// Called after each step with the number of samples done; may throw.
+/// Called often, several times in a long step, with the number of samples done; may throw.
 using Watch = std::function<void(long samples)>;
 
 /// Sets that contain the true states at samples 0, 1 … for all systems and starts in the balls; fewer than required

@@ -275,6 +275,12 @@ TEST(Enclosure, EndsWhereTheProofEnds) {
         for (const auto& x : state) EXPECT_LE(x.radius, 1e-8);
     // a set too wide for any step
     EXPECT_LT(enclosed<double>(right_angles, 120, 0.4).size(), 60u);
+    // so fast that no step is short enough; it can be stopped while it tries
+    auto fast = right_angles;
+    fast.chain.rate[0] = Ball<Wide>(Wide(1e10));
+    int calls = 0;
+    EXPECT_EQ(enclosures<Wide>(fast, {.samples = 9}, [&](long) { ++calls; }).size(), 1u);
+    EXPECT_GT(calls, 3);
 }
 
 TEST(Enclosure, SamplesFarApartAndCloseTogetherAreTheSameMotion) {
