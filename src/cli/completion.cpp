@@ -107,6 +107,26 @@ void add_entries(const std::vector<std::string>& words, const std::string& word,
         });
 }
 
+/// The values of a key; in a list of names, 'video.panels=["energy","', those of its last one.
+void add_key_values(const std::string& key, const std::vector<std::string>& values, const std::string& word,
+                    Candidates& all) {
+    for (const auto& value : values) all.push_back({key + value});
+    if (word.substr(key.size(), 1) != "[") return;
+    auto names = CLI::detail::split(word.substr(key.size() + 1), ',');
+    for (const auto& value : values) {
+        names.back() = value;
+        for (const char* end : {"]", ","})
+            if (!value.starts_with('['))
+                all.push_back({fmt::format("{}[\"{}\"{}", key, fmt::join(names, "\",\""), end)});
+    }
+}
+
+/// Whether the text begins with the word, which has lost its quotes.
+bool begins_with(std::string text, const std::string& word) {
+    std::erase(text, '"');
+    return text.starts_with(word);
+}
+
 /// "table.key=", or the values of the key if it is complete. The list is made by tests/figure/starting_presets.cpp.
 void add_settings(const std::string& command, const std::vector<std::string>& words, const std::string& word,
                   Candidates& all) {
@@ -122,7 +142,7 @@ void add_settings(const std::string& command, const std::vector<std::string>& wo
         if (std::ranges::find(kinds, cells[0]) == kinds.end()) continue;
         const bool is_complete = word.starts_with(key);
         if (!is_complete) all.push_back({key, cells[2]});
-        for (std::size_t i = 3; i < cells.size() && is_complete; ++i) all.push_back({key + cells[i]});
+        if (is_complete) add_key_values(key, {cells.begin() + 3, cells.end()}, word, all);
         is_axis |= is_complete && key.ends_with(".key=");
         if (key.starts_with("system.") || key.starts_with("a.") || key.starts_with("b."))
             of_sides.push_back({word_key + cells[1], cells[2]});
@@ -248,7 +268,7 @@ std::string completions(CLI::App& app, const std::vector<std::string>& words) {
     if (words.empty()) return "";
     std::vector<std::string> lines;
     for (const auto& [text, help] : candidates(app, words))
-        if (text.starts_with(words.back()))
+        if (begins_with(text, words.back()))
             lines.push_back(fmt::format("{}\t{}\n", text, help.substr(0, help.find('\n'))));
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());

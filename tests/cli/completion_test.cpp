@@ -91,6 +91,10 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "render calm --set video.transparent="), (Lines{"false", "true"}));
     EXPECT_EQ(completed(folder, "render calm --set video.colors.backg"), Lines{"video.colors.background="});
     EXPECT_EQ(completed(folder, "render calm --set scene.duration_s="), Lines{"30"});
+    EXPECT_EQ(completed(folder, "render calm --set 'video.panels=[\"pend"),
+              (Lines{R"(video.panels=["pendulums",)", R"(video.panels=["pendulums"])"}));
+    EXPECT_EQ(completed(folder, "render calm --set 'video.panels=[\"energy\",\"di"),
+              (Lines{R"(video.panels=["energy","distance",)", R"(video.panels=["energy","distance"])"}));
     EXPECT_EQ(completed(folder, "render calm --set nonesuch"), Lines{""});
     EXPECT_EQ(completed(folder, "simulate calm --columns time_s,a_th"),
               (Lines{"time_s,a_theta1_rad", "time_s,a_theta2_rad"}));
