@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/error.hpp"
 #include "image/color.hpp"
 #include "image/picture.hpp"
 #include "integrate/motion.hpp"
@@ -19,6 +20,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -436,6 +438,8 @@ inline constexpr std::array<Release::List, 3> Release::lists{
      {"mass_kg", &Release::mass_kg, &SideSpec::mass_kg, "m", " kg"},
      {"length_m", &Release::length_m, &SideSpec::length_m, "l", " m"}}};
 
+struct TomlDocument;
+
 /// A scene described by a preset file: read, completed and checked, not yet computed.
 struct Preset {
     std::string name;                     // of the file, without folder and extension
@@ -448,6 +452,16 @@ struct Preset {
     bool certify = false;         // proves how long the run follows the true motion (scene/certificate.hpp)
     SideSpec a, b;
     VideoSpec video;
+    std::shared_ptr<const TomlDocument> document = {};  // of a film: for the places of errors
+};
+
+/// An error in a key of a side, or in an entry of this table, numbered from 0.
+struct PlacedError : Error {
+    PlacedError(const Error& error, std::string in_key, std::optional<std::size_t> in_entry = {})
+        : Error(error), key(std::move(in_key)), entry(in_entry) {}
+
+    std::string key;
+    std::optional<std::size_t> entry;
 };
 
 /// Whether the sides are of different types: chains of different length, or a chain and a mechanism. Then only their
@@ -516,8 +530,9 @@ std::string read_kind(TomlReader& scene, const PresetText& source, bool is_film)
 void read_release(TomlReader& table, SideSpec& side, bool is_physical);
 
 /// Reads [system], then [a] and [b] on top, each level by level: later levels override earlier ones. Sides of a film
-/// have texts of their own.
-void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film = false);
+/// have texts of their own. `sweeps_amplitude`: a figure's axis gives that of pivots.
+void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film = false,
+                bool sweeps_amplitude = false);
 
 /// Checks that samples are at steps, that the end is at a sample, and that no sum of times overflows 64 bits.
 void check_clock(const Preset& preset, const TomlReader& scene);

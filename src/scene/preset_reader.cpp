@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <tuple>
 
 namespace doppel {
@@ -217,9 +218,10 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
 }
 
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
-    const auto document = parse_document(source, overrides);
-    KeyErrors errors(overrides);
     Preset preset;
+    preset.document = std::make_shared<const TomlDocument>(parse_document(source, overrides));
+    const auto& document = *preset.document;
+    KeyErrors errors(overrides);
     preset.name = preset.title = source.name;
     auto first = document.top(&errors);
     const bool knows_font = read_font(first, source.path, preset.video);

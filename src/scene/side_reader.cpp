@@ -12,6 +12,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace doppel {
 namespace {
@@ -106,9 +108,12 @@ void read_physical_chain(TomlReader& table, SideSpec& side) {
     chain_fields(table, side, has_rods ? not_negative : positive);
     if (table.has("center_m")) side.physical.center_m.resize(side.links());
     physical_fields(table, side.physical);
-    read_entries(table, "torque", side.physical.torques, [&](TomlReader& entry, TorqueSpec& torque, bool) {
+    read_entries(table, "torque", side.physical.torques, [&](TomlReader& entry, TorqueSpec& torque, bool is_new) {
         part_fields(entry, torque);
         entry.check_together([&] {
+            for (const auto* key : {"frequency_hz", "phase_deg", "joint"})
+                if (is_new && !entry.has("amplitude_N_m") && entry.has(key))
+                    throw entry.error(key, "has no effect without amplitude_N_m");
             if (static_cast<std::size_t>(torque.joint) > side.links())
                 throw entry.error("joint", "must be 1 to {}, the number of links; it is {}", side.links(),
                                   torque.joint);
@@ -251,16 +256,18 @@ void check_ends(const SideSpec& side, TomlReader& table) {
         }
 }
 
-/// Refuses keys of a pivot that has no effect without an amplitude.
-void check_pivots(TomlReader& system, TomlReader& a, TomlReader& b) {
-    constexpr std::string_view amplitude = "amplitude_m";
-    auto of_both = system.inner("pivot"), of_a = a.inner("pivot"), of_b = b.inner("pivot");
-    const bool moves = of_both.has(amplitude), moves_a = moves || of_a.has(amplitude),
-               moves_b = moves || of_b.has(amplitude);
-    for (const auto& [pivot, has_effect] :
-         {std::pair(&of_both, moves_a || moves_b), {&of_a, moves_a}, {&of_b, moves_b}})
+/// A table [system.pivot], [a.pivot] or [b.pivot], with the sides it is about.
+using PivotTable = std::pair<TomlReader, std::string_view>;
+
+/// Refuses keys of pivots that have no effect, because no table gives their amplitude.
+void check_pivots(std::vector<PivotTable>& pivots) {
+    std::string moving;
+    for (auto& [pivot, sides] : pivots)
+        if (pivot.has("amplitude_m")) moving += sides;
+    for (auto& [pivot, sides] : pivots)
         for (const auto* key : {"direction_deg", "frequency_hz", "phase_deg"})
-            if (!has_effect && pivot->has(key)) throw pivot->error(key, "{}", PivotSpec::no_effect);
+            if (moving.find_first_of(sides) == std::string::npos && pivot.has(key))
+                throw pivot.error(key, "{}", PivotSpec::no_effect);
 }
 
 /// Refuses particles of one side that would replace the chain of [system] without a word.
@@ -291,7 +298,36 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text) {
     table.check_together([&] { check_choices(table, side); });
 }
 
+/// The entries of [system] and, on top, of a side, as read_entries() joins them.
+std::vector<TomlReader> joined_entries(TomlReader& system, TomlReader& side, const std::string& key) {
+    std::vector<TomlReader> all;
+    std::map<std::string, std::size_t> indices;  // of named entries
+    for (auto* table : {&system, &side})
+        for (auto& entry : table->entries(key)) {
+            std::string name;
+            entry({.key = "name"}, name);
+            const auto [at, is_new] = indices.emplace(name, all.size());
+            if (is_new || name.empty())
+                all.push_back(entry);
+            else
+                all[at->second] = entry;
+        }
+    return all;
+}
+
 }  // namespace
+
+std::string place_of(const Preset& preset, char letter, const Error& error) {
+    const auto* placed = dynamic_cast<const PlacedError*>(&error);
+    if (!placed || !preset.document) return preset.name;
+    auto top = preset.document->top();
+    auto system = top.inner("system"), side = top.inner(std::string_view(&letter, 1));
+    if (placed->entry) {
+        auto entry = joined_entries(system, side, placed->key).at(*placed->entry);
+        return entry.place_of(entry.has("kind") ? "kind" : "name").first;
+    }
+    return (side.has(placed->key) ? side : system).place_of(placed->key).first;
+}
 
 std::vector<std::string_view> models_of(const MethodEntry& method) {
     std::vector<std::string_view> models;
@@ -340,9 +376,13 @@ void read_release(TomlReader& table, SideSpec& side, bool is_physical) {
     if (is_physical) table.check_together([&] { check_masses(table, side); });
 }
 
-void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
+void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film, bool sweeps_amplitude) {
     std::vector<TomlReader> systems;
-    for (auto* level : levels) read_side(systems.emplace_back(level->inner("system")), preset.a, false);
+    std::vector<PivotTable> pivots;
+    for (auto* level : levels) {
+        read_side(systems.emplace_back(level->inner("system")), preset.a, false);
+        pivots.emplace_back(systems.back().inner("pivot"), "ab");
+    }
     preset.b = preset.a;
     for (auto* level : levels) {
         auto a = level->inner("a"), b = level->inner("b");
@@ -354,12 +394,14 @@ void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_
         read_side(b, preset.b, is_film);
         load_track(a, preset.a);
         load_track(b, preset.b);
+        pivots.emplace_back(a.inner("pivot"), "a");
+        pivots.emplace_back(b.inner("pivot"), "b");
         b.check_together([&] {
             for (auto& system : systems)
                 for (const auto* side : {&preset.a, &preset.b}) check_ends(*side, system);
             check_ends(preset.a, a);
             check_ends(preset.b, b);
-            if (is_film) check_pivots(systems.front(), a, b);
+            if (level == levels.back() && !sweeps_amplitude) check_pivots(pivots);
             if (!is_film && preset.a.links() != preset.b.links())
                 throw b.error("links",
                               "must be that of the other side, so that the two can be compared; they are {} and {}",

@@ -85,6 +85,8 @@ inline const std::vector<RefusedPreset> refused_presets{
     {"[system.pivot]\nfrequency_hz = 2", "2:1: [system.pivot] frequency_hz has no effect without amplitude_m"},
     {"[a.pivot]\namplitude_m = 1\n[b.pivot]\nphase_deg = 90",
      "4:1: [b.pivot] phase_deg has no effect without amplitude_m"},
+    {"[[system.torque]]\nfrequency_hz = 2",
+     "2:1: [[system.torque]] 1 frequency_hz has no effect without amplitude_N_m"},
     {"[[system.torque]]\nphase_deg = 1e7",
      "2:1: [[system.torque]] 1 phase_deg must be from -1000000 to 1000000: beyond, rounding hides the motion; it is "
      "10000000"},
