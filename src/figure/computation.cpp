@@ -306,11 +306,13 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     for (; trial != trials.end() && units(*trial) == 0; ++trial) computation.compute(*trial, stop);
     const double needed_s = computation.cpu_s();
     const auto parallel = static_cast<double>(trials.end() - trial);
+    double numbers = 0;
+    const auto all_s = trial == trials.end() ? std::nullopt : extrapolated_s(*figure.experiment, numbers, stop);
     const TimeLimit limit(allowed_s, stop);
     Needs estimate;
     double from = 0, cut_s = 0;
     try {
-        for (; trial != trials.end() && !limit.reached(); ++trial) {
+        for (; !all_s && trial != trials.end() && !limit.reached(); ++trial) {
             from = cpu_now();
             computation.compute(*trial, limit.reached());
         }
@@ -322,9 +324,7 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     estimate.at_least = cut_s > seconds;  // a trial that takes longer than all others before counts as done
     if (estimate.at_least) seconds += cut_s, done += units(*trial);
     estimate.cpu_s = needed_s + (done > 0 ? seconds * computation.total_units() / done : 0);
-    double numbers = 0;
-    if (const auto all_s = trial == trials.end() ? std::nullopt : extrapolated_s(*figure.experiment, numbers, stop))
-        estimate.cpu_s = *all_s, estimate.at_least = false;
+    if (all_s) estimate.cpu_s = *all_s;
     estimate.seconds = estimate.cpu_s / std::min(static_cast<double>(threads), parallel);
     double trials_done = 0, numbers_done = 0, needed_numbers = 0;
     const auto known = computation.take_all();
@@ -348,11 +348,12 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     estimate.memory_bytes = peak_memory() + sizeof(TrialNumbers) * rows +
                             sizeof(double) * (numbers * figure.experiment->merged_trials() + needed_numbers) +
                             drawn_bytes * pixels;
-    // of the table: a cell of a map, a number of others; measured, as in picture_bytes()
+    // of the table: a cell in rows of several numbers, a number of others; measured, as in picture_bytes()
     constexpr double cell_bytes = 11.5, text_bytes = 22;
-    const double table_bytes =
-        map ? cell_bytes * static_cast<double>(figure.experiment->columns().size()) * cells : text_bytes * numbers;
-    estimate.disk_bytes = table_bytes + picture_bytes(figure.chart.format, pixels, map ? 0 : numbers);
+    const double in_row = figure.experiment->numbers_in_row(), points = numbers / in_row;
+    const double row_bytes = cell_bytes * static_cast<double>(figure.experiment->columns().size());
+    const double table_bytes = map ? row_bytes * cells : in_row > 1 ? row_bytes * points : text_bytes * numbers;
+    estimate.disk_bytes = table_bytes + picture_bytes(figure.chart.format, pixels, map ? 0 : points);
     if (numbers == 0) estimate.disk_bytes = std::numeric_limits<double>::quiet_NaN();  // no trial was completed
     estimate.most_shards = static_cast<long>(std::min<std::size_t>(trials.size(), max_parts));
     return estimate;

@@ -105,6 +105,8 @@ public:
     virtual bool measures_time() const { return false; }
     /// How many trials the table merges into one.
     virtual double merged_trials() const { return 1; }
+    /// How many numbers are a point of its curves and a row of its table.
+    virtual double numbers_in_row() const { return 1; }
     /// The unit of progress, "pairs", and how many of them a trial counts; 0 for trials that others require first.
     const std::string& unit() const { return unit_; }
     virtual double units(std::size_t /*trial*/) const { return 1; }

@@ -306,6 +306,7 @@ public:
     std::size_t trials() const override { return problems.size() + studies_.size() * rounds(); }
     bool measures_time() const override { return cost == Cost::time; }
     double merged_trials() const override { return static_cast<double>(rounds()); }
+    double numbers_in_row() const override { return numbers_in<StepResult>; }
     double units(std::size_t trial) const override { return trial < problems.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {

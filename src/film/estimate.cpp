@@ -118,7 +118,8 @@ double bytes_of(const std::filesystem::path& film) {
 FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>& stop) {
     const TemporaryFolder folder;
     double wall_s = 0, cpu_s = 0;
-    const RunOptions options{.out = folder.path(), .first = std::max(scene.frames.count - count, 0L)};
+    const RunOptions options{
+        .out = folder.path(), .first = std::max(scene.frames.count - count, 0L), .checks_accuracy = false};
     const auto result = run(scene, options, stop, [&](const Progress& progress) {
         if (progress.done == 1) wall_s = seconds_of(CLOCK_MONOTONIC), cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     });
@@ -196,6 +197,8 @@ Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation,
     const bool is_page = video.format == FilmFormat::html;
     const double begin_s = is_page ? 2 : 0.6, patience_s = 1;  // a page draws nothing in the meantime
     const auto samples = static_cast<double>(scene.samples);
+    // add_warnings() compares each side with two finer runs; measured on the presets
+    constexpr double compared = 3;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
     const double sample_s = motions_s / samples;
@@ -216,6 +219,10 @@ Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation,
         if (video.format_row().has_parts()) estimate.most_shards = max_shards(scene);
         estimate.seconds += cost.run_s + std::max(cost.wall_s * frames, cost.cpu_s * frames / cores());
         estimate.cpu_s += cost.run_s + cost.cpu_s * frames;
+        const double checks_s =
+            std::min(compared * motions_s, std::clamp(estimate.seconds, min_patience_s, max_patience_s));
+        estimate.seconds += checks_s;
+        estimate.cpu_s += checks_s;
         estimate.film_bytes = cost.bytes * frames + cost.key_bytes * segments;
         estimate.disk_bytes = cost.table_bytes * (samples + 1) + estimate.film_bytes;
     }

@@ -34,6 +34,7 @@ struct RunRecord : RunResult {
 
 /// Adds warnings about sides whose energy changed by more than 1 % of the potential range although it is conserved.
 /// They also state when the error reaches half a radian, if that can be found in about the time of the run.
+inline constexpr double min_patience_s = 1, max_patience_s = 2;  // or as long as the run took
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop);
 
 Json method_json(const Scene& scene, const Side& side);

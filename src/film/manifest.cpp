@@ -78,7 +78,7 @@ Json method_json(const Scene& scene, const Side& side) {
 }
 
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop) {
-    constexpr double maximum = 0.01, min_patience_s = 1, max_patience_s = 2;
+    constexpr double maximum = 0.01;
     for (const char name : scene.letters()) {
         const auto& side = scene.side(name);
         const double error = (name == 'a' ? record.motion.a : record.motion.b).energy_change / side.energy_unit;

@@ -223,7 +223,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
             table->finish();
             parts.finished(csv_name);
             record.simulate_cpu_s = recording.cpu_s();
-            add_warnings(scene, record, stop);
+            if (options.checks_accuracy) add_warnings(scene, record, stop);
             record.cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
             record.encode_cpu_s = std::max(
                 0.0, record.cpu_s - scene.made_cpu_s - record.simulate_cpu_s - record.draw_cpu_s - record.write_cpu_s);

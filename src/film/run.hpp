@@ -29,6 +29,7 @@ struct RunOptions {
     Gl gl = Gl::automatic;                           // which OpenGL draws
     std::vector<std::string> columns = {};           // of the table (film/pair_table.hpp); all if empty
     Replacing replacing = {};
+    bool checks_accuracy = true;           // false: without the warnings of add_warnings()
     std::optional<Shard> shard = {};       // only this part of the film, into a file for a merge
     std::vector<long> only = {};           // only these pictures of the film, counted with its cards, without a table
     bool merge = false;                    // draw nothing: join the parts in OUT/NAME/

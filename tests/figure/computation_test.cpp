@@ -204,6 +204,8 @@ TEST(Computation, EstimatesTheSizeOfAllFormats) {
     }
     // its table has one row for all repetitions of a trial: 685 kB with the picture
     EXPECT_LT(estimated_computation(figure_of("speed-accuracy"), 1, never_stopped).disk_bytes, 1.4e6);
+    const auto pdf = figure_of("speed-accuracy", {"chart.format=\"pdf\""});
+    EXPECT_NEAR(estimated_computation(pdf, 1, never_stopped).disk_bytes / 380e3, 1, 0.4);
 }
 
 }  // namespace doppel::computation_test
