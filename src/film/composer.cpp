@@ -91,15 +91,20 @@ DisplayList Composer::frame() const {
 }
 
 std::string Composer::left_out() const {
-    if (is_low(state_.scene.preset.video)) return {};  // a thumbnail
+    const auto& preset = state_.scene.preset;
+    if (is_low(preset.video)) return {};                  // a thumbnail
+    const auto is_given = [&](const std::string& text) {  // with its "…"
+        return text == preset.title || text == preset.subtitle || text == preset.a.label || text == preset.a.note ||
+               text == preset.b.label || text == preset.b.note;
+    };
     std::vector<std::string> texts;
     for (const auto& layer : layers_) std::ranges::move(layer->left_out(), std::back_inserter(texts));
     for (const auto& list : {backdrop(), frame()})
         for (const auto& item : list)
-            if (const auto* one = std::get_if<Label>(&item); one && one->text.ends_with("…"))
+            if (const auto* one = std::get_if<Label>(&item); one && one->text.ends_with("…") && !is_given(one->text))
                 texts.push_back(fmt::format("the rest of \"{}\"", one->text));
     if (texts.empty()) return {};
-    const auto& size = state_.scene.preset.video.size;
+    const auto& size = preset.video.size;
     return fmt::format("{} × {}: there is no space for {}", size.width, size.height, fmt::join(texts, ", "));
 }
 
