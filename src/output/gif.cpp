@@ -3,6 +3,7 @@
 #include "base/shared_library.hpp"
 #include "output/blocks.hpp"
 #include "output/libav_encoder.hpp"
+#include "output/transaction.hpp"
 #include "output/workers.hpp"
 
 extern "C" {
@@ -115,7 +116,7 @@ public:
         : options_(options),
           encoder_(place, encoding_of(options), stop),
           path_(place.string()),
-          waiting_(path_ + ".frames"),
+          waiting_(path_ + std::string(kept_beside)),
           written_(waiting_, std::string(waiting_frames.start)),
           frame_(make_frame(options.size, AV_PIX_FMT_BGRA)),
           colours_(path_, source("film", options.size) + ",palettegen=stats_mode=full"),

@@ -208,10 +208,16 @@ fs::path Transaction::used(const std::string& name) {
     return hidden(name);
 }
 
+/// Whether a run made this file of the hidden folder.
+bool Transaction::is_used(std::string_view name) const {
+    if (used_.contains(name)) return true;
+    return name.ends_with(kept_beside) && used_.contains(name.substr(0, name.size() - kept_beside.size()));
+}
+
 /// Removes what runs made in the hidden folder.
 void Transaction::clear() const {
     for (const auto& name : names_in(hidden_))
-        if (used_.contains(name)) remove_made(hidden(name));
+        if (is_used(name)) remove_made(hidden(name));
 }
 
 /// Clears the hidden folder and marks it as this process's.

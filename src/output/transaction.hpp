@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Replacing {
     bool is_temporary = false;  // the folder is removed after the run: nothing in it is kept or named
     bool reads_manifests = true;  // false: Doppel's files are known by their contents alone
 };
+
+/// What the writer of FILE keeps beside it until it is complete: FILE.frames.
+inline constexpr std::string_view kept_beside = ".frames";
 
 /// The files of one run in one folder, which appear complete and together, or not at all. They are written to a hidden
 /// folder in it, .doppel-RUN, locked by the file .lock. publish() moves them to their places. If the process is killed
@@ -86,6 +90,7 @@ private:
     void refuse_foreign_file(const std::string& name) const;
     void move_in(const std::string& name);
     std::filesystem::path used(const std::string& name);
+    bool is_used(std::string_view name) const;
 
     std::filesystem::path folder_, hidden_;
     std::string kind_;
@@ -96,7 +101,7 @@ private:
     WrittenFiles written_;
     std::vector<Part> parts_;
     std::vector<std::string> removed_;
-    std::set<std::string> used_;  // names of this run's and, at first, an earlier run's files in the hidden folder
+    std::set<std::string, std::less<>> used_;  // names of this run's and, at first, an earlier run's files in the hidden folder
 };
 
 }  // namespace doppel

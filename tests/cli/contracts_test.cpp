@@ -119,7 +119,7 @@ TEST_F(Contracts, CheckTellsAClusterWhatARunTakes) {
     EXPECT_GT(map["shards"], 1);
     EXPECT_LE(map["shard_cpu_s"], 1800);
     EXPECT_EQ(map["shard_repeated_share"], 0);
-    EXPECT_EQ(map["tiles"]["count"], 8380);  // 79² of 256 × 256 cells, and those of 7 levels before
+    EXPECT_EQ(map["tiles"]["count"], 8372);  // 32 × 196 of 256 × 256 cells, and those of 8 levels before
     EXPECT_NEAR(map["disk_bytes"].get<double>() / (4e8 * 24), 1, 0.5);  // 24 bytes a cell
 }
 

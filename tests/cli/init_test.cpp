@@ -98,10 +98,12 @@ TEST_F(Init, EachKeyOfAFigureCanBeUncommented) {
         {"grid",
          {"threshold", "exponent_duration_s", "flip_tolerance", "integrator", "link", "periods", "right",
           "stabilise_rate_per_s", "step_s", "tolerance", "transient_periods", "mark_step_s", "x.labels",
-          "x.tolerance_from", "x.tolerance_to", "x.tolerance_points"}},
+          "x.tolerance_from", "x.tolerance_to", "x.tolerance_points", "pivot.direction_deg", "pivot.frequency_hz",
+          "pivot.phase_deg"}},
         {"series",
          {"integrator", "step_s", "tolerance", "check_tolerance", "duration_s", "film_column", "samples",
-          "points_per_decade", "evaluations_per_s", "methods", "projected", "stabilise_rate_per_s"}},
+          "points_per_decade", "evaluations_per_s", "methods", "projected", "stabilise_rate_per_s",
+          "pivot.direction_deg", "pivot.frequency_hz", "pivot.phase_deg"}},
         {"work-precision", {"duration_s"}}};
     for (const auto& kind : figure_kinds()) {
         const std::string name(kind.name);

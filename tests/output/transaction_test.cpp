@@ -395,6 +395,17 @@ TEST_F(Transactions, KeepsWhatAUserPutsIntoTheHiddenFolder) {
         }
 }
 
+TEST_F(Transactions, RemovesWhatTheWriterOfAFileKeptBesideIt) {
+    EXPECT_TRUE(killed_before(0, [&] {
+        Transaction files(folder);
+        write_part(files, "x.gif", "film");
+        write_bytes(folder / hidden / "x.gif.frames", "film");
+        raise(SIGKILL);
+    }));
+    { Transaction files(folder); }
+    EXPECT_EQ(listing(folder), Names{});
+}
+
 TEST_F(Transactions, ItsLockFileCannotNameAnotherFolder) {
     write_bytes(folder / "x.csv", "mine");
     fs::create_directories(folder / "a" / hidden);
