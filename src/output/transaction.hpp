@@ -101,7 +101,8 @@ private:
     WrittenFiles written_;
     std::vector<Part> parts_;
     std::vector<std::string> removed_;
-    std::set<std::string, std::less<>> used_;  // names of this run's and, at first, an earlier run's files in the hidden folder
+    std::set<std::string, std::less<>>
+        used_;  // names of this run's and, at first, an earlier run's files in the hidden folder
 };
 
 }  // namespace doppel
