@@ -32,7 +32,12 @@ constexpr std::size_t slice_threads = 4;
 /// there is a key frame every 5 s. A narrow dead zone keeps the faint ends of fading trails, at the expense of coarser
 /// B-frames. At the same crf the quality equals that of veryfast.
 Metadata x264_options(const VideoOptions& options) {
-    if (options.preset != "doppel") return {{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
+    if (options.preset != "doppel") {
+        Metadata result{{"preset", options.preset}, {"crf", fmt::to_string(options.crf)}};
+        // less than 12 macroblocks in a row: x264's tree of them reads what nothing has written, and its bytes vary
+        if (options.size.width < 192) result.emplace_back("x264-params", "mbtree=0");
+        return result;
+    }
     const int finer = options.pixel_format == PixelFormat::yuv420_10 ? 12 : 0;  // 6 quantizer steps for each bit
     const int quantizer = options.crf == 0 ? 0 : std::min(options.crf + 7, 51) + finer;
     return {
