@@ -12,8 +12,9 @@ namespace doppel {
 /// and the snapshot. So any frame can be drawn alone, and is the same at any frame rate.
 class Composer {
 public:
-    /// `bounds` as for make_layout().
+    /// `bounds` as for make_layout(). The composer reads the scene as long as it lives.
     Composer(const Scene& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film);
+    Composer(const Scene&& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film) = delete;
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 

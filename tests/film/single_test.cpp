@@ -164,9 +164,8 @@ TEST(Single, TrailsAlone) {
         EXPECT_FALSE(items_in<Stroke>(list).empty()) << keys;
         EXPECT_TRUE(items_in<Ring>(composed(scene, 0)->backdrop()).empty()) << keys;
     }
-    const auto none =
-        composed(scene_of_text(one + "panels = [\"pendulums\"]\n[video.widths_px]\ntrail = 0\n"), 60)->frame();
-    EXPECT_TRUE(items_in<Stroke>(none).empty());
+    const auto bare = scene_of_text(one + "panels = [\"pendulums\"]\n[video.widths_px]\ntrail = 0\n");
+    EXPECT_TRUE(items_in<Stroke>(composed(bare, 60)->frame()).empty());
     // a pair without the shadows of the second pendulum
     const auto capsules = [](const std::string& show) {
         const auto scene = scene_of("butterfly", {"b.angle_deg=[60, 90]", "video.show=" + show});

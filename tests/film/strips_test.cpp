@@ -446,8 +446,9 @@ TEST(Strips, ASmallFilmSaysWhatItLeavesOut) {
     EXPECT_EQ(composer->left_out(), "") << "a thumbnail";
     const auto layout = make_layout(tiny);
     for (const auto& strip : layout.strips) EXPECT_GT(strip.area.height(), 6) << "curves can be seen";
-    const auto small = composed(scene_of("horizon", {"video.size=[390, 220]"}), 40 * 120);
-    EXPECT_NE(small->left_out().find("\"numerical predictability limit 31.3 s\""), std::string::npos);
+    const auto small = scene_of("horizon", {"video.size=[390, 220]"});
+    EXPECT_NE(composed(small, 40 * 120)->left_out().find("\"numerical predictability limit 31.3 s\""),
+              std::string::npos);
     for (const char* title : {"a", "to be continued…"}) {
         const auto scene = scene_of("butterfly", {fmt::format("title={}", title)});
         EXPECT_EQ(composed(scene, 16 * 120)->left_out(), "") << title;
