@@ -38,7 +38,7 @@ void for_each_frame(const Scene& scene, long frames, Visit&& visit) {
 
 void compose(benchmark::State& state) {
     const auto scene = butterfly();
-    for_each_frame(scene, 0, [&](Composer& composer) {
+    for_each_frame(scene, 1, [&](Composer& composer) {
         for (auto _ : state) benchmark::DoNotOptimize(composer.frame());
     });
 }

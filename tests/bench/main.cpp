@@ -15,7 +15,7 @@
 //     bench --keep FILE [PART]    measures all benchmarks, or those with PART in their name, and stores the results
 //     bench --compare FILE        measures benchmarks below two seconds; exit code 1 if one is 15 % slower
 //     bench --tables FILE PAGE    rewrites the tables of a page
-//     bench --add FILE NAME CPU_S WALL_S    stores a measurement made elsewhere
+//     bench --add FILE NAME CPU_S WALL_S UNITS    stores a measurement made elsewhere
 
 namespace doppel {
 namespace {
@@ -65,13 +65,13 @@ int run(int argc, char** argv) {
     if (command == "--compare" && words.size() == 2) return compare(words[1]);
     if (command == "--tables" && words.size() == 3)
         return write_page(words[2], with_tables(read_page(words[2]), read_performance(words[1]))), 0;
-    if (command == "--add" && words.size() == 5) {
+    if (command == "--add" && words.size() == 6) {
         auto all = read_performance(words[1]);
         all.benchmarks[words[2]] = {.ns = 1e9 * std::stod(words[3]),
                                     .spread = 0,
                                     .ratio = 0,
                                     .rounds = 1,
-                                    .counters = {{"wall s", std::stod(words[4])}}};
+                                    .counters = {{"wall s", std::stod(words[4])}, {"units", std::stod(words[5])}}};
         return write_performance(words[1], all), 0;
     }
     benchmark::Initialize(&argc, argv);

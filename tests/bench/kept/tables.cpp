@@ -170,13 +170,14 @@ std::string accuracy(const Kept& kept) {
 
 /// The table of the measurements with --build.
 std::string building(const Kept& kept) {
-    std::vector<Cells> rows{{"", "CPU time, s", "time, s"}};
+    std::vector<Cells> rows{{"", "time, s", "CPU time, s", "CPU time, units"}};
     for (const auto& [words, name] : {std::pair("a clean build of the program", "building/program"),
                                       {"then of all tests", "building/tests"},
                                       {"running all tests", "building/suite"}})
         if (kept.all().benchmarks.contains(name))
-            rows.push_back({words, fmt::format("{:.0f}", kept.ns(name) / 1e9),
-                            fmt::format("{:.0f}", kept.counter(name, "wall s"))});
+            rows.push_back({words, fmt::format("{:.0f}", kept.counter(name, "wall s")),
+                            fmt::format("{:.0f}", kept.ns(name) / 1e9),
+                            fmt::format("{:.1f}", kept.counter(name, "units"))});
     return rows.size() > 1 ? table(rows) : "Not measured on this machine yet (`tests/update-performance --build`).\n";
 }
 
