@@ -2,93 +2,76 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <charconv>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 namespace doppel {
+namespace {
+
+__extension__ using Long = __int128;
+
+/// In lowest terms, if these fit.
+std::optional<Rational> fraction(Long numerator, Long denominator) {
+    if (denominator == 0) return std::nullopt;
+    Long divisor = numerator, rest = denominator;
+    while (rest != 0) divisor = std::exchange(rest, divisor % rest);
+    if ((divisor < 0) != (denominator < 0)) divisor = -divisor;
+    numerator /= divisor;
+    denominator /= divisor;
+    constexpr Long largest = std::numeric_limits<std::int64_t>::max();
+    if (numerator > largest || -numerator > largest || denominator > largest) return std::nullopt;
+    return Rational{static_cast<std::int64_t>(numerator), static_cast<std::int64_t>(denominator)};
+}
+
+/// [+-]digits[.digits][e[+-]digits], exactly.
+std::optional<Rational> parse_decimal(std::string_view text) {
+    const bool negative = text.starts_with('-');
+    if (negative || text.starts_with('+')) text.remove_prefix(1);
+    const auto e = text.find_first_of("eE");
+    std::string digits(text.substr(0, e));
+    int exponent = 0;
+    if (e != std::string_view::npos) {
+        text.remove_prefix(e + 1);
+        if (text.starts_with('+')) text.remove_prefix(1);
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
+        if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+        if (exponent < -1000 || exponent > 1000) return std::nullopt;
+    }
+    if (const auto point = digits.find('.'); point != std::string::npos) {
+        digits.erase(point, 1);
+        exponent -= static_cast<int>(digits.size() - point);
+    }
+    if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
+
+    Long numerator = 0, denominator = 1;
+    const auto append = [](Long& number, int digit) {
+        return !__builtin_mul_overflow(number, 10, &number) && !__builtin_add_overflow(number, digit, &number);
+    };
+    for (const char digit : digits)
+        if (!append(numerator, digit - '0')) return std::nullopt;
+    for (; exponent != 0 && numerator != 0; exponent -= exponent > 0 ? 1 : -1)
+        if (!append(exponent > 0 ? numerator : denominator, 0)) return std::nullopt;
+    return fraction(negative ? -numerator : numerator, denominator);
+}
+
+}  // namespace
 
 std::string Rational::text() const {
     return is_whole() ? fmt::format("{}", numerator) : fmt::format("{}/{}", numerator, denominator);
 }
 
 std::optional<Rational> reduced(std::int64_t numerator, std::int64_t denominator) {
-    constexpr auto lowest = std::numeric_limits<std::int64_t>::min();
-    if (denominator == 0 || numerator == lowest || denominator == lowest) return std::nullopt;
-    if (denominator < 0) {
-        numerator = -numerator;
-        denominator = -denominator;
-    }
-    const auto divisor = std::gcd(numerator, denominator);
-    return Rational{numerator / divisor, denominator / divisor};
+    return fraction(numerator, denominator);
 }
 
 std::optional<Rational> product(const Rational& a, const Rational& b) {
-    // reduces crosswise first, so that only products that do not fit are refused
-    const auto left = reduced(a.numerator, b.denominator);
-    const auto right = reduced(b.numerator, a.denominator);
-    if (!left || !right) return std::nullopt;
-    Rational result;
-    if (__builtin_mul_overflow(left->numerator, right->numerator, &result.numerator) ||
-        __builtin_mul_overflow(left->denominator, right->denominator, &result.denominator))
-        return std::nullopt;
-    return result;
+    return fraction(Long(a.numerator) * b.numerator, Long(a.denominator) * b.denominator);
 }
 
 std::optional<Rational> quotient(const Rational& a, const Rational& b) {
-    const auto inverse = reduced(b.denominator, b.numerator);
-    return inverse ? product(a, *inverse) : std::nullopt;
+    return fraction(Long(a.numerator) * b.denominator, Long(a.denominator) * b.numerator);
 }
-
-namespace {
-
-/// [+-]digits[.digits][e[+-]digits], exactly.
-std::optional<Rational> parse_decimal(std::string_view text) {
-    Rational result;
-    std::size_t at = 0;
-    const bool negative = at < text.size() && text[at] == '-';
-    if (at < text.size() && (text[at] == '-' || text[at] == '+')) ++at;
-
-    // all digits as one whole number, and the number of decimals
-    int exponent = 0;
-    bool any = false, point = false;
-    for (; at < text.size() && text[at] != 'e' && text[at] != 'E'; ++at) {
-        const char c = text[at];
-        if (c == '.' && !point) {
-            point = true;
-            continue;
-        }
-        if (!std::isdigit(static_cast<unsigned char>(c))) return std::nullopt;
-        if (__builtin_mul_overflow(result.numerator, 10, &result.numerator) ||
-            __builtin_add_overflow(result.numerator, c - '0', &result.numerator))
-            return std::nullopt;
-        exponent -= point;
-        any = true;
-    }
-    if (!any) return std::nullopt;
-
-    if (at < text.size()) {
-        int written = 0;
-        auto digits = text.substr(at + 1);
-        if (digits.starts_with('+')) digits.remove_prefix(1);
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), written);
-        if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-        if (written < -1000 || written > 1000) return std::nullopt;
-        exponent += written;
-    }
-    if (negative) result.numerator = -result.numerator;
-    for (; exponent > 0 && result.numerator != 0; --exponent)
-        if (__builtin_mul_overflow(result.numerator, 10, &result.numerator)) return std::nullopt;
-    for (; exponent < 0 && result.numerator != 0; ++exponent)
-        if (result.numerator % 10 == 0)
-            result.numerator /= 10;
-        else if (__builtin_mul_overflow(result.denominator, 10, &result.denominator))
-            return std::nullopt;
-    return reduced(result.numerator, result.denominator);
-}
-
-}  // namespace
 
 std::optional<Rational> parse_rational(std::string_view text) {
     const auto slash = text.find('/');
