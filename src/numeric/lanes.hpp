@@ -9,16 +9,7 @@
 
 namespace doppel {
 
-/// The number of doubles in a register of the target processor.
-#if defined(__AVX512F__)
-inline constexpr int register_width = 8;
-#elif defined(__AVX__)
-inline constexpr int register_width = 4;
-#else
-inline constexpr int register_width = 2;
-#endif
-
-/// Doubles per register in this file: 2, or the width for which cmake/widths.cmake compiles it again.
+/// Doubles per register: 2, or the width for which cmake/widths.cmake compiles a file again.
 #ifdef DOPPEL_COMPILED_WIDTH
 constexpr int compiled_width = DOPPEL_COMPILED_WIDTH;
 #else
@@ -44,7 +35,7 @@ struct LaneRegister {
 template <int lanes, class Build = void>
 struct Lanes {
     static constexpr int width = lanes;
-    static constexpr int part = lanes < register_width ? lanes : register_width, parts = lanes / part;
+    static constexpr int part = lanes < compiled_width ? lanes : compiled_width, parts = lanes / part;
     using Doubles = typename LaneRegister<part>::Doubles;
     using Masks = typename LaneRegister<part>::Masks;
     using Memory = typename LaneRegister<part>::Memory;
