@@ -5,8 +5,6 @@
 #include "numeric/portable_math.hpp"
 #include "track/regression.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -76,7 +74,7 @@ ShotSums evaluate(const Track& track, const Fit& fit, const Shot& shot, double b
 Parameters bounded_change(const Fit& fit, ParameterMatrix matrix, Parameters slope) {
     std::bitset<parameter_count> held;  // each at most once: numbers that are not finite would repeat for ever
     for (;;) {
-        Parameters change = matrix.ldlt().solve(slope);
+        Parameters change = inverse_of(matrix).lazyProduct(slope);
         bool again = false;
         for (std::size_t k = 0; k < parameter_count; ++k) {
             const double value = fit.parameters[k];
@@ -189,14 +187,10 @@ void evaluate_fit(const FitJob& job, Fit& fit, double block_s) {
     fit.rms = std::sqrt(squares / static_cast<double>(std::max(fit.residual_count(), 1L)));
 }
 
-ParameterMatrix inverse_of(const ParameterMatrix& matrix) {
-    return matrix.ldlt().solve(ParameterMatrix::Identity());
-}
-
 Eigen::Matrix4d ShotSums::inverse_of_start(double damping) const {
     Eigen::Matrix4d matrix = normal.topLeftCorner<4, 4>();
     matrix.diagonal() *= 1 + damping;
-    return matrix.ldlt().solve(Eigen::Matrix4d::Identity());
+    return inverse_of(matrix);
 }
 
 Eigen::Matrix<double, 1 + parameter_count, 1 + parameter_count> ShotSums::reduced(double damping) const {

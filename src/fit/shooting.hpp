@@ -2,8 +2,10 @@
 
 #include "base/error.hpp"
 #include "fit/pendulum.hpp"
+#include "numeric/solvers.hpp"
 #include "track/track.hpp"
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -103,8 +105,16 @@ Error no_motion(const Track& track);
 /// stretches; 0 = none.
 void evaluate_fit(const FitJob& job, Fit& fit, double block_s = 0);
 
-/// The inverse of a positive semidefinite matrix; 0 for directions without influence.
-ParameterMatrix inverse_of(const ParameterMatrix& matrix);
+/// The inverse of a positive semidefinite matrix; 0 for unknowns without influence, NaN if it is not finite.
+template <class Matrix>
+Matrix inverse_of(Matrix matrix) {
+    if (!matrix.allFinite()) return Matrix::Constant(std::nan(""));
+    Matrix inverse = Matrix::Identity();
+    for (Eigen::Index k = 0; k < matrix.rows(); ++k)
+        if (matrix(k, k) == 0) matrix(k, k) = 1, inverse(k, k) = 0;
+    solve_positive_definite(matrix, inverse);
+    return inverse;
+}
 
 constexpr auto no_unit = static_cast<std::size_t>(-1);
 

@@ -75,17 +75,11 @@ Heading heading_of(const std::string& file, std::string_view line) {
     if (angles.size() == 1)
         throw bad_input("{}:1: there is only one link, {}; fit needs a double pendulum, with theta1_rad and theta2_rad",
                         file, heading.names[angles[0]]);
-    if (angles.empty() && pixels.empty())
-        throw bad_input(
-            "{}:1: there are no angles; the columns must be theta1_rad and theta2_rad, or x0_px, y0_px, x1_px, y1_px, "
-            "x2_px, "
-            "y2_px",
-            file);
     if (angles.empty() && pixels.size() < 6)
         throw bad_input(
-            "{}:1: of x0_px, y0_px (pivot), x1_px, y1_px (joint), x2_px, y2_px (end) there are {} columns; all six are "
-            "needed",
-            file, pixels.size());
+            "{}:1: there are no angles; the columns must be theta1_rad and theta2_rad, or all of x0_px, y0_px (pivot), "
+            "x1_px, y1_px (joint), x2_px, y2_px (end)",
+            file);
     heading.values = time;
     std::ranges::copy(angles.empty() ? pixels : angles, std::back_inserter(heading.values));
     if (!piece.empty()) heading.piece = piece[0];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "integrate/motion.hpp"
+#include "physics/pendulums.hpp"
 #include "track/track.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +15,7 @@ inline const std::atomic<bool> never_stop = false;
 
 /// Two rods with mass and friction, as accurate as double allows.
 inline MotionSpec swinging_rods(const Rational& sample_interval = {1, 500}) {
-    auto body = physical(Pendulum<Quad>{{1, 2}, {Quad(1) / 4, Quad(3) / 8}, {1, -2}, {3, 5}, Quad(98) / 10});
-    body.center = {Quad(1) / 8, Quad(3) / 16};
-    body.inertia = {Quad(1) / 192, Quad(3) / 128};
+    auto body = rods({{1, 2}, {0.25, 0.375}, {1, -2}, {3, 5}, 9.8}).cast<Quad>();
     body.friction.viscous = {Quad(1) / 100, Quad(1) / 200};
     MotionSpec spec;
     spec.chain = body.chain;
