@@ -38,7 +38,7 @@ std::span<const std::string_view> names_of_methods() {
 
 const MethodEntry* find_method(std::string_view name) {
     const auto all = methods();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& method) { return method.name == name; });
+    const auto found = std::ranges::find(all, name, &MethodEntry::name);
     return found == all.end() ? nullptr : &*found;
 }
 

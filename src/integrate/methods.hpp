@@ -14,6 +14,12 @@ struct Method {
     std::string_view properties;  // "explicit", "implicit, symplectic, time-reversible"
 };
 
+/// The computing effort of a motion up to now.
+struct Effort {
+    long steps = 0, evaluations = 0;  // evaluations of the right-hand side
+    double smallest_step = 0;         // s
+};
+
 /// A method with the models that it supports.
 struct MethodEntry : Method {
     bool angles, constraints, mechanism;

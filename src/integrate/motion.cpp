@@ -41,7 +41,6 @@ public:
         if (spec.chain) pendulum_ = spec.chain->cast<Scalar>();
         if (spec.physical) physical_ = spec.physical->cast<Scalar>();
         if (model_ == Model::mechanism) mechanism_.emplace(spec.parts->cast<Scalar>());
-        if (wants_tension_ && model_ == Model::mechanism) tension_model_.emplace(spec.parts->cast<double>());
         stepper_->read(y_);
         if (const auto links = static_cast<Eigen::Index>(spec.chain ? spec.chain->links() : 0); physical_)
             layout_.emplace(*physical_, links, true, y_.size() == 2 * (links + 2));
@@ -95,6 +94,9 @@ public:
         auto [bobs, pivot, energy, kinetic_energy] = configuration(y);
         (ahead_ ? *ahead_ : turns_).add_to(bobs);
         const Scalar work = layout_ ? layout_->work_of(y) : Scalar(0);
+        const Scalar of_rods = model_ == Model::angles ? Scalar(0)
+                               : mechanism_            ? mechanism_->length_error(y)
+                                                       : length_error(*pendulum_, bobs);
         Observation seen{.bobs = Cast<double>()(bobs),
                          .exact = {},
                          .pivot = Cast<double>()(pivot),
@@ -102,17 +104,18 @@ public:
                          .kinetic_energy = static_cast<double>(kinetic_energy),
                          .work = static_cast<double>(work),
                          .energy_change = static_cast<double>(Scalar(energy - start_energy_ - work)),
-                         .length_error = length_error_of(y, bobs)};
+                         .length_error = static_cast<double>(of_rods)};
         if constexpr (std::is_same_v<Scalar, Quad>) seen.exact = bobs;
         if (wants_tension_)
-            seen.tension = tension_model_ ? tension_model_->tensions(particles_of(seen.bobs))
-                                          : tensions(pendulum_->template cast<double>(), seen.bobs);
+            seen.tension = mechanism_ ? tensions<Mechanism<double>>(mechanism_->parts, seen.bobs)
+                                      : tensions<RodChain<double, Eigen::Dynamic>>(*pendulum_, seen.bobs);
         return seen;
     }
 
     Effort effort() const override {
-        if (!adaptive_) return {samples_ * whole_, stepper_->evaluations(), step_};
-        return {stepper_->steps(), stepper_->evaluations(), static_cast<double>(stepper_->smallest_step())};
+        auto effort = stepper_->effort();
+        if (!adaptive_) effort.steps = samples_ * whole_, effort.smallest_step = step_;
+        return effort;
     }
 
 private:
@@ -141,11 +144,10 @@ private:
         seen.kinetic_energy = kinetic_energy(seen.bobs);
         return seen;
     }
-    double length_error_of(const State& y, const Bobs<Scalar>& bobs) const {
-        if (model_ == Model::angles) return 0;
-        return static_cast<double>(mechanism_ ? mechanism_->length_error(y) : length_error(*pendulum_, bobs));
+    template <class Rods, class System>
+    static std::vector<double> tensions(const System& system, const Bobs<double>& bobs) {
+        return Rods(system.template cast<double>()).tensions(particles_of(bobs));
     }
-
     /// Advances to that portion of the sample interval, or to that step.
     void go_to(long last, const std::atomic<bool>& stop) {
         for (long some = 1; taken_ < last; taken_ += some) {
@@ -188,8 +190,6 @@ private:
     std::optional<PhysicalPendulum<Scalar>> physical_;
     std::optional<PhysicalLayout> layout_;  // of the state of a rigid-body chain
     std::optional<Mechanism<Scalar>> mechanism_;
-    mutable std::optional<Mechanism<double>>
-        tension_model_;             // for rod tensions; a separate copy, because it needs scratch space
     long whole_ = 1;                // portions per sample (adaptive methods), or steps
     Scalar portion_{0};             // s
     long portion_steps_ = 1;        // fixed steps taken at a time

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "integrate/methods.hpp"
 #include "numeric/quad.hpp"
 #include "numeric/rational.hpp"
 #include "physics/bob.hpp"
@@ -47,12 +48,6 @@ struct Observation {
     /// Tension of each rod, N, > 0 if it pulls, on request: in the order of the chain, or of the mechanism's
     /// constraints that are rods. NaN if a constraint depends on others.
     std::vector<double> tension;
-};
-
-/// The computing effort of a motion up to now.
-struct Effort {
-    long steps = 0, evaluations = 0;  // evaluations of the right-hand side
-    double smallest_step = 0;         // s
 };
 
 /// A system that moves, advanced from sample to sample. The interface is virtual, with some 120 calls per second of

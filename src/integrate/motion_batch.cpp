@@ -87,13 +87,11 @@ bool can_share_batch(std::span<const MotionSpec> specs) {
            });
 }
 
-/// The size of a part: one part for each of `threads` threads, but large enough to be worthwhile, and in full
-/// registers.
+/// The size of a part: one part for each of `threads` threads, in full registers and large enough to be worthwhile.
 std::size_t part_of(std::size_t size, int threads) {
     constexpr std::size_t minimum = 64;
-    const auto share =
-        std::max((size + static_cast<std::size_t>(threads) - 1) / static_cast<std::size_t>(threads), minimum);
-    return (share + minimum - 1) / minimum * minimum;
+    const auto together = minimum * static_cast<std::size_t>(threads);
+    return (size + together - 1) / together * minimum;
 }
 
 }  // namespace

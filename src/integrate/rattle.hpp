@@ -14,13 +14,6 @@
 
 namespace doppel {
 
-/// Whether forces depend on velocity (friction); such models say so by themselves.
-template <Constrained Model>
-bool forces_depend_on_velocity([[maybe_unused]] const Model& model) {
-    if constexpr (requires { model.depends_on_velocity(); }) return model.depends_on_velocity();
-    return false;
-}
-
 /// RATTLE as a composition: several substeps make one step. Their fractions γ of it are symmetric and sum to 1;
 /// `fractions` are those before the middle one, in decimal. A substep of size h from (q, v) to (q1, v1), both on the
 /// constraints, is
@@ -43,7 +36,7 @@ public:
                    std::span<const std::string_view> fractions)
         : name_(name),
           model_(model),
-          friction_(forces_depend_on_velocity(model)),
+          friction_(model.depends_on_velocity()),
           y_(start),
           step_(step),
           sizes_(2 * fractions.size() + 1, step),
@@ -111,7 +104,11 @@ private:
         add(u_, half, a_);
         model_.apply_multipliers(q0_, guess_, u_);
         add(q_, h, u_);
-        if (!newton_.project_positions(model_, q0_, q_)) throw_no_convergence();
+        if (!newton_.project_positions(model_, q0_, q_))
+            throw method_failed(
+                "{}: step {}: the constraints still have an error of {:.2g} after {} corrections; choose a smaller "
+                "step_s than {:g}",
+                name_, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
         newton_.lambda /= h;
         model_.apply_multipliers(q0_, newton_.lambda, u_);
         force_ = (guess_ + newton_.lambda) / span;
@@ -157,14 +154,6 @@ private:
         const Scalar change = (a_ - a_before_).cwiseAbs().maxCoeff();
         if (change <= rounding * a_.cwiseAbs().maxCoeff()) return true;
         return after_many && abs(half) * change <= rounding * v_.cwiseAbs().maxCoeff();
-    }
-
-    [[noreturn]] void throw_no_convergence() const {
-        throw method_failed(
-            "{}: step {}: the constraints still have an error of {:.2g} after {} corrections; choose a smaller step_s "
-            "than "
-            "{:g}",
-            name_, done_ + 1, newton_.remained(), newton_.limit, static_cast<double>(step_));
     }
 
     std::string_view name_;

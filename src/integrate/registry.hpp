@@ -55,14 +55,10 @@ public:
         if constexpr (adaptive) method_.look_ahead(seconds);
     }
     void read(State& y) const override { y = method_.state(); }
-    long evaluations() const override { return method_.evaluations(); }
-    long steps() const override {
-        if constexpr (adaptive) return method_.steps();
-        return 0;
-    }
-    Scalar smallest_step() const override {
-        if constexpr (adaptive) return method_.smallest_step();
-        return Scalar(0);
+    Effort effort() const override {
+        if constexpr (adaptive)
+            return {method_.steps(), method_.evaluations(), static_cast<double>(method_.smallest_step())};
+        return {.evaluations = method_.evaluations()};
     }
 
 private:

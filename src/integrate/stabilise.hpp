@@ -38,7 +38,11 @@ public:
         for (int i = 0; i < limit; ++i) {
             model.residual(q, c_);
             if (i > 0 && within(floor_)) return true;
-            if (i >= many && is_rounding(model, q)) return true;
+            if (i >= many) {  // is it within four times its rounding, where corrections oscillate?
+                model.rounding(q, rounding_);
+                rounding_ *= Scalar(4);
+                if (within(rounding_)) return true;
+            }
             correct(model, q0, q);
             if (i > 0 && move_.cwiseAbs().maxCoeff() <= Scalar(2) * epsilon * q.cwiseAbs().maxCoeff()) return true;
         }
@@ -65,13 +69,6 @@ private:
         for (Eigen::Index i = 0; i < c_.size(); ++i)
             if (!(c_[i] <= bounds[i] && -c_[i] <= bounds[i])) return false;
         return true;
-    }
-
-    /// Whether |C| is within its rounding and that of its terms, where corrections oscillate.
-    bool is_rounding(Model& model, const Half& q) {
-        model.rounding(q, rounding_);
-        rounding_ *= Scalar(4);
-        return within(rounding_);
     }
 
     void correct(Model& model, const Half& q0, Half& q) {

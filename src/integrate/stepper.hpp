@@ -1,6 +1,7 @@
 #pragma once
 
 #include "integrate/events.hpp"
+#include "integrate/methods.hpp"
 #include "numeric/compensated.hpp"
 #include "physics/constraint.hpp"
 
@@ -118,10 +119,8 @@ public:
     /// For adaptive methods: read() then gives the state `seconds` after the last advance_by(). Later states have the
     /// same bits as without this call.
     virtual void look_ahead(const Scalar& seconds) = 0;
-    virtual void read(State& y) const = 0;     // y ← the current state
-    virtual long evaluations() const = 0;      // of the right-hand side
-    virtual long steps() const = 0;            // of an adaptive method, accepted ones
-    virtual Scalar smallest_step() const = 0;  // s, of these
+    virtual void read(State& y) const = 0;  // y ← the current state
+    virtual Effort effort() const = 0;      // steps of an adaptive method are accepted ones; of others they are 0
 };
 
 /// The output time of an adaptive method, s from the start of its last step. It is stored as a sum of two, so that it

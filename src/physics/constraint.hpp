@@ -180,13 +180,14 @@ template <class M>
 concept Constrained = System<M> && requires(M model, const typename M::Half& q, typename M::Half& v,
                                             const typename M::Multipliers& lambda, typename M::Multipliers& c) {
     { model.constraints() } -> std::convertible_to<Eigen::Index>;
-    model.free_acceleration(q, q, v);       // v ← M⁻¹ F(q, v)
-    model.residual(q, c);                   // c ← C(q)
-    model.constraint_velocity(q, q, c);     // c ← J(q) v
-    model.jdot_v(q, q, c);                  // c ← J̇(q, v) v
-    model.apply_multipliers(q, lambda, v);  // v ← v + M⁻¹ Jᵀ(q) λ
-    model.solve(q, q, c);                   // c ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ c
-    model.rounding(q, c);                   // c ← ε |q| Σ_j |J_ij|, with the largest coordinate: the rounding of C
+    { model.depends_on_velocity() } -> std::convertible_to<bool>;  // whether forces do, as friction
+    model.free_acceleration(q, q, v);                              // v ← M⁻¹ F(q, v)
+    model.residual(q, c);                                          // c ← C(q)
+    model.constraint_velocity(q, q, c);                            // c ← J(q) v
+    model.jdot_v(q, q, c);                                         // c ← J̇(q, v) v
+    model.apply_multipliers(q, lambda, v);                         // v ← v + M⁻¹ Jᵀ(q) λ
+    model.solve(q, q, c);                                          // c ← (J(q1) M⁻¹ Jᵀ(q0))⁻¹ c
+    model.rounding(q, c);  // c ← ε |q| Σ_j |J_ij|, with the largest coordinate: the rounding of C
 };
 
 /// The same, without stabilisation of its own (integrate/stabilise.hpp).

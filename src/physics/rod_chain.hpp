@@ -69,7 +69,7 @@ struct RodChain {
             rate_of_any(y, dydt);
     }
 
-    /// The rod tensions, N, > 0 if a rod pulls: λ_k r_k acts on particle k, so T_k = −λ_k |r_k|.
+    /// The rod tensions from the pivot down, N, > 0 if a rod pulls: λ_k r_k acts on particle k, so T_k = −λ_k |r_k|.
     std::vector<Scalar> tensions(const State& y) {
         using std::sqrt;
         find_multipliers(y.head(2 * w.size()), y.tail(2 * w.size()));
@@ -81,6 +81,7 @@ struct RodChain {
     // Of the concept Constrained.
 
     Eigen::Index constraints() const { return w.size(); }
+    bool depends_on_velocity() const { return false; }
     void free_acceleration(const Half&, const Half&, Half& a) const {
         a.setZero();
         for (Eigen::Index k = 0; k < w.size(); ++k) a[2 * k + 1] = -g;
@@ -243,12 +244,5 @@ private:
     // m²/s²: Σ |u_k|² above which multipliers_ is used; infinite if a mass is below 1/8 of the next
     Scalar min_motion_{0};
 };
-
-/// The rod tensions of a chain from the state of its bobs, N, from the pivot down: > 0 if a rod pulls, < 0 if it
-/// pushes. It works for every model, because tensions follow from positions and velocities.
-template <class Scalar>
-std::vector<Scalar> tensions(const Pendulum<Scalar>& p, const Bobs<Scalar>& bobs) {
-    return RodChain<Scalar, Eigen::Dynamic>(p).tensions(particles_of(bobs));
-}
 
 }  // namespace doppel

@@ -16,12 +16,8 @@ namespace doppel::tension_test {
 
 using Forces = std::vector<double>;
 
-Bobs<double> released(const Pendulum<double>& p) {
-    return bobs_of_angles(p, released_in_angles<double, Eigen::Dynamic>(p));
-}
-
 Forces in_angles(const Pendulum<double>& p) {
-    return tensions(p, released(p));
+    return RodChain<double, Eigen::Dynamic>(p).tensions(released_as_particles<double, Eigen::Dynamic>(p));
 }
 
 Forces in_parts(const Assembly<double>& parts) {
