@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "integrate/events.hpp"
 #include "integrate/series.hpp"
 #include "numeric/roots.hpp"
 #include "numeric/tape.hpp"
@@ -34,12 +35,14 @@ public:
     using Scalar = typename Model::Scalar::Scalar;
     using State = typename Series<Scalar>::State;
 
-    TapedSeries(Model taped, const SeriesScale& scale, int order)
+    /// `modes`: of the joints of bodies.
+    TapedSeries(Model taped, const SeriesScale& scale, int order, const std::vector<int>* modes = nullptr)
         : Series<Scalar>(scale.longest, !std::is_same_v<Scalar, double>),
           taped_(std::move(taped)),
           order_(order),
           tape_(order + 1),
-          scale_(scale) {}
+          scale_(scale),
+          modes_(modes) {}
 
     void expand(const State& y) override {
         if (!is_as_recorded(y)) record(y);
@@ -98,25 +101,20 @@ public:
         return first;
     }
 
-protected:
-    Model taped_;
-
 private:
-    /// Whether the modes of the joints differ from the recorded ones; updates taped_ to the current ones.
-    virtual bool has_other_modes() const { return false; }
-    virtual void take_modes() {}
-
     void record(const State& y) {
         tape_.clear();
         rate_ = y_ = typename Model::State(y.size());
         for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
-        take_modes();
+        if constexpr (HasEvents<Model>) taped_.keep_modes(*modes_);
         taped_.rate(y_, rate_);
         tape_.finish();
         start_at(y);
     }
     bool is_as_recorded(const State& y) {
-        if (tape_.empty() || has_other_modes()) return false;
+        if (tape_.empty()) return false;
+        if constexpr (HasEvents<Model>)
+            if (taped_.modes() != *modes_) return false;
         start_at(y);
         return tape_.is_as_recorded();
     }
@@ -137,36 +135,25 @@ private:
         return maximum;
     }
 
+    Model taped_;
     int order_;
     Tape<Scalar> tape_;
     SeriesScale scale_;
+    const std::vector<int>* modes_;
     typename Model::State y_, rate_;
 };
 
 template <class Scalar>
-class BodiesSeries final : public TapedSeries<PhysicalChain<Taped<Scalar>>> {
-public:
-    BodiesSeries(const PhysicalChain<Scalar>& model, int order)
-        : TapedSeries<PhysicalChain<Taped<Scalar>>>(
-              PhysicalChain<Taped<Scalar>>(model.pendulum.template cast<Taped<Scalar>>()),
-              {.coordinates = model.layout.coordinates,
-               .rates = model.layout.half,
-               .length = 1,
-               .longest = longest_chain_step(static_cast<double>(model.pendulum.chain.reach()),
-                                             static_cast<double>(model.pendulum.chain.gravity))},
-              order),
-          model_(model) {}
-
-private:
-    bool has_other_modes() const override { return this->taped_.modes() != model_.modes(); }
-    void take_modes() override { this->taped_.keep_modes_of(model_); }
-
-    const PhysicalChain<Scalar>& model_;
-};
-
-template <class Scalar>
 std::unique_ptr<Series<Scalar>> series_of(const PhysicalChain<Scalar>& model, int order) {
-    return std::make_unique<BodiesSeries<Scalar>>(model, order);
+    using Model = PhysicalChain<Taped<Scalar>>;
+    const auto& chain = model.pendulum.chain;
+    const SeriesScale scale{
+        .coordinates = model.layout.coordinates,
+        .rates = model.layout.half,
+        .length = 1,
+        .longest = longest_chain_step(static_cast<double>(chain.reach()), static_cast<double>(chain.gravity))};
+    return std::make_unique<TapedSeries<Model>>(Model(model.pendulum.template cast<Taped<Scalar>>()), scale, order,
+                                                &model.modes());
 }
 
 /// The Taylor series of a mechanism, from its right-hand side. It also checks the path of each step, because the series
@@ -189,7 +176,8 @@ public:
     void expand(const State& y) override {
         start_ = y;
         for (std::size_t i = 0; i < model_.parts.forces.size(); ++i)
-            if (ends_coincide(model_.parts.forces[i]))
+            if (const auto* spring = std::get_if<Spring<Scalar>>(&model_.parts.forces[i]);
+                spring && spring->has_direction() && part_of(y, spring->a) == place_of(spring->b, y))
                 throw method_failed(
                     "{}: its ends are at the same place, where its direction is undefined; choose a start that does "
                     "not lead there",
@@ -229,19 +217,6 @@ private:
         }
         if (reach > 0) scale.longest = std::min(scale.longest, longest_chain_step(reach, gravity));
         return scale;
-    }
-
-    bool ends_coincide(const Force<Scalar>& force) const {
-        const auto meet = [&](std::size_t a, const End<Scalar>& b) {
-            return part_of(start_, a) == place_of(b, start_);
-        };
-        if (const auto* spring = std::get_if<Spring<Scalar>>(&force))
-            return spring->has_direction() && meet(spring->a, spring->b);
-        if (const auto* pair = std::get_if<Attraction<Scalar>>(&force)) return meet(pair->a, pair->b);
-        const auto* droplet = std::get_if<Droplet<Scalar>>(&force);
-        for (std::size_t i = 0; droplet && i < model_.parts.particles.size(); ++i)
-            if (meet(i, droplet->place)) return true;
-        return false;
     }
 
     void start_checking() {

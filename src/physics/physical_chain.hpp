@@ -95,10 +95,9 @@ public:
         for (const auto& motor : pendulum.torques) fastest = std::max(fastest, motor.frequency);
         return fastest > Scalar(0) ? Scalar(pi_of<Scalar>() / fastest) : Scalar(std::numeric_limits<double>::max());
     }
-    /// Copies the modes, for a model on a tape.
-    template <class Other>
-    void keep_modes_of(const PhysicalChain<Other>& other) {
-        slides_ = other.modes();
+    /// Takes those of another model, for a model on a tape.
+    void keep_modes(const std::vector<int>& modes) {
+        slides_ = modes;
         has_modes_ = true;
     }
     const std::vector<int>& modes() const { return slides_; }
