@@ -1,6 +1,5 @@
 #include "physics/canonical.hpp"
 
-#include "errors.hpp"
 #include "numeric/quad.hpp"
 #include "physics/oracles.hpp"
 #include "physics/pendulums.hpp"
@@ -115,14 +114,6 @@ TEST(Canonical, IsTheModelsMotion) {
         const auto along = ((f.momenta(f.y + move) - f.momenta(f.y - move)) / (Quad(2) * step)).eval();
         EXPECT_LT(largest((along - f.hamilton(f.momenta(f.y))).eval()), 1e-18);  // measured 2.4e-19
     });
-}
-
-TEST(Canonical, RefusesJointsThatStick) {
-    auto p = bodies<Quad>(2);
-    p.friction.coulomb = {Quad(0.1), Quad(0)};
-    const auto [code, message] = test::thrown_by([&] { Form<Bodies, PhysicalPendulum<Quad>>{p}; });
-    EXPECT_EQ(code, ExitCode::bad_input);
-    EXPECT_NE(message.find("Coulomb"), std::string::npos) << message;
 }
 
 /// The largest error of a changing angle over steps of `step`, in units of ε.

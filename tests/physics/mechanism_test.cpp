@@ -7,7 +7,6 @@
 #include "physics/pendulums.hpp"
 #include "physics/rod_chain.hpp"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -234,42 +233,6 @@ TEST(Mechanism, SolvesForMultipliersBetweenTwoPositions) {
         Mechanism<double> model(parts);
         for (int i = 0; i < 50; ++i)
             EXPECT_LT(errors_of_solving(model, parts, random).norm(), maximum);  // measured 4e-16, 1e-16, 9e-16
-    }
-}
-
-TEST(Mechanism, HasTheMultipliersOfADenseMatrix) {
-    using Column = State<double, Eigen::Dynamic>;
-    for (const bool looped : {false, true}) {
-        const auto parts = zigzag(40, true, looped);
-        const auto start = Mechanism<double>::start(parts);
-        const Column q = start.head(start.size() / 2);
-        Column w(q.size() / 2);
-        for (Eigen::Index i = 0; i < w.size(); ++i) w[i] = 1 / parts.particles[static_cast<std::size_t>(i)].mass;
-        ConstraintSet<double> set(parts.constraints, w);
-        auto gradients = set.blank_gradients();
-        set.update(q, gradients);
-
-        // J row by row of the constraints, from its products with unit velocities
-        Eigen::MatrixXd j(set.constraints(), q.size());
-        for (Eigen::Index c = 0; c < q.size(); ++c) {
-            Column s(set.constraints());
-            set.constraint_velocity(q, Column::Unit(q.size(), c), s);
-            j.col(c) = s;
-        }
-        Eigen::VectorXd by_mass(q.size());
-        for (Eigen::Index c = 0; c < q.size(); ++c) by_mass[c] = w[c / 2];
-        const Eigen::MatrixXd dense = j * by_mass.asDiagonal() * j.transpose();
-
-        auto matrix = set.blank_matrix();
-        set.couple(gradients, gradients, matrix);
-        matrix.factor();
-        ASSERT_EQ(matrix.dependent_row(), set.constraints());
-        const Column right = Column::LinSpaced(set.constraints(), -1, 2);
-        Column x = right;
-        matrix.solve(x);
-        EXPECT_LT((dense * x - right).cwiseAbs().maxCoeff(), 1e-11);
-        const Column exact = dense.partialPivLu().solve(right);
-        EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-10 * exact.cwiseAbs().maxCoeff());
     }
 }
 
