@@ -97,31 +97,17 @@ std::vector<MotionSpec> fan(Model model, std::string_view method, std::size_t li
     return specs;
 }
 
-void expect_same(const Bobs<double>& seen, const Bobs<double>& expected) {
-    ASSERT_EQ(seen.size(), expected.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-        const auto &one = seen[i], &other = expected[i];
-        EXPECT_EQ(one.mass, other.mass);
-        EXPECT_EQ(one.x, other.x);
-        EXPECT_EQ(one.y, other.y);
-        EXPECT_EQ(one.vx, other.vx);
-        EXPECT_EQ(one.vy, other.vy);
-        EXPECT_EQ(one.theta, other.theta);
-        EXPECT_EQ(one.omega, other.omega);
-    }
-}
-
 /// Each motion equals its run alone, at the start and after many samples.
 void expect_each_as_alone(const std::vector<MotionSpec>& specs, int jobs, int width, long samples = 6) {
     MotionBatch batch(specs, jobs);
     std::atomic<bool> never = false;
     ASSERT_EQ(batch.size(), specs.size());
     EXPECT_EQ(batch.width(), width);
-    for (std::size_t k = 0; k < specs.size(); k += 5) expect_same(batch.bobs(k), Course(specs[k]).observe().bobs);
+    for (std::size_t k = 0; k < specs.size(); k += 5) EXPECT_EQ(batch.bobs(k), Course(specs[k]).observe().bobs);
     for (long n = 0; n < samples; ++n) batch.advance(never);
     for (std::size_t k = 0; k < specs.size(); k += 5) {
         SCOPED_TRACE(specs[k].method + ", motion " + std::to_string(k));
-        expect_same(batch.bobs(k), Course(specs[k]).advance(samples).bobs);
+        EXPECT_EQ(batch.bobs(k), Course(specs[k]).advance(samples).bobs);
     }
 }
 

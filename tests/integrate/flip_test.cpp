@@ -4,6 +4,7 @@
 #include "integrate/taylor.hpp"
 #include "integrate/widths.hpp"
 #include "numeric/roots.hpp"
+#include "physics/pendulums.hpp"
 
 #include <gtest/gtest.h>
 
@@ -267,14 +268,11 @@ TEST(Flips, OfMirrorImagesComeAtTheSameTimeToTheLastBit) {
 
 TEST(Flips, AreTheSameToTheLastBitAtEveryWidthAndInEveryGrouping) {
     std::mt19937 random(5);
-    std::uniform_real_distribution<double> some(0.3, 3), angle(-3, 3);
     std::vector<Pendulum<double>> all(301);
     for (auto& p : all) {
-        p.mass = {some(random), some(random)};
-        p.length = {some(random), some(random)};
-        p.angle = {angle(random), angle(random)};
-        p.rate = {angle(random), angle(random)};
-        p.gravity = 5 * some(random);
+        p = random_pendulum(random);
+        p.gravity /= 2;
+        for (auto& rate : p.rate) rate *= 0.6;
     }
     const auto flips_of = [](std::span<const Pendulum<double>> some, int width = 0) {
         std::vector<double> times(some.size());

@@ -27,13 +27,9 @@ MotionSpec fine(Model model, const MethodEntry& method, const Pendulum<double>& 
 
 TEST(Limits, TheExactEquilibriumStaysExactly) {
     for (const std::size_t links : {1u, 2u, 3u, 5u}) {
-        Pendulum<double> p{{}, {}, {}, {}, 9.8};
-        for (std::size_t i = 0; i < links; ++i) {
-            p.mass.push_back(1 + 0.25 * static_cast<double>(i));
-            p.length.push_back(1 - 0.125 * static_cast<double>(i));
-            p.angle.push_back(0);
-            p.rate.push_back(0);
-        }
+        auto p = uneven(links);
+        p.angle.assign(links, 0);
+        p.rate.assign(links, 0);
         for_each_combination([&](Model model, const MethodEntry& method) {
             auto spec = fine(model, method, p, {1, 100});
             spec.steps_per_sample = 10;

@@ -88,23 +88,6 @@ TEST(Motion, DoesNotDependOnHowAdvanceIsDivided) {
     });
 }
 
-TEST(Motion, CountsWholeTurnsInBothModels) {
-    // fast enough for full turns: ω² l > 4 g at the bottom
-    auto p = released(0, 0);
-    p.rate = {12, 12};
-    p.angle[1] += 2 * pi;  // one turn ahead from the start
-    const auto end_of = [&](Model model) -> Eigen::Vector2d {
-        auto spec = stepping(model, "rk4", p, 30000);
-        spec.sample_interval = {1, 1};
-        spec.steps_per_sample = 30000;
-        const auto bobs = Course(spec).advance(2).bobs;
-        return {bobs[0].theta, bobs[1].theta};
-    };
-    const auto angles = end_of(Model::angles);
-    EXPECT_GT(angles[0], 2 * pi);
-    EXPECT_LT((angles - end_of(Model::constraints)).norm(), 2e-11);  // measured 3e-12
-}
-
 /// One link, one turn ahead at the start, that rotates fast for `seconds`, in double or quad.
 Observation whirl(Model model, std::string_view method, double degrees_a_second, Precision precision,
                   Rational seconds) {

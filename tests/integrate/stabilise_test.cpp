@@ -74,25 +74,22 @@ TEST(Projected, KeepsTheRodsOfALightFirstMass) {
     }
 }
 
-TEST(Projected, FailsIfALightMassWouldHaveToJump) {
+TEST(Projected, FailsIfNoPointOnTheConstraintsIsFound) {
+    const auto expect_failure = [](const Pendulum<double>& p, Chain::State y) {
+        Projected<Chain> model(p);
+        const auto [code, said] = test::thrown_by([&] { model.project(y); });
+        EXPECT_EQ(code, ExitCode::method_failed);
+        EXPECT_EQ(said.rfind("projection: the constraints still have an error of ", 0), 0u) << said;
+    };
+    // a rod of zero length has no direction: J M⁻¹ Jᵀ is 0
+    expect_failure(released(0, 0), Chain::State::Zero(8));
     // aligned links a millimetre too far apart: the light mass between them would move far to one side
     auto p = released(30, 30);
     p.mass[0] = 1e-9;
-    Projected<Chain> model(p);
     auto y = Chain::start(p);
     y[0] += 1e-3;
     y[3] -= 1e-3;
-    EXPECT_THROW(model.project(y), Error);
-}
-
-TEST(Projected, FailsIfNoPointOnTheConstraintsIsFound) {
-    // a rod of zero length has no direction: J M⁻¹ Jᵀ is 0
-    const auto p = released(0, 0);
-    Projected<Chain> model(p);
-    Chain::State y = Chain::State::Zero(8);
-    const auto [code, said] = test::thrown_by([&] { model.project(y); });
-    EXPECT_EQ(code, ExitCode::method_failed);
-    EXPECT_EQ(said.rfind("projection: the constraints still have an error of ", 0), 0u) << said;
+    expect_failure(p, y);
 }
 
 /// The growth of C, for a hanging rod stretched by 1e-9 m, after `steps` steps of Euler or Runge–Kutta with α dt = z.

@@ -109,22 +109,19 @@ TEST(MechanismSeries, SolvesTheEquationsOfMotionOrderByOrder) {
 }
 
 TEST(MechanismSeries, AllocatesNothingOnceItIsRecorded) {
-    for (const auto& parts : {sprung(), attracted(), looped()}) {
-        const auto allocated = [](const auto& assembly) {
-            using S = std::decay_t<decltype(assembly.particles[0].mass)>;
-            MechanismSeries<S> series(assembly, 20);
-            auto y = Mechanism<S>::start(assembly), change = y;
-            series.expand(y);
-            series.move(S(0.02), change);
-            y += change;
-            const long before = allocations();
-            series.move(S(0.01), change);
-            series.expand(y);
-            return allocations() - before;
-        };
-        EXPECT_EQ(allocated(parts), 0);
-        EXPECT_EQ(allocated(parts.cast<Quad>()), 0);
-    }
+    const auto allocated = []<class S>(const Assembly<S>& assembly) {
+        MechanismSeries<S> series(assembly, 20);
+        auto y = Mechanism<S>::start(assembly), change = y;
+        series.expand(y);
+        series.move(S(0.02), change);
+        y += change;
+        const long before = allocations();
+        series.move(S(0.01), change);
+        series.expand(y);
+        return allocations() - before;
+    };
+    EXPECT_EQ(allocated(of_everything()), 0);
+    EXPECT_EQ(allocated(of_everything().cast<Quad>()), 0);
 }
 
 /// The error message of a series that runs from the start of a mechanism.
@@ -183,46 +180,36 @@ Vector<Scalar> coefficient(const Pendulum<Scalar>& p, const Vector<Scalar>& y, i
     return (one - other).tail(y.size() / 2);
 }
 
-template <int N>
-void expect_lanes_like_quad() {
-    const auto p = uneven(N);
-    const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
-    for (int k = 2; k <= 24; ++k) {
-        const auto lanes = coefficient<LaneSeries>(p, y, k);
-        const auto chain = coefficient<AngleSeries<double>>(p, y, k);
-        const auto quad = coefficient<AngleSeries<Quad>>(p.template cast<Quad>(), Vector<Quad>(y.cast<Quad>()), k);
-        const double size = static_cast<double>(Quad(quad.cwiseAbs().maxCoeff()));
-        for (int i = 0; i < N; ++i) {
-            EXPECT_NEAR(lanes[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 1e-13
-            EXPECT_NEAR(chain[i], static_cast<double>(quad[i]), 1e-12 * size) << k;  // measured 2e-13
+TEST(TaylorSeries, LanesHaveTheSameCoefficients) {
+    for (const std::size_t links : {2u, 3u}) {
+        const auto p = uneven(links);
+        const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
+        for (int k = 2; k <= 24; ++k) {
+            const auto quad = coefficient<AngleSeries<Quad>>(p.cast<Quad>(), Vector<Quad>(y.cast<Quad>()), k);
+            const Vector<double> exact = quad.cast<double>();
+            const double within = 1e-12 * exact.cwiseAbs().maxCoeff();
+            EXPECT_LT((coefficient<LaneSeries>(p, y, k) - exact).cwiseAbs().maxCoeff(), within) << k;  // measured 1e-13
+            EXPECT_LT((coefficient<AngleSeries<double>>(p, y, k) - exact).cwiseAbs().maxCoeff(), within)
+                << k;  // measured 2e-13
         }
     }
 }
 
-TEST(TaylorSeries, LanesHaveTheSameCoefficients) {
-    expect_lanes_like_quad<2>();
-    expect_lanes_like_quad<3>();
-}
-
-template <int N>
-void expect_same_bits() {
-    const auto p = uneven(N);
-    const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
-    for (int order : {5, 8, 13, 24, 33}) {
-        LaneSeries wide(p, order, std::min(register_widths().back(), 4)), narrow(p, order, 2);
-        Vector<double> one = y, other = y;
-        wide.expand(y);
-        wide.move(0.02, one);
-        narrow.expand(y);
-        narrow.move(0.02, other);
-        EXPECT_EQ(std::memcmp(one.data(), other.data(), sizeof(double) * static_cast<std::size_t>(y.size())), 0);
-        for (int k = 0; k <= order; ++k) EXPECT_EQ(wide.size(k), narrow.size(k));
-    }
-}
-
 TEST(TaylorSeries, GivesTheSameBitsWithTwoLanesAndFour) {
-    expect_same_bits<2>();
-    expect_same_bits<3>();
+    for (const std::size_t links : {2u, 3u}) {
+        const auto p = uneven(links);
+        const Vector<double> y = released_in_angles<double, Eigen::Dynamic>(p);
+        for (int order : {5, 8, 13, 24, 33}) {
+            LaneSeries wide(p, order, std::min(register_widths().back(), 4)), narrow(p, order, 2);
+            Vector<double> one = y, other = y;
+            wide.expand(y);
+            wide.move(0.02, one);
+            narrow.expand(y);
+            narrow.move(0.02, other);
+            EXPECT_EQ(std::memcmp(one.data(), other.data(), sizeof(double) * static_cast<std::size_t>(y.size())), 0);
+            for (int k = 0; k <= order; ++k) EXPECT_EQ(wide.size(k), narrow.size(k));
+        }
+    }
 }
 
 }  // namespace doppel::taylor_series_test

@@ -22,19 +22,29 @@ Bobs<double> seen(const Turns& turns, const State<double, 8>& y) {
     return bobs;
 }
 
+/// Expects that Turns follows a motion; `at` gives both angles and rates at a time. Updates are `interval` apart, or, if
+/// it is 0, as far apart as is allowed.
+template <class At>
+void expect_followed(const At& at, int updates, double interval, double within) {
+    const auto places_at = [&](double t) { return std::apply(places, at(t)); };
+    Turns turns({at(0)[0], at(0)[1]});
+    turns.update(places_at(0), 0);
+    double t = 0;
+    for (int n = 1; n <= updates; ++n) {
+        const double wait = interval > 0 ? interval : turns.longest_interval();
+        const auto y = places_at(t += wait);
+        turns.update(y, wait);
+        for (const std::size_t rod : {0, 1}) ASSERT_NEAR(seen(turns, y)[rod].theta, at(t)[rod], within) << n;
+    }
+}
+
 TEST(Turns, AreCountedBothWaysFromAnyStart) {
     // one rod rotates ever faster, up to 0.4 turns per sample; the other oscillates over the top, some turns ahead
-    const auto first = [](int n) { return 7.5 - 1.2e-3 * n * n; };
-    const auto second = [](int n) { return -20 + 9 * std::sin(0.25 * n); };
-    Turns turns({first(0), second(0)});
-    turns.update(places(first(0), second(0)), 0);
-    for (int n = 0; n <= 1000; ++n) {
-        const auto y = places(first(n), second(n));
-        turns.update(y, 1);
-        const auto bobs = seen(turns, y);
-        ASSERT_NEAR(bobs[0].theta, first(n), 2e-12) << n;   // measured 2e-13
-        ASSERT_NEAR(bobs[1].theta, second(n), 1e-14) << n;  // measured 2e-15
-    }
+    expect_followed(
+        [](double n) {
+            return std::array{7.5 - 1.2e-3 * n * n, -20 + 9 * std::sin(0.25 * n), 0.0, 0.0};
+        },
+        1000, 1, 2e-12);  // measured 2e-13
 }
 
 TEST(Turns, AreKeptWhereARodPointsStraightUp) {
@@ -59,33 +69,18 @@ TEST(Turns, AreNotAddedWhereNotFollowed) {
 
 TEST(Turns, AreCountedForMoreThanHalfATurnBetweenUpdates) {
     // 30 rad and −20 rad per sample; the first rate doubles, the second falls to zero
-    const auto first = [](double n) { return 15 * n + 0.15 * n * n; };
-    const auto second = [](double n) { return 3 - 20 * n + 0.2 * n * n; };
-    const auto at = [&](double n) { return places(first(n), second(n), 15 + 0.3 * n, -20 + 0.4 * n); };
-    Turns turns({first(0), second(0)});
-    turns.update(at(0), 0);
-    for (int n = 1; n <= 50; ++n) {
-        turns.update(at(n), 1);
-        const auto bobs = seen(turns, at(n));
-        ASSERT_NEAR(bobs[0].theta, first(n), 1e-11) << n;   // measured 4e-13
-        ASSERT_NEAR(bobs[1].theta, second(n), 1e-11) << n;  // measured 3e-13
-    }
+    const auto at = [](double n) {
+        return std::array{15 * n + 0.15 * n * n, 3 - 20 * n + 0.2 * n * n, 15 + 0.3 * n, -20 + 0.4 * n};
+    };
+    expect_followed(at, 50, 1, 1e-11);  // measured 4e-13
 }
 
 TEST(Turns, AreNotCountedForARodThatSwingsToAndFro) {
     // by 0.9 rad about the top, like a light mass between heavy ones; up to 8 rad of motion between two samples
-    const auto angle = [](double t) { return pi + 0.9 * std::sin(4000 * t); };
-    const auto rate = [](double t) { return 0.9 * 4000 * std::cos(4000 * t); };
-    Turns turns({angle(0), 0});
-    turns.update(places(angle(0), 0, rate(0)), 0);
-    double t = 0;
-    for (int n = 1; n <= 100'000; ++n) {
-        const double wait = turns.longest_interval();
-        t += wait;
-        const auto y = places(angle(t), 0, rate(t));
-        turns.update(y, wait);
-        ASSERT_NEAR(seen(turns, y)[0].theta, angle(t), 1e-12) << n;  // measured 9e-16
-    }
+    const auto at = [](double t) {
+        return std::array{pi + 0.9 * std::sin(4000 * t), 0.0, 0.9 * 4000 * std::cos(4000 * t), 0.0};
+    };
+    expect_followed(at, 100'000, 0, 1e-12);  // measured 9e-16
 }
 
 TEST(Turns, AreUpdatedMoreOftenForFasterRods) {
