@@ -1,7 +1,6 @@
 #include "analysis/drift.hpp"
 
 #include "analysis/watched_motion.hpp"
-#include "base/machine.hpp"
 #include "integrate/methods.hpp"
 
 #include <algorithm>
@@ -96,7 +95,6 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
     made.setting = is_adaptive(spec) ? static_cast<double>(spec.tolerance)
                                      : quotient(spec.sample_interval, {spec.steps_per_sample, 1})->value();
 
-    const double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     auto motion = watched(spec);
     long sample = 0;
     for (std::size_t point = 0; point < times_s.size() && std::isnan(made.failed_at_s); ++point)
@@ -110,41 +108,38 @@ DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double
             energy = std::fmax(energy, motion.energy_error);
             length = std::fmax(length, motion.length_error);
         }
-    made.cpu_s = seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
     made.evaluations_per_s = motion.evaluations() / time_of(spec, sample);
     return made;
 }
 
 Growth growth_of(std::span<const double> times_s, std::span<const double> errors, double failed_at_s) {
-    constexpr double decades = 2, doublings = 2;  // the range of time that the fits use
-    constexpr double least = 0.25;                // exponent of a growth: half-way between the powers 0 and ½
-    std::vector<double> times, log_times, log_errors;
+    constexpr double decades = 2;   // the range of time that the fit uses
+    constexpr double least = 0.25;  // exponent of a growth: half-way between the powers 0 and ½
+    std::vector<double> log_times, log_errors;
     for (std::size_t i = 0; i < errors.size(); ++i) {
         if (!(errors[i] > 0)) continue;
-        times.push_back(std::fmin(times_s[i], failed_at_s));
-        log_times.push_back(std::log(times.back()));
+        log_times.push_back(std::log(std::fmin(times_s[i], failed_at_s)));
         log_errors.push_back(std::log(errors[i]));
     }
-    const auto fitted = [&](std::span<const double> x, double back) {
+    const auto fitted = [&](double back) {
         std::size_t first = 0;
-        while (first < x.size() && log_times[first] < log_times.back() - back * (1 + 1e-9)) ++first;
-        return slope(x.subspan(first), std::span(log_errors).subspan(first));
+        while (first < log_times.size() && log_times[first] < log_times.back() - back * (1 + 1e-9)) ++first;
+        return slope(std::span(log_times).subspan(first), std::span(log_errors).subspan(first));
     };
     Growth growth;
     double last = 0;  // exponent of the last decade
-    if (times.size() > 1)
-        growth.exponent = fitted(log_times, decades * std::log(10)), last = fitted(log_times, std::log(10));
+    if (log_times.size() > 1) growth.exponent = fitted(decades * std::log(10)), last = fitted(std::log(10));
     const double p = growth.exponent;
     using Kind = Growth::Kind;
     // thresholds half-way between the powers 0, ½, 1 and 2; no error at all also counts as bounded, and so does one that
     // has reached its maximum: it grows no more in the last decade
-    growth.kind = !(last >= least)                        ? Kind::bounded
+    growth.kind = failed_at_s > 0                         ? Kind::failed
+                  : !(last >= least)                      ? Kind::bounded
                   : p < least || std::abs(last - p) > 0.5 ? Kind::unsteady
                   : p >= 1.5                              ? Kind::steeper
                   : p >= 0.75                             ? Kind::linear
                                                           : Kind::root;
-    if (!(failed_at_s > 0)) return growth;
-    return {Kind::failed, p, std::log(2) / fitted(times, doublings * std::log(2))};
+    return growth;
 }
 
 }  // namespace doppel

@@ -10,8 +10,7 @@ namespace doppel {
 struct DriftCost {
     double setting = 0;            // step size, s, or tolerance
     double evaluations_per_s = 0;  // of the right-hand side, per second of motion
-    double cpu_s = 0;
-    double failed_at_s = NAN;  // NaN if it did not fail
+    double failed_at_s = NAN;      // NaN if it did not fail
 };
 
 /// A long run, and its errors at all points: those of the energy, relative (analysis/watched_motion.hpp), then those of rod
@@ -35,8 +34,7 @@ DriftRun drift(MotionSpec motion, double evaluations_per_s, std::span<const doub
 struct Growth {
     enum class Kind { bounded, root, linear, steeper, unsteady, failed };  // unsteady: by no power of t
     Kind kind = Kind::bounded;
-    double exponent = 0;      // power of t, fitted to the last two decades; 0 without data
-    double doubling_s = NAN;  // just before a failure; NaN without a failure, or if it comes at once
+    double exponent = 0;  // power of t, fitted to the last two decades; 0 without data
 };
 
 /// From the errors at ascending times, s; NaN and 0 are ignored. `failed_at_s` = time of the failure, or NaN.

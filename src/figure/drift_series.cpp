@@ -9,17 +9,12 @@
 namespace doppel {
 namespace {
 
-/// The name of a law of growth, and the hue of its curves; in the order of Growth::Kind.
+/// A law of growth, and the hue of its curves; in the order of Growth::Kind.
 struct GrowthStyle {
-    std::string_view words, law;
+    std::string_view law;
     int hue;
 };
-constexpr std::array styles{GrowthStyle{"stays bounded", "", 1},
-                            GrowthStyle{"grows like √t", " ∝ √t", 2},
-                            GrowthStyle{"grows linearly", " ∝ t", 0},
-                            GrowthStyle{"grows like t²", " ∝ t²", 3},
-                            GrowthStyle{"grows", "", 4},
-                            GrowthStyle{"fails", "", 6}};
+constexpr std::array<GrowthStyle, 6> styles{{{"", 1}, {" ∝ √t", 2}, {" ∝ t", 0}, {" ∝ t²", 3}, {"", 4}, {"", 6}}};
 
 const GrowthStyle& style_of(const Growth& growth) {
     return styles.at(static_cast<std::size_t>(growth.kind));
@@ -90,29 +85,6 @@ public:
             if (!plot.curves.empty()) figure.panels.push_back(std::move(plot));
         }
         figure.captions.push_back(caption(numbers));
-    }
-
-    Json findings(std::span<const TrialNumbers> numbers) const override {
-        Json all;
-        for (std::size_t r = 0; r < runs_.size(); ++r) {
-            const auto cost = row_of<DriftCost>(numbers[r]);
-            const bool fails = cost.failed_at_s > 0;
-            auto name = fmt::format("{}_{}", runs_[r].motion.method, runs_[r].model);
-            std::ranges::replace(name, ' ', '_');
-            all[name + "_setting"] = cost.setting;
-            all[name + "_evaluations_per_s"] = cost.evaluations_per_s;
-            all[name + "_cpu_s"] = cost.cpu_s;
-            for (const bool of_rods : {false, true}) {
-                if (of_rods && !has_rods(r)) continue;
-                const auto found = growth(numbers, r, of_rods);
-                const auto quantity = name + (of_rods ? "_rods_" : "_energy_");
-                all[quantity + "growth"] = std::string(style_of(found).words);
-                all[quantity + "exponent"] = found.exponent;
-                if (fails) all[quantity + "doubling_s"] = found.doubling_s;
-            }
-            if (fails) all[name + "_broken_at_s"] = cost.failed_at_s;
-        }
-        return all;
     }
 
 private:

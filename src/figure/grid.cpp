@@ -352,39 +352,6 @@ std::optional<std::string> Grid::nothing_to_draw(std::span<const TrialNumbers> n
                            : "");
 }
 
-Json Grid::findings(std::span<const TrialNumbers> numbers) const {
-    if (quantity_ == Quantity::stroboscopic) return period_findings(numbers);
-    const auto& column = words().columns[words().drawn];
-    double minimum = NAN, maximum = NAN, regular = 0, missing = 0, forbidden = 0;
-    const bool is_bounded = overlay_ == Overlay::energy_bound;
-    double cells = 0;
-    // where the exponent stands among the numbers of a curve's point
-    std::optional<std::size_t> exponent;
-    if (!is_map() && quantity_ == Quantity::exponent) exponent = 0;
-    if (right_ == name_of(Quantity::exponent)) exponent = measurements().front().numbers();
-    auto released = is_bounded ? chain_of(pair_.a).cast<double>() : Pendulum<double>();
-    for_each_cell([&](const Cell& cell) {
-        const auto of_cell = at(numbers, cell);
-        const double value = value_at(numbers, cell);
-        if (std::isfinite(value)) minimum = std::fmin(minimum, value), maximum = std::fmax(maximum, value);
-        missing += is_missing(cell, quantity_, value);
-        ++cells;
-        if (exponent) regular += is_regular({of_cell[*exponent], of_cell[*exponent + 1]});
-        if (!is_bounded) return;
-        released.angle = {radians(static_cast<double>(x_.value(cell.column))),
-                          radians(static_cast<double>(y_.value(cell.row)))};
-        forbidden += flip_is_forbidden(released);
-    });
-    Json all{{"least_" + column, minimum}, {"greatest_" + column, maximum}};
-    if (is_map()) all["share_without"] = missing / cells;
-    if (!is_map() && missing > 0) all[words().none_is_bad ? "trials_broken_down" : "trials_without"] = missing;
-    if (is_bounded) all["share_forbidden_by_energy"] = forbidden / cells;
-    if (exponent) all["regular_trials"] = regular;
-    for (std::size_t group = 0; group < groups_.size() && quantity_ == Quantity::convergence; ++group)
-        all["slope_" + joined_words(group, "_")] = slope(numbers, group);
-    return all;
-}
-
 bool Grid::is_of_releases() const {
     return x_.key == "theta1_deg" && y_.key == "theta2_deg" && !pair_.a.is_mechanism() && pair_.a.physical.is_none() &&
            pair_.a.links() == 2;

@@ -35,7 +35,6 @@ public:
     bool fits(std::size_t trial, std::span<const double> numbers) const override;
     void write_rows(std::span<const TrialNumbers> numbers, Csv& table) const override;
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override;
-    Json findings(std::span<const TrialNumbers> numbers) const override;
     void draw(std::span<const TrialNumbers> numbers, Figure& figure) const override;  // figure/grid_plot.cpp
 
 private:

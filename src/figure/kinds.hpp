@@ -94,7 +94,7 @@ struct MapCells {
     std::size_t panels, numbers;
 };
 
-/// What a figure computes and shows: independent trials, and the table, picture and findings made from their numbers,
+/// What a figure computes and shows: independent trials, and the table and picture made from their numbers,
 /// which are identical in any order, on any thread and machine.
 class Experiment {
 public:
@@ -134,8 +134,6 @@ public:
 
     /// Adds the panels, and captions with results. Titles are already set.
     virtual void draw(std::span<const TrialNumbers> numbers, Figure& figure) const = 0;
-    /// Results outside the table, for the manifest.
-    virtual Json findings(std::span<const TrialNumbers> numbers) const = 0;
 
     /// The subtitle if the preset has none: the system and the integrator.
     const std::string& subtitle() const { return subtitle_; }

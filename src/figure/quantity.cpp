@@ -180,18 +180,6 @@ private:
     std::array<Passes, 2> passes_{{{1}, {-1}}};
 };
 
-/// The number of distinct rates: those more than 1e-4 rad/s from the next.
-std::size_t distinct_rates(const TrialNumbers& motion) {
-    constexpr double min_difference = 1e-4;
-    std::vector<double> rates;
-    for (std::size_t n = 1; n < motion.size(); n += 2)
-        if (std::isfinite(motion[n])) rates.push_back(motion[n]);
-    std::ranges::sort(rates);
-    std::size_t count = rates.empty() ? 0 : 1;
-    for (std::size_t i = 1; i < rates.size(); ++i) count += rates[i] - rates[i - 1] > min_difference;
-    return count;
-}
-
 /// The drive frequency of a side, Hz; nothing without a drive, or with several frequencies.
 std::optional<Rational> drive_of(const SideSpec& side) {
     std::vector<Quad> all;
@@ -273,16 +261,6 @@ void require_difference(const TomlReader& table, Quantity quantity, const InComm
 }
 
 }  // namespace
-
-Json period_findings(std::span<const TrialNumbers> motions) {
-    constexpr std::size_t many = 17;
-    std::array<double, many + 1> with{};  // numbers of motions with so many distinct rates
-    for (const auto& motion : motions) with[std::min(distinct_rates(motion), many)] += 1;
-    return {{"values_of_one_period", with[1]},
-            {"values_of_two_periods", with[2]},
-            {"values_of_four_periods", with[4]},
-            {"values_of_more_than_16", with[many]}};
-}
 
 std::string seconds_text(const Preset& pair) {
     return fmt::format("{:.10g}", pair.duration_s.value());

@@ -23,9 +23,6 @@ struct StroboscopeSpec {
     int transient_periods = 200, periods = 100;
 };
 
-/// How many motions repeat after one, two or four periods, or have more than 16 distinct rates.
-Json period_findings(std::span<const TrialNumbers> motions);
-
 /// The quantities that a grid can compute for each pair.
 enum class Quantity {
     divergence,

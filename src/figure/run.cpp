@@ -83,7 +83,6 @@ void write_manifest(Transaction& parts, const FigurePreset& figure, const KnownT
         {"title", figure.title},
         {"captions", figure.captions},
         {"erratum", figure.erratum},
-        {"findings", figure.experiment->findings(trials)},  // null: not a finite number
         {"resolved_preset", json_of_toml(figure.resolved())},
         {"trials", trials.size()},
         {"threads", record.jobs},

@@ -101,17 +101,6 @@ public:
         return fmt::format("no orbit comes back to θ₁ = 0 within {:g} s; take a higher energy_J", spec_.longest_s);
     }
 
-    Json findings(std::span<const TrialNumbers> numbers) const override {
-        Json all;
-        double points = 0;
-        for (const auto& orbit : numbers) points += orbit_of(orbit).crossings;
-        all["points"] = points;
-        for (std::size_t panel = 0; panel < energies_.size(); ++panel)
-            all[fmt::format("regular_orbits_of_{:g}_J", energies_[panel])] =
-                static_cast<double>(regular_ones(numbers.subspan(panel * orbits(), orbits())));
-        return all;
-    }
-
 private:
     TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const auto& release = releases_[trial / orbits()][trial % orbits()];

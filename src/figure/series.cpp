@@ -125,18 +125,6 @@ public:
         return cut(*this, share, [](double time_s) { return time_s; });
     }
 
-    Json findings(std::span<const TrialNumbers> numbers) const override {
-        Json all;
-        for (std::size_t i = 0; i < curves_.size(); ++i) {
-            const auto maximum =
-                std::ranges::max_element(numbers[i], [](double a, double b) { return std::isnan(a) || a < b; });
-            all["greatest_" + curves_[i].column] = *maximum;
-            all["greatest_at_sample_" + curves_[i].column] = static_cast<double>(maximum - numbers[i].begin());
-            if (check_tolerance_) all["agrees_until_s_" + curves_[i].column] = agree_until(numbers, i);
-        }
-        return all;
-    }
-
 private:
     std::string caption(std::span<const TrialNumbers> numbers) const override {
         if (!check_tolerance_) return "";
@@ -248,13 +236,6 @@ public:
         axes_.y = {.label = "running estimates of the exponents, 1/s"};
         axes_.rules.push_back({Rule::Orientation::horizontal, 0, ""});
         subtitle_ = motion_words(release_) + "; tangent equations by Dormand–Prince 8(5,3)";
-    }
-
-    Json findings(std::span<const TrialNumbers> numbers) const override {
-        Json all;
-        for (std::size_t k = 0; k < each_; ++k) all[columns_[k + 1]] = values(numbers, k).back();
-        if (preserves_volume()) all["pair_mismatch_per_s"] = pair_mismatch(last(numbers));
-        return all;
     }
 
 private:

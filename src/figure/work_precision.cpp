@@ -221,11 +221,6 @@ Preset film_named(const std::string& name, const TomlReader& table) {
     return read_preset(source);
 }
 
-/// The numbers of a problem's reference trial.
-struct ProblemRow {
-    double sensitivity, disagreement;
-};
-
 /// Error against cost of every method on a few problems. Trials: the reference solution of each problem, then all
 /// step-size studies, repeated in turn, so that other load on the machine affects all equally.
 class WorkPrecision final : public Experiment, public WorkComparison {
@@ -310,7 +305,7 @@ public:
     double units(std::size_t trial) const override { return trial < problems.size() ? 0 : 1; }
 
     bool fits(std::size_t trial, std::span<const double> numbers) const override {
-        if (trial < problems.size()) return numbers.size() == numbers_in<ProblemRow> && finite_or_none(numbers);
+        if (trial < problems.size()) return numbers.size() == 1 && finite_or_none(numbers);  // its sensitivity
         if (numbers.empty() || numbers.size() % numbers_in<StepResult> != 0) return false;
         const auto is_count_or_none = [](double x) { return std::isnan(x) || is_count(x); };
         const auto outcomes = rows_of<StepResult>(numbers);
@@ -356,8 +351,8 @@ public:
         const bool are_all = named.size() <= best_shown;
         named.resize(std::min(named.size(), best_shown));
         for (std::size_t p = 0; p < problems.size(); ++p)
-            figure.panels.push_back(work_plot({problems[p], 0x1p-53 * row_of<ProblemRow>(numbers[p]).sensitivity,
-                                               all[p], all[p], cost, named, names}));
+            figure.panels.push_back(
+                work_plot({problems[p], 0x1p-53 * numbers[p][0], all[p], all[p], cost, named, names}));
         figure.captions.push_back(
             are_all ? "Each method in its best model; the pale band is the Pareto front."
                     : fmt::format("In colour the five best, by the mean rank at 10⁻³, 10⁻⁶, 10⁻⁹ and 10⁻¹²{}, each in "
@@ -366,30 +361,6 @@ public:
         figure.captions.push_back(
             error_words(std::ranges::any_of(figure.panels, [](const Plot& plot) { return !plot.rules.empty(); })));
         if (cost == Cost::time) figure.captions.push_back(timing_caption(all, repeats));
-    }
-
-    Json findings(std::span<const TrialNumbers> numbers) const override {
-        Json found;
-        const auto all = merged_studies(numbers);
-        for (std::size_t p = 0; p < problems.size(); ++p) {
-            const auto& name = problems[p].name;
-            const auto problem = row_of<ProblemRow>(numbers[p]);
-            found[name + "_sensitivity"] = problem.sensitivity;
-            found[name + "_reference_disagreement"] = problem.disagreement;
-            for (const double accuracy : accuracies) {
-                const auto best = cheapest(all[p], cost, accuracy);
-                if (!best.study) continue;
-                const auto key = fmt::format("{}_1e{}_", name, std::lround(std::log10(accuracy)));
-                const auto& solver = best.study->solver;
-                found[key + "best"] = fmt::format("{}, {}", solver.method, name_of(solver.model));
-                found[key + "cost"] = best.cost;
-            }
-        }
-        if (cost == Cost::evaluations) return found;
-        const auto [typical, worst] = time_spread(all);
-        found["spread_typical"] = typical;
-        found["spread_worst"] = worst;
-        return found;
     }
 
     const Reference& reference(std::size_t problem, const std::atomic<bool>& stop) const override {
@@ -416,10 +387,7 @@ private:
 
     TrialNumbers compute(std::size_t trial, const std::atomic<bool>& stop) const override {
         const std::size_t first = problems.size();
-        if (trial < first) {
-            const auto& known = reference(trial, stop);
-            return {known.sensitivity, known.disagreement};
-        }
+        if (trial < first) return {reference(trial, stop).sensitivity};
         const auto& [p, solver] = studies_[(trial - first) % studies_.size()];
         const bool is_first = trial - first < studies_.size();
         TrialNumbers numbers;

@@ -18,7 +18,6 @@ TEST(Growth, IsClassifiedByItsExponent) {
         const auto growth = growth_of(times, errors, std::nan(""));
         EXPECT_NEAR(growth.exponent, power, 2e-15);  // measured 0
         EXPECT_EQ(growth.kind, expected);
-        EXPECT_TRUE(std::isnan(growth.doubling_s));
     }
     EXPECT_EQ(growth_of(times, std::vector(times.size(), 0.0), std::nan("")).kind, Kind::bounded);
     // growth that begins in the last decade follows no law
@@ -29,15 +28,7 @@ TEST(Growth, IsClassifiedByItsExponent) {
     for (auto& error : errors) error = std::fmin(error, errors[25]);
     EXPECT_GT(growth_of(times, errors, std::nan("")).exponent, 0.25);
     EXPECT_EQ(growth_of(times, errors, std::nan("")).kind, Kind::bounded);
-}
-
-TEST(Growth, DoublesUntilItFails) {
-    std::vector<double> times, errors;
-    for (int i = 0; i <= 20; ++i) times.push_back(std::pow(10, 0.1 * i));
-    for (const double t : times) errors.push_back(t < 64 ? std::exp2(t / 5) : std::nan(""));
-    const auto growth = growth_of(times, errors, 65);
-    EXPECT_EQ(growth.kind, Growth::Kind::failed);
-    EXPECT_NEAR(growth.doubling_s, 5, 5e-15);  // measured 8.9e-16
+    EXPECT_EQ(growth_of(times, errors, 65).kind, Kind::failed);
 }
 
 }  // namespace doppel::drift_test

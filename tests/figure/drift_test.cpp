@@ -1,6 +1,10 @@
+#include "analysis/drift.hpp"
+
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>
+
+#include <map>
 
 namespace doppel::drift_test {
 
@@ -33,37 +37,54 @@ TEST(Drift, EulerGainsEnergyByTheClosedForm) {
 }
 
 TEST(Drift, EveryMethodTakesItsEvaluations) {
-    const auto found = findings_of(short_drift(40));
-    int counted = 0;
-    for (const auto& [key, value] : found.items()) {
-        if (!key.ends_with("_evaluations_per_s")) continue;
-        ++counted;
-        if (key.starts_with("taylor")) {
-            EXPECT_LT(value, 500) << key;  // 446: even the smallest tolerance needs no more evaluations
-            EXPECT_EQ(found.at(key.substr(0, key.find("_eval")) + "_setting"), 8.89e-16);
+    const auto figure = short_drift(40);
+    const auto trials = computed(figure);
+    EXPECT_EQ(trials.size(), 10u + 10 + 1);
+    std::map<std::string, double> settings;
+    for (const auto& row : Table(table_text(figure, trials)).words) settings[row[0] + ' ' + row[1]] = std::stod(row[2]);
+    for (const auto& trial : trials) {
+        const auto cost = row_of<DriftCost>(trial);
+        if (cost.setting == settings.at("taylor angles")) {
+            EXPECT_LT(cost.evaluations_per_s, 500);  // 446: even the smallest tolerance needs no more evaluations
         } else {
-            EXPECT_NEAR(value, 500, 5) << key;  // measured 499.6 … 501.8
+            EXPECT_NEAR(cost.evaluations_per_s, 500, 5) << cost.setting;  // measured 499.6 … 501.8
         }
     }
-    EXPECT_EQ(counted, 10 + 10 + 1);
-    EXPECT_EQ(found.at("rk4_angles_setting"), 1 / 125.0);
-    EXPECT_EQ(found.at("adams_angles_setting"), 1 / 250.0);
+    EXPECT_EQ(settings.at("taylor angles"), 8.89e-16);
+    EXPECT_EQ(settings.at("rk4 angles"), 1 / 125.0);
+    EXPECT_EQ(settings.at("adams angles"), 1 / 250.0);
 }
 
 TEST(Drift, FindsTheLawOfGrowth) {
-    const auto found = findings_of(
+    const auto table = table_of(
         short_drift(200, {"series.methods=[\"euler\", \"rk4\", \"dopri5\", \"gauss6\", \"rattle\", \"rattle6\"]"}));
-    for (const char* name : {"gauss6_angles", "rattle_constraints", "rattle6_constraints"})
-        EXPECT_NEAR(found.at(std::string(name) + "_energy_exponent"), 0, 0.2) << name;  // measured 0.16, 0.09, 0.03
-    for (const char* name : {"rk4_angles", "dopri5_angles", "rk4_projected_constraints"})
-        EXPECT_NEAR(found.at(std::string(name) + "_energy_exponent"), 1, 0.12) << name;  // measured 0.91, 1.00, 0.96
-    for (const char* name : {"rk4_constraints", "dopri5_constraints"})
-        EXPECT_NEAR(found.at(std::string(name) + "_rods_exponent"), 2, 0.05) << name;  // measured 2.01
-    EXPECT_EQ(found.at("rk4_angles_energy_growth"), "grows linearly");
-    EXPECT_EQ(found.at("rk4_constraints_rods_growth"), "grows like t²");
-    EXPECT_EQ(found.at("gauss6_angles_energy_growth"), "stays bounded");
-    EXPECT_EQ(found.at("euler_angles_energy_growth"), "fails");
-    EXPECT_NEAR(found.at("euler_angles_broken_at_s"), 87, 1);  // measured 87.25
+    // of the energy (column 4) or the rods (5); the last time
+    const auto growth = [&](const char* method, const char* model, std::size_t column = 4) {
+        std::vector<double> times, errors{0};
+        for (std::size_t i = 0; i < table.rows.size(); ++i)
+            if (table.words[i][0] == method && table.words[i][1] == model)
+                times.push_back(table.rows[i][3]), errors.push_back(std::fmax(errors.back(), table.rows[i][column]));
+        errors.erase(errors.begin());
+        return std::pair(growth_of(times, errors, times.back() < 200 ? times.back() : NAN), times.back());
+    };
+    using Kind = Growth::Kind;
+    const auto bounded = growth("gauss6", "angles").first;
+    EXPECT_EQ(bounded.kind, Kind::bounded);
+    EXPECT_NEAR(bounded.exponent, 0, 0.2);  // measured 0.16
+    for (const char* name : {"rattle", "rattle6"})
+        EXPECT_NEAR(growth(name, "constraints").first.exponent, 0, 0.2) << name;  // measured 0.09, 0.03
+    for (const auto& [method, model] :
+         {std::pair("rk4", "angles"), {"dopri5", "angles"}, {"rk4", "projected constraints"}}) {
+        EXPECT_NEAR(growth(method, model).first.exponent, 1, 0.12) << method;  // measured 0.91, 1.00, 0.96
+        EXPECT_EQ(growth(method, model).first.kind, Kind::linear) << method;
+    }
+    for (const char* name : {"rk4", "dopri5"}) {
+        EXPECT_NEAR(growth(name, "constraints", 5).first.exponent, 2, 0.05) << name;  // measured 2.01
+        EXPECT_EQ(growth(name, "constraints", 5).first.kind, Kind::steeper) << name;
+    }
+    const auto [failed, end_s] = growth("euler", "angles");
+    EXPECT_EQ(failed.kind, Kind::failed);
+    EXPECT_NEAR(end_s, 87, 1);  // measured 87.25
 }
 
 TEST(Drift, HasNoRodErrorForMethodsThatPreserveRods) {

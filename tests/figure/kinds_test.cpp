@@ -9,11 +9,20 @@ namespace doppel::kinds_test {
 // What the figures must show, independent of their layout.
 
 TEST(Convergence, FallsByThePowerOfTheOrder) {
-    const auto found = findings_of(
+    const auto table = table_of(
         figure_of("why-they-part", {"scene.duration_s=0.5", "grid.color.values=[\"euler\", \"midpoint\", \"rk4\"]",
                                     "grid.x.points=6", "grid.x.to=0.000260416666666666666"}));
-    for (const auto& [method, order] : {std::pair{"euler", 1}, {"midpoint", 2}, {"rk4", 4}})
-        EXPECT_NEAR(found.at(std::string("slope_quad_") + method), order, 0.01) << method;  // measured 0.0015
+    int seen = 0;
+    for (std::size_t i = 1; i < table.rows.size(); ++i) {
+        const auto &coarse = table.rows[i - 1], &fine = table.rows[i];
+        const bool is_finest = i + 1 == table.rows.size() || table.words[i][0] != table.words[i + 1][0];
+        if (table.words[i][1] != "quad" || !is_finest) continue;
+        const double slope = std::log(coarse[3] / fine[3]) / std::log(coarse[2] / fine[2]);
+        const std::map<std::string, double> orders{{"euler", 1}, {"midpoint", 2}, {"rk4", 4}};
+        EXPECT_NEAR(slope, orders.at(table.words[i][0]), 0.01) << table.words[i][0];  // measured 0.0015
+        ++seen;
+    }
+    EXPECT_EQ(seen, 3);
 }
 
 TEST(Convergence, ListsEverySetting) {
@@ -47,9 +56,8 @@ TEST(Spectrum, OfADrivenPendulumSumsToFrictionOverInertia) {
     ASSERT_EQ(table.columns.size(), 4u);  // no column of the time, none of the work
     for (const auto& row : table.rows) EXPECT_NEAR(row[3], -1.5652475842498528, 3e-11);  // measured 4e-12
     EXPECT_GT(table.rows.back()[1], 0.2);
-    const auto found = findings_of(figure);
-    EXPECT_EQ(found.at("exponent1_per_s"), table.rows.back()[1]);
-    EXPECT_FALSE(found.contains("pair_mismatch_per_s"));  // with friction the exponents form no pairs
+    // with friction the exponents form no pairs
+    EXPECT_EQ(page_of(figure).captions.at(0).find("pairs are"), std::string::npos);
 }
 
 TEST(Sweep, FindsExponentsOfDrivenPendulums) {
@@ -220,8 +228,6 @@ TEST(FlipMap, ForbidsWhatTheEnergyForbids) {
         flipped += !std::isnan(row[2]);
     }
     EXPECT_GT(flipped, 300);
-    const auto found = findings_of(figure);
-    EXPECT_DOUBLE_EQ(found.at("share_without"), 1 - flipped / 1600.0);
 }
 
 TEST(FlipMap, LeavesFailedCellsEmpty) {
@@ -234,7 +240,7 @@ TEST(FlipMap, LeavesFailedCellsEmpty) {
     figure.experiment->draw(trials, page);
     EXPECT_NE(page.captions.back().find("of the releases failed"), std::string::npos) << page.captions.back();
     EXPECT_TRUE(page.panels.back().map->none_label.ends_with(", or failed")) << page.panels.back().map->none_label;
-    EXPECT_LT(findings_of(figure).at("share_without"), 1);
+    EXPECT_TRUE(std::ranges::any_of(page.panels.back().map->values, [](float time) { return std::isfinite(time); }));
 }
 
 TEST(Curves, ShowAnyColumnOfAFilmOfSeveralRuns) {
@@ -287,7 +293,6 @@ TEST(Curves, CheckToleranceShowsUntilWhenTheyAgree) {
     const std::vector<std::string> short_run{"scene.duration_s=2", "system.integrator=\"dop853\"",
                                              "system.tolerance=1e-10", "series.check_tolerance=1e-12"};
     const auto figure = figure_of("fig2-left", short_run);
-    EXPECT_EQ(findings_of(figure).at("agrees_until_s_log_ratio"), 2);
     const auto page = page_of(figure);
     EXPECT_EQ(page.captions.back(), "Converged: at tolerance 10⁻¹² the values are the same within 1 %: until 2.0 s.");
     EXPECT_EQ(header_line(figure_of("fig2-left", {"system.integrator=\"dop853\"", "system.tolerance=1e-10",

@@ -80,9 +80,9 @@ TEST(NumbersOfWork, AreThoseOfWholeSettings) {
         two[two.size() - 2] = count;
         EXPECT_FALSE(work.fits(1, two)) << count;
     }
-    EXPECT_TRUE(work.fits(0, TrialNumbers{3, 1e-20}));
-    EXPECT_FALSE(work.fits(0, TrialNumbers{3}));
-    EXPECT_FALSE(work.fits(0, TrialNumbers{3, infinite}));
+    EXPECT_TRUE(work.fits(0, TrialNumbers{3}));
+    EXPECT_FALSE(work.fits(0, TrialNumbers{3, 1e-20}));
+    EXPECT_FALSE(work.fits(0, TrialNumbers{infinite}));
 }
 
 }  // namespace doppel::numbers_test

@@ -46,15 +46,6 @@ TEST(FigureRun, ManifestTellsWhatTheFigureIs) {
     EXPECT_EQ(manifest["resolved_preset"]["a"]["integrator"], "dop853");
     EXPECT_FALSE(manifest["doppel"]["version"].get<std::string>().empty());
     EXPECT_FALSE(manifest["libraries"]["drawing"].get<std::string>().empty());
-
-    const Table table(table_text(figure, computed(figure)));
-    double minimum = table.rows[0][1], maximum = minimum;
-    for (const auto& row : table.rows) {
-        minimum = std::min(minimum, row[1]);
-        maximum = std::max(maximum, row[1]);
-    }
-    EXPECT_EQ(manifest["findings"]["least_average_log_ratio"], minimum);
-    EXPECT_EQ(manifest["findings"]["greatest_average_log_ratio"], maximum);
 }
 
 TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
@@ -69,13 +60,13 @@ TEST(FigureRun, ManifestHoldsTheHashesOfItsFiles) {
     }
 }
 
-TEST(FigureRun, ManifestHasNullForNaN) {
+TEST(FigureRun, DrawsTheRightQuantityIfTheOtherFailed) {
     const auto out = fresh_folder();
     // every pair fails, and exponents are drawn
     run_figure(figure_of("fig2-right", {"grid.x.from=60", "grid.x.to=62", "scene.sample_hz=1", "scene.duration_s=3000",
                                         "system.step_s=1", "grid.right=\"exponent\"", "grid.exponent_duration_s=10"}),
                {.out = out});
-    EXPECT_TRUE(manifest_of(out, "fig2-right")["findings"]["greatest_average_log_ratio"].is_null());
+    EXPECT_TRUE(fs::exists(out / "fig2-right/fig2-right.png"));
 }
 
 TEST(FigureRun, MakesSeveralOfSeveralSizes) {
@@ -160,9 +151,10 @@ TEST(FigureRun, DrawsASweepWithSomeFailedPairs) {
     const auto figure = figure_of("fig2-right", {"grid.x.step=30", "scene.sample_hz=5", "scene.duration_s=6",
                                                  "system.step_s=\"1/5\"", "chart.size=[320, 180]"});
     run_figure(figure, {.out = out});
-    const auto broken = manifest_of(out, "fig2-right")["findings"]["trials_broken_down"].get<double>();
-    EXPECT_GT(broken, 0);
-    EXPECT_LT(broken, 7);
+    const auto rows = Table(bytes_of(out / "fig2-right/fig2-right.csv")).rows;
+    const auto failed = std::ranges::count_if(rows, [](const auto& row) { return std::isnan(row[1]); });
+    EXPECT_GT(failed, 0);
+    EXPECT_LT(failed, 7);
 }
 
 TEST(FigureRun, FailsWhereAFigureHasNothingToDraw) {

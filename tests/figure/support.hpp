@@ -46,10 +46,6 @@ void expect_refused(const std::vector<std::string>& words, const Action& action)
     test::expect_error(ExitCode::bad_input, words, action);
 }
 
-inline Json findings_of(const FigurePreset& figure) {
-    return figure.experiment->findings(computed(figure));
-}
-
 /// The number of its pairs, orbits …
 inline double units_of(const FigurePreset& figure) {
     double all = 0;

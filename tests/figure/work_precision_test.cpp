@@ -1,3 +1,5 @@
+#include "figure/work_precision.hpp"
+
 #include "figure/support.hpp"
 
 #include <gtest/gtest.h>
@@ -46,6 +48,10 @@ std::vector<Row> rows_of(const std::string& text) {
 
 std::vector<Row> rows_of(const FigurePreset& figure) {
     return rows_of(table_text(figure, computed(figure)));
+}
+
+const WorkComparison& compared_in(const FigurePreset& figure) {
+    return dynamic_cast<const WorkComparison&>(*figure.experiment);
 }
 
 TEST(WorkPrecision, NamesTheSystem) {
@@ -134,14 +140,12 @@ TEST(WorkPrecision, KnowsItsProblems) {
         {by_evaluations, "work_precision.problems=[\"P1\", \"P3\", \"P4\"]", "work_precision.models=[\"angles\"]",
          "work_precision.methods=[\"euler\", \"taylor\"]", "work_precision.most_evaluations=20000"});
     const auto trials = computed(figure);
-    const auto found = figure.experiment->findings(trials);
-    EXPECT_NEAR(found.at("P1_sensitivity").get<double>(), 80, 1);
-    EXPECT_NEAR(found.at("P3_sensitivity").get<double>(), 320, 1);
-    EXPECT_NEAR(found.at("P4_sensitivity").get<double>(), 1040, 5);
-    for (const auto* name : {"P1", "P3", "P4"}) {
-        EXPECT_LT(found.at(std::string(name) + "_reference_disagreement").get<double>(), 5e-30)
-            << name;                                                                         // measured 9e-31
-        EXPECT_LT(found.at(std::string(name) + "_1e-12_cost").get<double>(), 6000) << name;  // measured 4706
+    const auto& compared = compared_in(figure);
+    const auto studies = compared.merged_studies(trials);
+    for (const auto& [p, sensitivity, slack] : {std::tuple(0u, 80, 1), {1u, 320, 1}, {2u, 1040, 5}}) {
+        EXPECT_NEAR(trials[p].at(0), sensitivity, slack) << p;
+        EXPECT_LT(compared.reference(p, never_stopped).disagreement, 5e-30) << p;   // measured 9e-31
+        EXPECT_LT(cheapest(studies[p], Cost::evaluations, 1e-12).cost, 6000) << p;  // measured 4706
     }
     // the error of the study's program at its step
     const std::map<std::string, double> study{{"P1", 0.13}, {"P3", 0.12}, {"P4", 0.66}};
@@ -234,10 +238,12 @@ TEST(WorkPrecision, ADivergedRunHasFailed) {
     for (const auto* name : {"angles euler", "angles adams", "constraints euler", "mechanism adams"})
         EXPECT_GT(failed[name], 0) << name;
     EXPECT_EQ(failed["constraints rattle"], 3);  // its iteration for the multipliers does not converge
-    const auto found = figure.experiment->findings(trials);
-    EXPECT_EQ(found.at("butterfly_1e-12_best"), "adams, angles");
-    EXPECT_GT(found.at("butterfly_1e-12_cost").get<double>(), 1000);  // was 93, of an energy of 1e185
-    EXPECT_NE(found.at("butterfly_1e-3_best"), "euler, angles");
+    const auto studies = compared_in(figure).merged_studies(trials)[0];
+    const auto best = cheapest(studies, Cost::evaluations, 1e-12);
+    EXPECT_EQ(best.study->solver.method, "adams");
+    EXPECT_EQ(best.study->solver.model, Model::angles);
+    EXPECT_GT(best.cost, 1000);  // was 93, of an energy of 1e185
+    EXPECT_NE(cheapest(studies, Cost::evaluations, 1e-3).study->solver.method, "euler");
 }
 
 TEST(WorkPrecision, ResolvedReadsBackToTheSame) {

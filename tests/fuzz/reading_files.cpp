@@ -103,7 +103,6 @@ void show(const FigurePreset& figure, PartFile& part) {
     part.take(*figure.experiment, trials);
     for (std::size_t i = 0; i < trials.size(); ++i)
         if (!figure.experiment->fits(i, trials[i])) throw std::logic_error("numbers that do not fit were taken");
-    figure.experiment->findings(trials);
     Csv table(std::filesystem::path("/dev/null"), figure.experiment->columns());
     figure.experiment->write_rows(trials, table);
     table.finish();

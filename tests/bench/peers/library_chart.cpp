@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace doppel {
@@ -80,25 +79,6 @@ public:
 
     std::optional<std::string> nothing_to_draw(std::span<const TrialNumbers> numbers) const override {
         return own_->nothing_to_draw(own(numbers));
-    }
-
-    Json findings(std::span<const TrialNumbers> numbers) const override {
-        auto found = own_->findings(own(numbers));
-        const auto theirs = studies(numbers);
-        for (std::size_t p = 0; p < problems_.size(); ++p)
-            for (const double accuracy : accuracies) {
-                const auto key = fmt::format("{}_1e{}_", problems_[p].name, std::lround(std::log10(accuracy)));
-                const auto best = cheapest(theirs[p], compared_.cost, accuracy);
-                if (!best.study) continue;
-                found[key + "best_peer"] = best.study->solver.method;
-                found[key + "peer_cost"] = best.cost;
-                if (found.contains(key + "cost"))
-                    found[key + "peer_ratio"] = best.cost / found[key + "cost"].get<double>();
-            }
-        if (measures_time())
-            std::tie(found["spread_typical"], found["spread_worst"]) =
-                time_spread(together(compared_.merged_studies(own(numbers)), theirs));
-        return found;
     }
 
 private:
