@@ -70,18 +70,6 @@ MotionSpec calibrated(const MotionSpec& motion, double evaluations_per_s, double
     return at_setting(motion, coarse);
 }
 
-/// The slope of the least-squares line through the points; NaN with less than two.
-double slope(std::span<const double> x, std::span<const double> y) {
-    const auto n = static_cast<double>(x.size());
-    double mean_x = 0, mean_y = 0, above = 0, below = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) mean_x += x[i] / n, mean_y += y[i] / n;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        above += (x[i] - mean_x) * (y[i] - mean_y);
-        below += (x[i] - mean_x) * (x[i] - mean_x);
-    }
-    return above / below;
-}
-
 }  // namespace
 
 DriftRun drift(MotionSpec spec, double evaluations_per_s, std::span<const double> times_s,
@@ -121,10 +109,14 @@ Growth growth_of(std::span<const double> times_s, std::span<const double> errors
         log_times.push_back(std::log(std::fmin(times_s[i], failed_at_s)));
         log_errors.push_back(std::log(errors[i]));
     }
+    // the slope of the least-squares line through the last points
     const auto fitted = [&](double back) {
-        std::size_t first = 0;
-        while (first < log_times.size() && log_times[first] < log_times.back() - back * (1 + 1e-9)) ++first;
-        return slope(std::span(log_times).subspan(first), std::span(log_errors).subspan(first));
+        const auto first =
+            std::ranges::lower_bound(log_times, log_times.back() - back * (1 + 1e-9)) - log_times.begin();
+        using Numbers = Eigen::Map<const Eigen::ArrayXd>;
+        const Numbers x(log_times.data() + first, std::ssize(log_times) - first),
+            y(log_errors.data() + first, x.size());
+        return ((x - x.mean()) * (y - y.mean())).sum() / (x - x.mean()).square().sum();
     };
     Growth growth;
     double last = 0;  // exponent of the last decade
