@@ -279,22 +279,6 @@ std::optional<double> extrapolated_s(const Experiment& whole, double& numbers, c
     return all_s;
 }
 
-/// The size of the picture and the manifest, measured on the presets: 0.5 to 1.9 times that with the table. A map has
-/// no points but its pixels.
-double picture_bytes(PictureFormat format, double pixels, double points) {
-    switch (format) {
-        case PictureFormat::png:
-            return 0.11 * pixels;
-        case PictureFormat::pdf:
-            return 17e3 + 10 * points;
-        case PictureFormat::svg:
-            return 140e3 + 20 * points;
-        case PictureFormat::html:
-            break;
-    }
-    return 120e3 + 20 * points;
-}
-
 }  // namespace
 
 Needs estimated_computation(const FigurePreset& figure, int threads, const std::atomic<bool>& stop) {
@@ -348,12 +332,16 @@ Needs estimated_computation(const FigurePreset& figure, int threads, const std::
     estimate.memory_bytes = peak_memory() + sizeof(TrialNumbers) * rows +
                             sizeof(double) * (numbers * figure.experiment->merged_trials() + needed_numbers) +
                             drawn_bytes * pixels;
-    // of the table: a cell in rows of several numbers, a number of others; measured, as in picture_bytes()
+    // of the table: a cell in rows of several numbers, a number of others; measured on the presets
     constexpr double cell_bytes = 11.5, text_bytes = 22;
     const double in_row = figure.experiment->numbers_in_row(), points = numbers / in_row;
     const double row_bytes = cell_bytes * static_cast<double>(figure.experiment->columns().size());
     const double table_bytes = map ? row_bytes * cells : in_row > 1 ? row_bytes * points : text_bytes * numbers;
-    estimate.disk_bytes = table_bytes + picture_bytes(figure.chart.format, pixels, map ? 0 : points);
+    // of the picture and the manifest, with the table within 0.5 to 1.9 times; a map has no points but its pixels
+    const bool is_pdf = figure.chart.format == PictureFormat::pdf;
+    const double drawn_points = map ? 0 : points;
+    const double paths_bytes = is_pdf ? 17e3 + 10 * drawn_points : 130e3 + 20 * drawn_points;
+    estimate.disk_bytes = table_bytes + (has_pixels ? 0.11 * pixels : paths_bytes);
     if (numbers == 0) estimate.disk_bytes = std::numeric_limits<double>::quiet_NaN();  // no trial was completed
     estimate.most_shards = static_cast<long>(std::min<std::size_t>(trials.size(), max_parts));
     return estimate;

@@ -3,6 +3,7 @@
 #include "analysis/exponent.hpp"
 #include "base/error.hpp"
 #include "integrate/methods.hpp"
+#include "output/written.hpp"
 #include "scene/captions.hpp"
 
 #include <fmt/ranges.h>
@@ -78,13 +79,6 @@ std::string problem_words(const WorkProblem& problem, const SideSpec& side) {
     shown.mass_kg = problem.motion.chain->mass;  // links with mass have none of their own in the preset
     return fmt::format("side a of {}: {}{}; {}", problem.name, motion_words(shown),
                        side.is_mechanism() ? ", and more" : "", computed);
-}
-
-/// The text as TOML comments: data that the numbers depend on and no key contains.
-std::string commented(std::string_view text) {
-    std::string lines = "#";
-    for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
-    return lines + "\n";
 }
 
 /// The standard problems of these names, listed in `table`'s key `problems`. Throws Error (exit 2).
@@ -239,7 +233,8 @@ public:
             problems.push_back(make_problem(film_.name, film_.a, film_.duration_s));
             subtitle_ = problem_words(problems.back(), film_.a);
             film_.b = film_.a;
-            settings_ += commented(resolved_sides(film_));  // distinguishes two films of the same name
+            // distinguishes two films of the same name
+            settings_ += fmt::format("# {}\n", sha256_of_text(resolved_sides(film_)));
         } else {
             problems = standard_problems(problem_names_, table);
             subtitle_ = fmt::format("pendulums released at rest, {}; double precision, one core",
