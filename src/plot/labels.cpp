@@ -37,46 +37,33 @@ bool stay_together(std::string_view word, std::string_view next) {
     return is_digit(next.front()) || letters <= unit;
 }
 
-/// The parts of `text` between which a line may break.
-std::vector<std::string> words_of(std::string_view text, const Measure& width_of, float width) {
-    std::vector<std::string> words;
-    std::string_view before;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(' '), text.size());
-        if (const auto word = text.substr(0, end); !word.empty()) {
-            const auto joined = words.empty() ? "" : words.back() + ' ' + std::string(word);
-            if (!joined.empty() && stay_together(before, word) && width_of(joined) <= width)
-                words.back() = joined;
-            else
-                words.emplace_back(word);
-            before = word;
-        }
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return words;
-}
-
 void wrap_paragraph(std::string_view text, const Measure& width_of, float width, std::vector<std::string>& lines) {
     std::string line;
-    const auto add = [&](const std::string& word) {
-        const std::string longer = line.empty() ? word : line + ' ' + word;
-        if (line.empty() || width_of(longer) <= width) {
-            line = longer;
-        } else {
-            lines.push_back(std::move(line));
-            line = word;
+    std::size_t last_break = 0;  // where the line may end; 0 = nowhere
+    for (std::string_view before, word; !text.empty(); text.remove_prefix(std::min(word.size() + 1, text.size()))) {
+        word = text.substr(0, text.find(' '));
+        if (word.empty()) continue;
+        if (!line.empty()) {
+            if (!stay_together(before, word)) last_break = line.size();
+            line += ' ';
         }
-        // wider than a line by itself
+        line += before = word;
         while (width_of(line) > width) {
-            std::size_t part = bytes_within(line, width_of, width);
-            if (part == line.size()) break;
-            // rather after a hyphen
-            if (const auto hyphen = line.substr(0, part).rfind('-'); hyphen != std::string::npos) part = hyphen + 1;
-            lines.push_back(line.substr(0, part));
-            line.erase(0, part);
+            std::size_t end = last_break;
+            if (end == 0) {  // rather after a word or a hyphen
+                end = bytes_within(line, width_of, width);
+                if (end == line.size()) break;
+                const auto part = std::string_view(line).substr(0, line[end] == ' ' ? end + 1 : end);
+                if (const auto space = part.rfind(' '); space != std::string::npos)
+                    end = space;
+                else if (const auto hyphen = part.rfind('-'); hyphen != std::string::npos)
+                    end = hyphen + 1;
+            }
+            lines.push_back(line.substr(0, end));
+            line.erase(0, end + (line[end] == ' ' ? 1 : 0));
+            last_break = 0;
         }
-    };
-    for (const auto& word : words_of(text, width_of, width)) add(word);
+    }
     lines.push_back(std::move(line));
 }
 
