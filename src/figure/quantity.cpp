@@ -131,23 +131,20 @@ public:
         keep(time, bobs);
         return first < never ? std::optional(first) : std::nullopt;
     }
-    /// Records when the link passes the downward vertical, in whatever turn.
+    /// Records when the link passes the downward vertical, in whatever turn, in the direction of the first passage.
     void add_swing(double time, const Bobs<double>& bobs) {
-        for (auto& [sense, count, first_s, last_s] : passes_) {
-            if (before_.empty()) break;
+        for (const double sense : {1.0, -1.0}) {
+            if (before_.empty() || sense * sense_ < 0) continue;
             const double turns = std::round((before_[0].theta + bobs[0].theta) / (4 * pi));
             const double passed = rise(time, before_[0], bobs[0], sense, sense * 2 * pi * turns);
-            if (passed < never && count++ == 0) first_s = passed;
-            if (passed < never) last_s = passed;
+            if (passed == never) continue;
+            if (passes_++ == 0) first_s_ = passed, sense_ = sense;
+            last_s_ = passed;
         }
         keep(time, bobs);
     }
     /// The mean period; NaN if no period is complete.
-    double period() const {
-        for (const auto& [sense, count, first_s, last_s] : passes_)
-            if (count > 1) return (last_s - first_s) / (count - 1);
-        return NAN;
-    }
+    double period() const { return passes_ > 1 ? (last_s_ - first_s_) / (passes_ - 1) : NAN; }
 
 private:
     void keep(double time, const Bobs<double>& bobs) {
@@ -169,15 +166,10 @@ private:
                });
     }
 
-    struct Passes {
-        double sense;  // 1: to the right
-        int count = 0;
-        double first_s = 0, last_s = 0;
-    };
-
     Bobs<double> before_;
     double before_s_ = 0;
-    std::array<Passes, 2> passes_{{{1}, {-1}}};
+    int passes_ = 0;
+    double sense_ = 0, first_s_ = 0, last_s_ = 0;  // sense 1: to the right
 };
 
 /// The drive frequency of a side, Hz; nothing without a drive, or with several frequencies.
