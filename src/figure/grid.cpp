@@ -418,10 +418,10 @@ bool Grid::is_missing(const Cell& cell, Quantity quantity, double number) const 
     return !have_same_release(pair.a, pair.b);
 }
 
-std::string Grid::joined_words(std::size_t group, const char* between) const {
+std::string Grid::joined_words(std::size_t group) const {
     const auto panel = panel_.exists() ? panel_.words(group / color_.count) : "";
     if (!color_.exists()) return panel;
-    return panel + (panel.empty() ? "" : between) + color_.words(group % color_.count);
+    return panel + (panel.empty() ? "" : ", ") + color_.words(group % color_.count);
 }
 
 /// The order of convergence: from the two finest step sizes, or from the middle third of the tolerances.

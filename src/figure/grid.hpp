@@ -90,7 +90,7 @@ private:
     /// Whether a curve of distances has no point: both pendulums rest in equilibrium, and the distance is constant.
     bool leaves_out(const Cell& cell) const;
     /// "rk4, θ₂ = 30°"; empty if there is only one group.
-    std::string joined_words(std::size_t group, const char* between) const;
+    std::string joined_words(std::size_t group) const;
     double slope(std::span<const TrialNumbers> numbers, std::size_t group) const;
 
     // figure/grid_plot.cpp

@@ -166,7 +166,7 @@ void Grid::draw_curves(std::span<const TrialNumbers> numbers, std::size_t group,
                 std::vector<double> rates;
                 for (std::size_t x = 0; x < drawn.x.size(); ++x)
                     rates.push_back(1 / NaturalUnits(physical_of(pair_at({group, 0, x}).a).cast<double>()).time);
-                const auto said = joined_words(group, ", ");
+                const auto said = joined_words(group);
                 figure.captions.push_back((said.empty() ? "" : said + ": ") +
                                           exponent_words(drawn, unsettled, rates, x_.angle ? "°" : ""));
             }

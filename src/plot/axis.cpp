@@ -104,37 +104,6 @@ std::vector<Tick> multiples(const Step& step, double low, double high) {
     return ticks;
 }
 
-std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels) {
-    const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
-    const long double span = static_cast<long double>(high) - low;
-    const float room = std::abs(axis.to - axis.from);
-    if (!(span > 0 && room > 0)) return {};
-    // from the smallest step that could fit, up to the first that does
-    const long double minimum = span * std::max(1.0f, labels.spacing) / room;
-    std::vector<Tick> single;
-    for (int exponent = decade_below(minimum); exponent <= decade_below(span) + 1; ++exponent) {
-        for (const long long nice : {1, 2, 5}) {
-            const Step step{nice, exponent};
-            if (step.value() < 0.999999L * minimum) continue;
-            auto ticks = multiples(step, low, high);
-            if (!fits(ticks, axis, labels)) continue;
-            if (ticks.size() >= 2) return ticks;
-            if (ticks.size() > single.size()) single = std::move(ticks);
-        }
-    }
-    // better than a single label: the first and the last of the largest step whose ends are far enough apart
-    constexpr std::size_t many = 12;  // ticks that would be a grey band
-    for (int exponent = decade_below(span); exponent >= decade_below(minimum) - 1; --exponent) {
-        for (const long long nice : {5, 2, 1}) {
-            auto ticks = multiples({nice, exponent}, low, high);
-            for (std::size_t i = 1; i + 1 < ticks.size(); ++i) ticks[i].text = "";
-            if (ticks.size() > many) ticks.erase(ticks.begin() + 1, ticks.end() - 1);
-            if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
-        }
-    }
-    return single;
-}
-
 /// The value > 0, to ten digits.
 Step step_of(double value) {
     Step step{.exponent = decade_below(value) - 9};
@@ -143,15 +112,40 @@ Step step_of(double value) {
     return step;
 }
 
-/// Multiples of the requested step; none if no two of them fit.
-std::vector<Tick> requested_ticks(const Axis& axis, const TickLabels& labels, double every) {
-    const auto [number, exponent] = step_of(every);
-    for (long long times = 1; times <= 64; times *= 2) {
-        auto ticks =
-            multiples({number * times, exponent}, std::min(axis.low, axis.high), std::max(axis.low, axis.high));
+std::vector<Tick> linear_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
+    const double low = std::min(axis.low, axis.high), high = std::max(axis.low, axis.high);
+    const long double span = static_cast<long double>(high) - low;
+    const float room = std::abs(axis.to - axis.from);
+    if (!(span > 0 && room > 0)) return {};
+    // the requested step, or up to 64 times it
+    const Step asked = step_of(every.value_or(1));
+    for (long long times = 1; every && times <= 64; times *= 2) {
+        auto ticks = multiples({asked.multiple * times, asked.exponent}, low, high);
         if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
     }
-    return {};
+    // otherwise the smallest step that fits
+    const long double minimum = span * std::max(1.0f, labels.spacing) / room;
+    std::vector<Step> steps;
+    for (int exponent = decade_below(minimum) - 1; exponent <= decade_below(span) + 1; ++exponent)
+        for (const long long nice : {1, 2, 5}) steps.push_back({nice, exponent});
+    std::vector<Tick> single;
+    for (const Step& step : steps) {
+        if (step.value() < 0.999999L * minimum) continue;
+        auto ticks = multiples(step, low, high);
+        if (!fits(ticks, axis, labels)) continue;
+        if (ticks.size() >= 2) return ticks;
+        if (ticks.size() > single.size()) single = std::move(ticks);
+    }
+    // better than a single label: the first and the last of the largest step whose ends are far enough apart
+    constexpr std::size_t many = 12;  // ticks that would be a grey band
+    std::ranges::reverse(steps);
+    for (const Step& step : steps) {
+        auto ticks = multiples(step, low, high);
+        for (std::size_t i = 1; i + 1 < ticks.size(); ++i) ticks[i].text = "";
+        if (ticks.size() > many) ticks.erase(ticks.begin() + 1, ticks.end() - 1);
+        if (ticks.size() >= 2 && fits(ticks, axis, labels)) return ticks;
+    }
+    return single;
 }
 
 /// Ticks at the given multiples of each decade, with their labels.
@@ -200,7 +194,7 @@ std::vector<Tick> logarithmic_ticks(const Axis& axis, const TickLabels& labels) 
     }
     for (auto& ticks : all)
         if (std::ranges::count_if(ticks, is_named) >= 2 && fits(ticks, axis, labels)) return std::move(ticks);
-    return linear_ticks(axis, labels);
+    return linear_ticks(axis, labels, {});
 }
 
 }  // namespace
@@ -216,12 +210,7 @@ Tick tick_at(double value) {
 
 std::vector<Tick> chart_ticks(const Axis& axis, const TickLabels& labels, std::optional<double> every) {
     if (!std::isfinite(axis.low) || !std::isfinite(axis.high)) return {};
-    if (axis.logarithmic) return logarithmic_ticks(axis, labels);
-    if (every) {
-        auto ticks = requested_ticks(axis, labels, *every);
-        if (!ticks.empty()) return ticks;
-    }
-    return linear_ticks(axis, labels);
+    return axis.logarithmic ? logarithmic_ticks(axis, labels) : linear_ticks(axis, labels, every);
 }
 
 std::vector<Tick> spaced_ticks(const Axis& axis, bool across, float em, std::optional<double> every,
