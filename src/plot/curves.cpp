@@ -87,7 +87,7 @@ Image scatter_image(const std::vector<Point>& points, float radius, Color color,
     for (std::size_t i = 0; i < covered.size(); ++i)
         if (covered[i] > 0) std::ranges::copy(bytes_of(color.with_alpha(color.a * covered[i])), &pixels->rgba[4 * i]);
     const auto px = [&](int v) { return static_cast<float>(v) / scale; };
-    return {px(left), px(top), px(left + size.width), px(top + size.height), std::move(pixels)};
+    return {{px(left), px(top), px(left + size.width), px(top + size.height)}, std::move(pixels)};
 }
 
 }  // namespace

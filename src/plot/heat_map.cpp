@@ -44,7 +44,7 @@ Image colors(const Bar& bar, float left, float top, float scale) {
     const int rows = std::max(1, static_cast<int>(std::lround(bar.axis.from * scale)));
     auto pixels = std::make_shared<Picture>(Size{1, rows});
     for (int row = 0; row < rows; ++row) set_pixel(*pixels, 0, row, bar.scale.color(1 - (row + 0.5) / rows));
-    return {left, top, left + bar.thickness, top + bar.axis.from, std::move(pixels)};
+    return {{left, top, left + bar.thickness, top + bar.axis.from}, std::move(pixels)};
 }
 
 /// The label of a shared colour bar, as lines above it.
@@ -89,11 +89,11 @@ Picture cell_picture(const HeatMap& map, const Theme& theme) {
     return picture;
 }
 
-CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
+Image map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme) {
     const auto at = [](const Axis& axis, double edge) { return static_cast<float>(axis.pixel(edge)); };
     return {{at(x, *plot.x.low), at(y, *plot.y.high), at(x, *plot.x.high), at(y, *plot.y.low)},
-            area,
-            std::make_shared<Picture>(cell_picture(*plot.map, theme))};
+            std::make_shared<Picture>(cell_picture(*plot.map, theme)),
+            area};
 }
 
 float bar_gutter(const HeatMap& map, float height, const PlotStyle& style) {

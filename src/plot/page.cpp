@@ -256,19 +256,24 @@ public:
     }
 
     void operator()(const Image& image) {
-        if (!(image.right > image.left && image.bottom > image.top && image.pixels)) return;
         const auto whole = [&](float at) { return std::round(at * scale_) / scale_; };  // whole pixels, as in a picture
-        paint(*image.pixels, {whole(image.left), whole(image.top), whole(image.right), whole(image.bottom)},
-              CAIRO_FILTER_NEAREST);
-    }
-
-    void operator()(const CellImage& cells) {
-        const auto [columns, rows] = cells.pixels->size;
-        const bool is_fine = std::abs(cells.at.width()) * scale_ < static_cast<float>(columns) ||
-                             std::abs(cells.at.height()) * scale_ < static_cast<float>(rows);
+        const auto [left, top, right, bottom] = image.at;
+        const Area at = image.within ? image.at : Area{whole(left), whole(top), whole(right), whole(bottom)};
+        if (at.width() == 0 || at.height() == 0 || !image.pixels) return;
+        const float columns = static_cast<float>(image.pixels->size.width),
+                    rows = static_cast<float>(image.pixels->size.height);
+        const bool is_fine = std::abs(at.width()) * scale_ < columns || std::abs(at.height()) * scale_ < rows;
+        const auto surface = surface_of(*image.pixels);
         cairo_save(to_);
-        clip(cells.within);
-        paint(*cells.pixels, cells.at, is_fine ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+        if (image.within) clip(*image.within);
+        cairo_translate(to_, at.left, at.top);
+        cairo_scale(to_, at.width() / columns, at.height() / rows);
+        cairo_set_source_surface(to_, surface.get(), 0, 0);
+        cairo_pattern_set_filter(cairo_get_source(to_),
+                                 image.within && is_fine ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+        cairo_pattern_set_extend(cairo_get_source(to_), CAIRO_EXTEND_PAD);  // so that the edges do not fade out
+        cairo_rectangle(to_, 0, 0, columns, rows);
+        cairo_fill(to_);
         cairo_restore(to_);
     }
 
@@ -289,20 +294,6 @@ private:
     void clip(const Area& area) {
         cairo_rectangle(to_, area.left, area.top, area.width(), area.height());
         cairo_clip(to_);
-    }
-
-    void paint(const Picture& pixels, const Area& at, cairo_filter_t filter) {
-        const auto surface = surface_of(pixels);
-        cairo_save(to_);
-        cairo_translate(to_, at.left, at.top);
-        cairo_scale(to_, at.width() / static_cast<float>(pixels.size.width),
-                    at.height() / static_cast<float>(pixels.size.height));
-        cairo_set_source_surface(to_, surface.get(), 0, 0);
-        cairo_pattern_set_filter(cairo_get_source(to_), filter);
-        cairo_pattern_set_extend(cairo_get_source(to_), CAIRO_EXTEND_PAD);  // so that the edges do not fade out
-        cairo_rectangle(to_, 0, 0, pixels.size.width, pixels.size.height);
-        cairo_fill(to_);
-        cairo_restore(to_);
     }
 
     cairo_font_face_t* face_of(const Font& font, Weight weight) {

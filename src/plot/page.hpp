@@ -17,10 +17,12 @@ namespace doppel {
 /// The file format of a page: pixels (png), paths and text, or a figure that tells its numbers (figure/page.hpp).
 enum class PictureFormat { png, pdf, svg, html };
 
-/// A picture stretched to a rectangle, whose edges are rounded to whole pixels; nearest neighbour.
+/// A picture stretched to `at`, mirrored if its edges are in reverse order. With `within` it is clipped to that area, and
+/// cells smaller than pixels are averaged; without, its edges are rounded to whole pixels. Larger cells have sharp edges.
 struct Image {
-    float left = 0, top = 0, right = 0, bottom = 0;  // px
-    std::shared_ptr<const Picture> pixels;           // with alpha
+    Area at;                                // px
+    std::shared_ptr<const Picture> pixels;  // with alpha
+    std::optional<Area> within = {};
 };
 
 /// Lines with round joints, dashed if `dash` > 0. If the width is 0, filled polygons.
@@ -32,16 +34,9 @@ struct Polylines {
     std::optional<Area> within = {};  // clipped to this area
 };
 
-/// A picture stretched to `at`, mirrored if its edges are in reverse order, and clipped to `within`. Cells larger than
-/// pixels have sharp edges; smaller ones are averaged.
-struct CellImage {
-    Area at, within;  // px
-    std::shared_ptr<const Picture> pixels;
-};
-
 /// One thing to draw: the items of a display list, and those that only charts have. Lists are in order from back to
 /// front.
-using PageItem = std::variant<Box, Capsule, Ring, Stroke, Label, Image, Polylines, CellImage>;
+using PageItem = std::variant<Box, Capsule, Ring, Stroke, Label, Image, Polylines>;
 using PageList = std::vector<PageItem>;
 
 PageList page_list(const DisplayList& list);

@@ -60,7 +60,7 @@ void fit_labels(const Plot& plot, float width, const PlotStyle& style, PlotStyle
 float further_lines(const Plot& plot, float width, const PlotStyle& style);
 
 /// The cells of the plot's map on these axes.
-CellImage map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
+Image map_cells(const Plot& plot, const Axis& x, const Axis& y, const Area& area, const Theme& theme);
 
 /// Width of a map's colour bar and its labels at the right of a panel, px. If maps share the bar, its label is above
 /// it.

@@ -88,7 +88,7 @@ TEST(HeatMap, ShowsWhatIsBadInItsColor) {
     Figure figure{.panels = {{.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map}}};
     const auto list = composed(figure, {800, 450}, themes[1]);
     EXPECT_EQ(std::ranges::count(items_of<Box>(list), themes[1].bad, &Box::color), 1);
-    const auto cells = items_of<CellImage>(list);
+    const auto cells = images_of(list, true);
     ASSERT_EQ(cells.size(), 1u);
     EXPECT_TRUE(is_color(cells[0].pixels->at(1, 0), themes[1].bad, 1));
 }
@@ -102,9 +102,9 @@ TEST(HeatMap, SharesItsBar) {
         figure.panels.assign(4, {.x = {.low = 0, .high = 1}, .y = {.low = 0, .high = 1}, .map = map});
         float right = 0, panels_right = 0, bar_left = 1e9f;
         const auto list = composed(figure, {1600, 900}, themes[1]);
-        const auto bars = items_of<Image>(list);
-        for (const auto& bar : bars) bar_left = std::min(bar_left, bar.left), right = std::max(right, bar.right);
-        for (const auto& panel : items_of<CellImage>(list)) panels_right = std::max(panels_right, panel.within.right);
+        const auto bars = images_of(list, false);
+        for (const auto& bar : bars) bar_left = std::min(bar_left, bar.at.left), right = std::max(right, bar.at.right);
+        for (const auto& panel : images_of(list, true)) panels_right = std::max(panels_right, panel.within->right);
         auto words = words_in(list);
         for (const int count : {words["blow-up"], words["an error"], static_cast<int>(bars.size())})
             EXPECT_EQ(count, shared ? 1 : 4) << shared;

@@ -188,14 +188,14 @@ TEST(Page, AnSvgSaysWhatItIs) {
 
 TEST(Page, PicturesOfNothingAreLeftOut) {
     const Page page{.size = size,
-                    .items = {Box{5, 5, 5, 9}, Image{0, 0, 0, 0, chequered()}, Image{0, 0, 9, 9, nullptr},
-                              Capsule{{}, {}, 0}, Stroke{{{{1, 1}}, {{2, 2}}}, 0}, Polylines{{}, 1}}};
+                    .items = {Box{5, 5, 5, 9}, Image{{}, chequered()}, Image{{0, 0, 9, 9}, nullptr}, Capsule{{}, {}, 0},
+                              Stroke{{{{1, 1}}, {{2, 2}}}, 0}, Polylines{{}, 1}}};
     EXPECT_TRUE(extent(picture_of(page)).empty());
 }
 
 TEST(Page, ImagesAreCrispAndAsOpaqueAsTheirPixels) {
     const auto pixels = chequered();  // 4 × 3, each 20 × 30
-    const auto drawn = picture_of({.size = size, .items = {filled(size, rgb(0)), Image{10, 20, 90, 110, pixels}}});
+    const auto drawn = picture_of({.size = size, .items = {filled(size, rgb(0)), Image{{10, 20, 90, 110}, pixels}}});
     EXPECT_EQ(extent(drawn).right, 90);
     EXPECT_EQ(extent(drawn).bottom, 110);
     for (int y = 20; y < 110; ++y)

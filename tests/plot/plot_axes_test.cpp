@@ -31,7 +31,7 @@ Figure four_maps(bool shares_axes, bool split) {
 /// The areas of the four maps, px².
 std::vector<float> areas(const PageList& list) {
     std::vector<float> all;
-    for (const auto& cells : items_of<CellImage>(list)) all.push_back(cells.within.width() * cells.within.height());
+    for (const auto& cells : images_of(list, true)) all.push_back(cells.within->width() * cells.within->height());
     return all;
 }
 

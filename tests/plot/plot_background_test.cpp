@@ -97,7 +97,7 @@ TEST(Plot, ALegendCoversNoDataAndHasAllNames) {
     const auto names = labels_of(list, "one orbit");
     ASSERT_EQ(names.size(), 4u);
     float right = 0;
-    for (const auto& image : items_of<Image>(list)) right = std::max(right, image.right);
+    for (const auto& image : items_of<Image>(list)) right = std::max(right, image.at.right);
     ASSERT_GT(right, 0);
     for (const auto& name : names) EXPECT_GT(name.anchor.x, right) << name.text;
     // a second panel, which has space for its label, has it beside the panel as well

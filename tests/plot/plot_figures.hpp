@@ -142,6 +142,13 @@ std::vector<T> items_of(const PageList& list) {
     return all;
 }
 
+/// The pictures of maps in a list, or all others.
+inline std::vector<Image> images_of(const PageList& list, bool maps) {
+    auto all = items_of<Image>(list);
+    std::erase_if(all, [&](const Image& image) { return image.within.has_value() != maps; });
+    return all;
+}
+
 /// How often each text occurs in a list.
 inline std::map<std::string, int> words_in(const PageList& list) {
     std::map<std::string, int> counts;

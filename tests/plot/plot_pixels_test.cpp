@@ -29,7 +29,7 @@ Figure with_curves(std::vector<Curve> curves) {
 
 /// The area of a map's panel.
 Area area_of(const PageList& list) {
-    return items_of<CellImage>(list).at(0).within;
+    return *images_of(list, true).at(0).within;
 }
 
 void expect_color(const Picture& picture, float x, float y, Color color, int tolerance = 1) {
