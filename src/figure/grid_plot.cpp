@@ -47,16 +47,14 @@ std::vector<Curve> stability_curves(Overlay overlay, const PhysicalPendulum<doub
 Curve energy_bound(const Pendulum<double>& p) {
     const double w1 = p.gravity * p.length[0] * (p.mass[0] + p.mass[1]), w2 = p.gravity * p.length[1] * p.mass[1];
     const double bound = w1 + w2 - 2 * std::min(w1, w2);
-    std::vector<std::pair<double, double>> half;  // θ2 ≥ 0
+    Curve outline;  // θ2 ≥ 0 first
     constexpr int points = 2000;
     for (int i = -points; i <= points; ++i) {
         const double theta1 = 180.0 * i / points, cosine = (bound - w1 * std::cos(radians(theta1))) / w2;
-        if (std::abs(cosine) <= 1) half.emplace_back(theta1, std::acos(cosine) / radians(1.0));
+        if (std::abs(cosine) <= 1) add_point(outline, theta1, std::acos(cosine) / radians(1.0));
     }
-    Curve outline;
-    for (const auto& [theta1, theta2] : half) add_point(outline, theta1, theta2);
-    for (auto at = half.rbegin(); at != half.rend(); ++at) add_point(outline, at->first, -at->second);
-    if (!half.empty()) add_point(outline, half.front().first, half.front().second);
+    for (auto i = outline.x.size(); i-- > 0;) add_point(outline, outline.x[i], -outline.y[i]);
+    if (!outline.x.empty()) add_point(outline, outline.x.front(), outline.y.front());
     return outline;
 }
 
