@@ -79,7 +79,6 @@ std::string exponent_words(Curve& exponents, const std::vector<double>& unsettle
                            std::string_view unit) {
     constexpr double resolution = 0.1;
     long regular = 0, unknown = 0, changing = 0;
-    bool contracts = false;
     std::string equilibria;
     const auto count = exponents.x.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -88,15 +87,13 @@ std::string exponent_words(Curve& exponents, const std::vector<double>& unsettle
             changing += unsettled[i] != 0;
         else
             ++(exponent + 1.5 * uncertainty > resolution * rates[i] ? unknown : regular);
-        contracts = contracts || exponent < -1.5 * uncertainty;
         if (exponent == 0 || uncertainty != 0) continue;
         equilibria += fmt::format(" At {:g}{}, {} equilibrium, it is {:.2f} 1/s.", exponents.x[i], unit,
                                   exponent > 0 ? "an unstable" : "a stable", exponent);
         exponents.y[i] = NAN;
     }
-    const auto which =
-        contracts ? "regular or come to rest: their exponent is not above 0" : "regular: their exponent is not above 0";
-    auto words = regular > 0    ? fmt::format("{} of {} releases are {}", regular, count, which)
+    auto words = regular > 0
+                     ? fmt::format("{} of {} releases are regular: their exponent is not above 0", regular, count)
                  : unknown == 0 ? fmt::format("None of {} releases is regular", count)
                                 : "";
     if (unknown > 0)
