@@ -24,25 +24,12 @@ bool libav_takes(Size size) {
     return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
 }
 
-/// The largest size that libav accepts, of about the same aspect ratio, with even sides.
-Size largest_similar(Size size) {
-    const double height = static_cast<double>(size.height) / size.width;
-    for (int width = size.width - size.width % 2; width > 2; width -= 2)
-        if (const Size similar{width, 2 * static_cast<int>(width * height / 2)};
-            similar.height > 0 && libav_takes(similar))
-            return similar;
-    return {2, 2};
-}
-
 std::optional<FormatError> size_error(const VideoOptions& options, const FormatRow& row) {
     const auto [width, height] = options.size;
     const auto given = words_of(options.size);
     if (row.container && !libav_takes(options.size))
-        return FormatError{"size", fmt::format("exceeds what libav encodes as {}; it is {}; {} is possible{}",
-                                               row.title, given, words_of(largest_similar(options.size)),
-                                               options.format == FilmFormat::mp4
-                                                   ? ", and [8192, 4352] for players limited to level 6.2 of H.264"
-                                                   : "")};
+        return FormatError{
+            "size", fmt::format("exceeds what libav encodes as {}, some [16000, 16000]; it is {}", row.title, given)};
     const bool halved = row.is_yuv() && options.pixel_format != PixelFormat::yuv444;
     if (halved && (width % 2 != 0 || height % 2 != 0))
         return FormatError{"size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title,

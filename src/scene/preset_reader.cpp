@@ -5,25 +5,11 @@
 #include "scene/toml_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <tuple>
 
 namespace doppel {
 namespace {
-
-/// The whole-number rates nearest to `rate` that divide `steps_per_second`, for an error message.
-std::string rates_that_divide(const Rational& steps_per_second, double rate) {
-    const auto next = [&](long from, long step) {
-        for (long n = from; n > 0 && std::abs(n - from) < 10000; n += step)
-            if (const auto ratio = quotient(steps_per_second, {n, 1}); ratio && ratio->is_whole()) return n;
-        return 0L;
-    };
-    const long start = std::lround(std::min(rate, 1e6)), below = next(start, -1), above = next(start + 1, 1);
-    if (below == 0 && above == 0) return "another step_s";
-    if (below == 0 || above == 0) return fmt::format("{}", std::max(below, above));
-    return fmt::format("{} or {}", below, above);
-}
 
 void check_single(const Preset& preset, TomlReader& top, const TomlReader& video) {
     if (preset.video.layout != Arrangement::single) return;
@@ -203,9 +189,8 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
         const auto rate = quotient({1, 1}, side->step());
         const auto steps = rate ? quotient(*rate, preset.sample_hz) : std::nullopt;
         if (!steps || !steps->is_whole())
-            throw scene.error("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}; use {}",
-                              rate ? rate->text() : "?", side == &preset.a ? "a" : "b", preset.sample_hz.text(),
-                              rate ? rates_that_divide(*rate, preset.sample_hz.value()) : "another");
+            throw scene.error("sample_hz", "must divide the step rate, {} Hz on side {}; it is {}",
+                              rate ? rate->text() : "?", side == &preset.a ? "a" : "b", preset.sample_hz.text());
     }
     const auto samples = product(preset.duration_s, preset.sample_hz);
     if (!samples || !samples->is_whole())

@@ -53,7 +53,7 @@ TEST(Overrides, NameTheOptionInPlaceOfALine) {
               "--set system.torque.amplitude_N_m: needs the name of an entry of [[system.torque]]: "
               "system.torque.NAME.amplitude_N_m");
     EXPECT_EQ(error({"title.x=1"}), R"(--set title.x: "title" is not a table)");
-    EXPECT_TRUE(says(error({"video.theme=2dark"}), "a string needs quotes: 'video.theme=\"2dark\"'"));
+    EXPECT_TRUE(says(error({"video.theme=2dark"}), "a string needs quotes: 'video.theme=\"…\"'"));
     EXPECT_EQ(error({"video.crf=1\nx=2"}), "--set video.crf: \"1 x=2\" is more than one value");
 }
 

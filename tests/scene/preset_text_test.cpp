@@ -177,23 +177,6 @@ TEST(PresetText, ADeepKeyIsRefusedBeforeItMakesTables) {
               "--set needs a key of at most 8 parts; this one has 200001");
 }
 
-TEST(PresetText, ALineThatIsNotTomlSaysWhatIsLikelyRight) {
-    for (const auto& [text, words] : std::map<std::string, std::string>{
-             {"title = \"a b\n", "; a quote is missing"},
-             {"title = a b", "; text needs quotes: \"a b\"; true and false have none"},
-             {"[scene]\ncertify = yes  # \"please\"", "; text needs quotes: \"yes\"; true and false have none"},
-             {"title = \xe2\x80\x9c"
-              "a\xe2\x80\x9d",
-              "; quotes are straight: \"…\""},
-             {"[scene\nduration_s = 3", "; ] is missing"},
-             {"[system]\ngravity_m_per_s2 = 9,8", "; decimals have a point, a list is like [1, 2]"},
-             {"[scene]\nx", "encountered end-of-file"},
-             {"\n# x = 1 \n= 2", "saw '='"}})
-        EXPECT_TRUE(refused(text).ends_with(words)) << refused(text);
-    EXPECT_TRUE(says(refusal([&] { preset_from("", {"video.size=640x360"}); }), "a list is like [1, 2], and"));
-    EXPECT_TRUE(says(refusal([&] { preset_from("", {"system.links="}); }), "write a value after ="));
-}
-
 TEST(PresetText, DotsThatAreNoKeyMayBeMany) {
     const auto decimals = "system.angle_deg = [" + repeated("1.5, ", 9) + "2.5]\nsystem.links = 10\n";
     EXPECT_EQ(preset_from(decimals).a.angle_deg.back(), Quad(5) / 2);
