@@ -1,7 +1,6 @@
 #include "base/error.hpp"
 #include "cli/options.hpp"
 #include "embedded/cli.hpp"
-#include "film/pair_table.hpp"
 #include "scene/preset_fields.hpp"
 
 #include <CLI/CLI.hpp>
@@ -10,16 +9,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <string_view>
-#include <tuple>
 
 namespace doppel {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace std::string_view_literals;
 
 struct Candidate {
     std::string text, help = {};
@@ -62,63 +58,19 @@ void add_choices(const CLI::Option& option, const std::string& before, Candidate
     for (const auto& choice : CLI::detail::split(text, ',')) all.push_back({before + choice});
 }
 
-/// find(preset) for the first of the words that is a readable preset.
-template <class Find>
-auto of_preset(const std::vector<std::string>& words, const Find& find) {
+/// The kinds that --set may apply to: that of the first word that is a readable preset, or those that the command
+/// accepts.
+std::vector<std::string> kinds_of(const std::string& command, const std::vector<std::string>& words) {
     for (std::size_t i = 1; i + 1 < words.size(); ++i) {
         if (words[i].starts_with('-') || words[i - 1].starts_with('-')) continue;
         try {
-            return std::optional(find(find_preset(words[i])));
+            return {kind_of_preset(find_preset(words[i]))};
         } catch (const Error&) {
             continue;  // the value of an option, or an incomplete name
         }
     }
-    return std::optional<decltype(find(PresetText()))>();
-}
-
-/// The kinds that --set may apply to: that of the given preset, or those that the command accepts.
-std::vector<std::string> kinds_of(const std::string& command, const std::vector<std::string>& words) {
-    if (const auto kind = of_preset(words, kind_of_preset)) return {*kind};
     if (command != "figure") return {std::string(pair_kind)};
     return {scene_kinds.begin() + 1, scene_kinds.end()};
-}
-
-/// The entries of a side with the name of this one, or without a name of its kind.
-long count_like(SideSpec& side, const SideEntry& one) {
-    return std::ranges::count_if(entries_of(side), [&](const SideEntry& entry) {
-        return entry.table == one.table && (one.name.empty() ? entry.kind == one.kind : entry.name == one.name);
-    });
-}
-
-/// The keys of a film's entries by their names, or by their kinds: "system.force.left.length_m=".
-void add_entries(const std::vector<std::string>& words, const std::string& word, Candidates& all) {
-    auto preset = of_preset(words, [](const PresetText& source) { return read_preset(source); });
-    if (!preset) return;
-    auto &a = preset->a, &b = preset->b;
-    for (const auto& [table, side, other] : {std::tuple("system"sv, &a, &b), {"a"sv, &a, &b}, {"b"sv, &b, &a}})
-        for_each_key(*side, [&, table = table, side = side, other = other](const SideEntry& of, const Field& field,
-                                                                           const KeyMember& member) {
-            const auto name = of.name.empty() ? of.kind : std::string_view(of.name);
-            if (of.number == 0 || name == of.table || count_like(*side, of) != 1) return;
-            const bool is_of_both = count_like(*other, of) == 1;
-            if (table == "system" ? !is_of_both : of.name.empty() && is_of_both) return;
-            const auto key = fmt::format("{}.{}.{}.{}=", table, of.table, name, field.key);
-            all.push_back({word.starts_with(key) ? key + toml_value(member) : key, std::string(field.help)});
-        });
-}
-
-/// The values of a key; in a list of names, 'video.panels=["energy","', those of its last one.
-void add_key_values(const std::string& key, const std::vector<std::string>& values, const std::string& word,
-                    Candidates& all) {
-    for (const auto& value : values) all.push_back({key + value});
-    if (word.substr(key.size(), 1) != "[") return;
-    auto names = CLI::detail::split(word.substr(key.size() + 1), ',');
-    for (const auto& value : values) {
-        names.back() = value;
-        for (const char* end : {"]", ","})
-            if (!value.starts_with('['))
-                all.push_back({fmt::format("{}[\"{}\"{}", key, fmt::join(names, "\",\""), end)});
-    }
 }
 
 /// Whether the text begins with the word, which has lost its quotes.
@@ -131,7 +83,6 @@ bool begins_with(std::string text, const std::string& word) {
 void add_settings(const std::string& command, const std::vector<std::string>& words, const std::string& word,
                   Candidates& all) {
     const auto kinds = kinds_of(command, words);
-    add_entries(words, word, all);
     const auto word_key = word.substr(0, word.find('=') + 1);
     bool is_axis = false;  // its value is a key of a side
     Candidates of_sides;
@@ -142,7 +93,7 @@ void add_settings(const std::string& command, const std::vector<std::string>& wo
         if (std::ranges::find(kinds, cells[0]) == kinds.end()) continue;
         const bool is_complete = word.starts_with(key);
         if (!is_complete) all.push_back({key, cells[2]});
-        if (is_complete) add_key_values(key, {cells.begin() + 3, cells.end()}, word, all);
+        for (std::size_t i = 3; is_complete && i < cells.size(); ++i) all.push_back({key + cells[i]});
         is_axis |= is_complete && key.ends_with(".key=");
         if (key.starts_with("system.") || key.starts_with("a.") || key.starts_with("b."))
             of_sides.push_back({word_key + cells[1], cells[2]});
@@ -150,24 +101,10 @@ void add_settings(const std::string& command, const std::vector<std::string>& wo
     if (is_axis) all.insert(all.end(), of_sides.begin(), of_sides.end());
 }
 
-/// The last name of --columns: those of the given preset, if they are known without computation.
-void add_columns(const std::vector<std::string>& words, const std::string& word, const std::string& option,
-                 Candidates& all) {
-    const auto columns = of_preset(words, [](const PresetText& source) {
-        const auto preset = read_preset(source);
-        if (preset.a.accuracy || preset.b.accuracy) throw bad_input("{}: takes its time", source.path);
-        return columns_of(make_scene(preset));
-    });
-    const auto before = word.substr(0, std::max(option.size(), word.rfind(',') + 1));
-    all.insert(all.end(), {{before + "a", "all of side a"}, {before + "b", "all of side b"}});
-    for (const auto& column : columns.value_or(std::vector<std::string>())) all.push_back({before + column});
-}
-
 void add_values(const CLI::Option& option, const std::string& command, const std::vector<std::string>& words,
                 const std::string& word, const std::string& before, Candidates& all) {
     if (option.get_name() == "--render") return add_presets("check", all);
     if (option.get_name() == "--set") return add_settings(command, words, word, all);
-    if (option.get_name() == "--columns") return add_columns(words, word, before, all);
     add_choices(option, before, all);
     if (option.get_type_name() == "DIR") add_files(word, "/", all);  // only folders
 }

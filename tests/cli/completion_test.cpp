@@ -91,15 +91,7 @@ TEST(Completion, KnowsKeysAndTheirValues) {
     EXPECT_EQ(completed(folder, "render calm --set video.transparent="), (Lines{"false", "true"}));
     EXPECT_EQ(completed(folder, "render calm --set video.colors.backg"), Lines{"video.colors.background="});
     EXPECT_EQ(completed(folder, "render calm --set scene.duration_s="), Lines{"30"});
-    EXPECT_EQ(completed(folder, "render calm --set 'video.panels=[\"pend"),
-              (Lines{R"(video.panels=["pendulums",)", R"(video.panels=["pendulums"])"}));
-    EXPECT_EQ(completed(folder, "render calm --set 'video.panels=[\"energy\",\"di"),
-              (Lines{R"(video.panels=["energy","distance",)", R"(video.panels=["energy","distance"])"}));
     EXPECT_EQ(completed(folder, "render calm --set nonesuch"), Lines{""});
-    EXPECT_EQ(completed(folder, "simulate calm --columns time_s,a_th"),
-              (Lines{"time_s,a_theta1_rad", "time_s,a_theta2_rad"}));
-    EXPECT_EQ(completed(folder, "simulate calm --columns di"), Lines{"distance"});
-    EXPECT_EQ(completed(folder, "render calm --columns=di"), Lines{"distance"});
     // the values of a figure's kind
     EXPECT_EQ(completed(folder, "figure fig2-right --set grid.x.spacing="), (Lines{"linear", "logarithmic"}));
     EXPECT_EQ(completed(folder, "figure fig2-right --set video."), Lines{""});
@@ -111,13 +103,6 @@ TEST(Completion, KnowsKeysAndTheirValues) {
                        {"theta1_deg", "mass_ratio", "links", "setting", "system.mass_kg", "b.pivot.amplitude_m"}));
     EXPECT_EQ(completed(folder, "figure fig2-right --set grid.color.key=system.int"), Lines{"system.integrator"});
     EXPECT_EQ(completed(folder, "figure fig6 --set grid.x.key="), Lines{""});  // a series
-    // entries by name, or by the kind of the only one
-    EXPECT_EQ(completed(folder, "check springs --set system.particle.le"),
-              (Lines{"system.particle.left.mass_kg=", "system.particle.left.position_m=",
-                     "system.particle.left.velocity_m_per_s="}));
-    EXPECT_EQ(completed(folder, "check raindrop --set b.force.droplet.m"), Lines{"b.force.droplet.mass_kg="});
-    EXPECT_EQ(completed(folder, "render driven --set b.torque.motor.joint="), Lines{"1"});
-    EXPECT_EQ(completed(folder, "render springs --set system.force.sp"), Lines{""});  // four springs without names
     EXPECT_TRUE(offers(completed(folder, "figure --set "), "poincare.orbits=") ||
                 offers(completed(folder, "figure --set "), "section.orbits="));
 }
