@@ -215,10 +215,8 @@ void check(const Assembly<double>& assembly) {
     check_places(assembly, q);
     check_velocities(assembly, q);
     if (const auto found = Mechanism<double>(assembly).dependence(q))
-        throw ConstraintError(
-            bad_input("{} is redundant: it follows from {}; leave it out, or start elsewhere",
-                      name_of(found->constraint, constraints[found->constraint]), listed(found->others)),
-            found->constraint);
+        throw bad_input("{} is redundant: it follows from {}; leave it out, or start elsewhere",
+                        name_of(found->constraint, constraints[found->constraint]), listed(found->others));
 }
 
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,

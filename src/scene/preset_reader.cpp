@@ -5,7 +5,6 @@
 #include "scene/toml_reader.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <tuple>
 
 namespace doppel {
@@ -204,8 +203,7 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
 
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     Preset preset;
-    preset.document = std::make_shared<const TomlDocument>(parse_document(source, overrides));
-    const auto& document = *preset.document;
+    const auto document = parse_document(source, overrides);
     KeyErrors errors(overrides);
     preset.name = preset.title = source.name;
     auto first = document.top(&errors);
