@@ -87,26 +87,23 @@ std::vector<MotionSpec> members_of(const Scene& scene) {
     return members;
 }
 
-/// A number of a mass, in words: {0} = the number of the mass, {1} = the unit, if it is said.
-struct BobNumber {
-    const char *words, *unit;
-    double Bob<double>::*member;
-};
-constexpr std::array<BobNumber, 7> bob_numbers{{{"the rate ω{0}{1}", ", rad/s,", &Bob<double>::omega},
-                                                {"the angle θ{0}{1}", ", rad,", &Bob<double>::theta},
-                                                {"the mass{1} of mass {0}", ", kg,", &Bob<double>::mass},
-                                                {"the place in x{1} of mass {0}", ", m,", &Bob<double>::x},
-                                                {"the place in y{1} of mass {0}", ", m,", &Bob<double>::y},
-                                                {"the velocity in x{1} of mass {0}", ", m/s,", &Bob<double>::vx},
-                                                {"the velocity in y{1} of mass {0}", ", m/s,", &Bob<double>::vy}}};
+/// A number of a mass, in words: {} = the number of the mass.
+constexpr std::array<std::pair<const char*, double Bob<double>::*>, 7> bob_numbers{
+    {{"the rate ω{}", &Bob<double>::omega},
+     {"the angle θ{}", &Bob<double>::theta},
+     {"mass {}", &Bob<double>::mass},
+     {"the place in x of mass {}", &Bob<double>::x},
+     {"the place in y of mass {}", &Bob<double>::y},
+     {"the velocity in x of mass {}", &Bob<double>::vx},
+     {"the velocity in y of mass {}", &Bob<double>::vy}}};
 
 /// The first number of the observation that is not finite, in words; nothing if all are.
 std::optional<std::string> not_finite(const Observation& seen) {
     const auto text = [](double value) { return std::isnan(value) ? "not a number" : fmt::to_string(value); };
     for (std::size_t i = 0; i < seen.bobs.size(); ++i)
-        for (const auto& [words, unit, member] : bob_numbers)
+        for (const auto& [words, member] : bob_numbers)
             if (const double value = seen.bobs[i].*member; !std::isfinite(value))
-                return fmt::format(fmt::runtime(words), i + 1, "") + " is " + text(value);
+                return fmt::format(fmt::runtime(words), i + 1) + " is " + text(value);
     if (!std::isfinite(seen.energy)) return "the energy is " + text(seen.energy);
     if (!std::isfinite(seen.length_error)) return "the rod error is " + text(seen.length_error);
     return std::nullopt;
@@ -258,9 +255,11 @@ PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& sto
         advance_b();
     if (error) std::rethrow_exception(error);
     const bool exact = !now.a.exact.empty() && !now.b.exact.empty();
-    const auto distance = [&](const auto& a, const auto& b) {
-        if (!differ_in_kind(scene_.preset.a, scene_.preset.b)) return static_cast<double>(state_space_distance(a, b));
-        return static_cast<double>(state_space_distance(compared_bobs(scene_, a), compared_bobs(scene_, b)));
+    const auto distance = [&]<class Scalar>(const Bobs<Scalar>& a, const Bobs<Scalar>& b) {
+        // sides of different types have only their last masses in common
+        return static_cast<double>(differ_in_kind(scene_.preset.a, scene_.preset.b)
+                                       ? state_space_distance(Bobs<Scalar>{a.back()}, Bobs<Scalar>{b.back()})
+                                       : state_space_distance(a, b));
     };
     now.distance = exact ? distance(now.a.exact, now.b.exact) : distance(now.a.bobs, now.b.bobs);
     return now;
@@ -268,23 +267,11 @@ PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& sto
 
 void check_distance(const Scene& scene, const PairState& state) {
     if (std::isfinite(state.distance)) return;
-    struct Number {
-        std::string what;
-        double a = 0, b = 0;
-    } worst;
-    const auto all_a = compared_bobs(scene, state.a.bobs), all_b = compared_bobs(scene, state.b.bobs);
-    for (std::size_t i = 0; i < all_a.size(); ++i)
-        for (const auto& [words, unit, member] : std::span(bob_numbers).subspan(2)) {  // without angles
-            const double a = all_a[i].*member, b = all_b[i].*member;
-            if (std::abs(a - b) > std::abs(worst.a - worst.b))
-                worst = {fmt::format(fmt::runtime(words), i + 1, unit), a, b};
-        }
-    const bool of_b = std::abs(worst.b) > std::abs(worst.a);
-    throw Error(state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,
-                fmt::format("{}: side {}: {} is {:.6g} at t = {} s, and {:.6g} on the other side: the square of their "
-                            "difference exceeds 1.8e308",
-                            scene.preset.name, of_b ? 'b' : 'a', worst.what, of_b ? worst.b : worst.a,
-                            scene.time(state.sample), of_b ? worst.a : worst.b));
+    throw Error(
+        state.sample == 0 ? ExitCode::bad_input : ExitCode::method_failed,
+        fmt::format("{}: side b differs from side a by more than 1e154 m, m/s or kg at t = {} s: the square of their "
+                    "distance exceeds 1.8e308",
+                    scene.preset.name, scene.time(state.sample)));
 }
 
 }  // namespace doppel

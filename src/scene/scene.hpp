@@ -236,14 +236,7 @@ private:
     Moment now_{-1};
 };
 
-/// The masses of a side that are compared with the other's: all, or the last one if the sides are of different types.
-template <class Scalar>
-Bobs<Scalar> compared_bobs(const Scene& scene, const Bobs<Scalar>& bobs) {
-    return differ_in_kind(scene.preset.a, scene.preset.b) ? Bobs<Scalar>{bobs.back()} : bobs;
-}
-
-/// Throws Error if the distance of the sides exceeds the range of double, with the number that causes it. Exit 2 at the
-/// start, exit 3 later.
+/// Throws Error if the distance of the sides exceeds the range of double: exit 2 at the start, exit 3 later.
 void check_distance(const Scene& scene, const PairState& state);
 
 /// Steps the pair from sample to sample; large sides in parallel on two threads.
