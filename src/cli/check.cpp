@@ -3,7 +3,6 @@
 #include "base/threads.hpp"
 #include "cli/options.hpp"
 #include "figure/computation.hpp"
-#include "figure/page.hpp"
 #include "film/estimate.hpp"
 #include "film/film.hpp"
 #include "scene/captions.hpp"
@@ -300,16 +299,6 @@ void check_film(Findings& found, const Scene& scene, const std::atomic<bool>& st
     json["horizon_s"] = scene.horizon() ? Json(*scene.horizon()) : Json(nullptr);
 }
 
-/// What --tiles would write of a map.
-void add_tiles(Findings& found, const MapCells& map) {
-    constexpr double cell_bytes = 1.2, cell_s = 2e-7;  // measured: 0.1 to 1.9 bytes
-    const auto [levels, tiles] = count_tiles({map.columns, map.rows});
-    const double cells = 1.0 * map.columns * map.rows, bytes = cell_bytes * cells, cpu_s = cell_s * cells;
-    found.line("  tiles  with --tiles: {} in {} level{}, about {} instead of the table and the chart, {} of CPU time",
-               grouped(tiles), levels, levels == 1 ? "" : "s", bytes_text(bytes), duration_text(cpu_s));
-    found.json["tiles"] = {{"count", tiles}, {"levels", levels}, {"bytes", std::llround(bytes)}, {"cpu_s", cpu_s}};
-}
-
 void check_figure(Findings& found, const FigurePreset& figure, const std::atomic<bool>& stop) {
     const auto& experiment = *figure.experiment;
     const int threads = experiment.measures_time() ? 1 : cores();
@@ -345,10 +334,8 @@ void check_figure(Findings& found, const FigurePreset& figure, const std::atomic
                        {"theme", figure.chart.theme},
                        {"threads", threads},
                        {"compute_s", needs.seconds},
-                       {"times_are_least", needs.at_least},
-                       {"tiles", nullptr}});
+                       {"times_are_least", needs.at_least}});
     add_needs(found, needs);
-    if (const auto map = experiment.map(); map && map->panels == 1) add_tiles(found, *map);
 }
 
 struct CheckOptions : PresetOptions {

@@ -157,15 +157,6 @@ void require_map(const FigurePreset& figure) {
         throw bad_input("{}: --tiles are of one map, kind = \"grid\" with [grid.x] and [grid.y] alone", figure.name);
 }
 
-TileCount count_tiles(Size cells) {
-    TileCount count{0, 0};
-    for (Size size = cells;; size = {(size.width + 1) / 2, (size.height + 1) / 2}) {
-        ++count.levels;
-        count.tiles += long{(size.width + tile - 1) / tile} * ((size.height + tile - 1) / tile);
-        if (std::max(size.width, size.height) <= tile) return count;
-    }
-}
-
 Json write_tiles(const FigurePreset& figure, const Figure& page, Transaction& files, int jobs,
                  const std::atomic<bool>& stop) {
     require_map(figure);

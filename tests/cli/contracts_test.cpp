@@ -60,7 +60,7 @@ TEST_F(Contracts, CheckIsJson) {
     for (const auto& [key, value] : all[1].items()) keys += key + " ";
     EXPECT_EQ(keys,
               "array compute_s cpu_s disk_bytes format kind memory_bytes name path shard_cpu_s shard_repeated_share "
-              "shards size theme threads tiles times_are_least title trials unit units warnings width_pt ");
+              "shards size theme threads times_are_least title trials unit units warnings width_pt ");
     EXPECT_EQ(all[2]["a"]["model"], "track");
 
     const auto exact = Json::parse(
@@ -119,7 +119,6 @@ TEST_F(Contracts, CheckTellsAClusterWhatARunTakes) {
     EXPECT_GT(map["shards"], 1);
     EXPECT_LE(map["shard_cpu_s"], 1800);
     EXPECT_EQ(map["shard_repeated_share"], 0);
-    EXPECT_EQ(map["tiles"]["count"], 8372);  // 32 × 196 of 256 × 256 cells, and those of 8 levels before
     EXPECT_NEAR(map["disk_bytes"].get<double>() / (4e8 * 24), 1, 0.5);  // 24 bytes a cell
 }
 
