@@ -71,7 +71,7 @@ const FormatRow& format_row(FilmFormat format, std::string_view codec);
 struct VideoOptions {
     FilmFormat format = FilmFormat::mp4;
     std::string codec = {};    // of webm_codecs; empty = the default
-    Size size;                 // px, at most 16384 a side; even if chroma is subsampled
+    Size size{1920, 1080};     // px, at most 16384 a side; even if chroma is subsampled
     long fps_numerator = 120;  // frames/s
     long fps_denominator = 1;
     PixelFormat pixel_format = PixelFormat::yuv420;  // gif, apng and rgb: not used

@@ -196,22 +196,16 @@ struct Panels {
     std::vector<StripKind> strips{StripKind::distance};
 };
 
-/// [video]: contents and output of a film. Sizes are for 1920×1080 and scale with the picture.
-struct VideoSpec : Panels {
-    Size size{1920, 1080};
+/// [video]: contents and output of a film. Sizes are for 1920×1080 and scale with the picture. A transparent film has
+/// no page and no panels.
+struct VideoSpec : Panels, VideoOptions {
     std::optional<Rational> fps;  // frames/s; if not given, sample_hz · speed, at most 30 for a gif
     Speed speed;
     double speed_ease_s = 0.5;                      // of motion, before each change
     Rational hold_start_s{0, 1}, hold_end_s{0, 1};  // hold times of the first and last frame
     Rational title_card_s{0, 1}, end_card_s{0, 1};  // 0 = none
 
-    FilmFormat format = FilmFormat::mp4;
-    std::string codec;  // for webm; empty: the default
-    PixelFormat pixel_format = PixelFormat::yuv420;
-    bool transparent = false;  // without page and panels
-    int position_bits = 16;    // for html: bits of an embedded place or angle
-    std::string preset = "doppel";
-    int crf = 18;
+    int position_bits = 16;                           // for html: bits of an embedded place or angle
     std::optional<Rational> poster_s;                 // save the frame nearest to this time as a picture
     std::optional<std::array<int, 2>> contact_sheet;  // columns and rows
 
@@ -238,15 +232,10 @@ struct VideoSpec : Panels {
     const FormatRow& format_row() const { return doppel::format_row(format, codec); }
     /// The options of the video file at a frame rate, without metadata.
     VideoOptions options(const Rational& rate) const {
-        return {.format = format,
-                .codec = codec,
-                .size = size,
-                .fps_numerator = rate.numerator,
-                .fps_denominator = rate.denominator,
-                .pixel_format = pixel_format,
-                .preset = preset,
-                .crf = crf,
-                .transparent = transparent};
+        VideoOptions options = *this;
+        options.fps_numerator = rate.numerator;
+        options.fps_denominator = rate.denominator;
+        return options;
     }
 };
 

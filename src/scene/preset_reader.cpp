@@ -106,7 +106,7 @@ void read_video(TomlReader& table, VideoSpec& video) {
     table.check_together([&] {
         check_layout(table, video);
         // the frame rate is checked once it is known
-        if (const auto error = format_error(video.options({1, 1}))) throw table.error(error->key, "{}", error->words);
+        if (const auto error = format_error(video)) throw table.error(error->key, "{}", error->words);
         if (video.layout == Arrangement::ensemble && video.glow_px.value_or(0) > 0)
             throw table.error("glow_px", "must be 0 for the layout \"ensemble\", whose trails do not glow; it is {}",
                               *video.glow_px);

@@ -232,7 +232,7 @@ std::optional<double> PeriodMean::at(double time, double value) const {
 }
 
 PairState PairRun::advance_to(const Moment& moment, const std::atomic<bool>& stop) {
-    PairState now{.sample = moment.sample, .share = moment.share};
+    PairState now{moment};
     sample_ = moment.sample;
     std::exception_ptr error;  // of side b; one of side a comes first
     const auto advance_b = [&] {

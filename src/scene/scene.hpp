@@ -170,13 +170,11 @@ struct SideState : Observation {
 };
 
 /// Both sides and their difference.
-struct PairState {
-    long sample = 0;   // the last sample reached
-    double share = 0;  // fraction of the interval to the next one
+struct PairState : Moment {
     SideState a = {}, b = {};
     double distance = 0;  // in state space, analysis/difference.hpp
 
-    Moment moment() const { return {sample, share}; }
+    const Moment& moment() const { return *this; }
 };
 
 /// A side whose method failed (exit 3).
