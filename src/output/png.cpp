@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "base/machine.hpp"
-#include "base/text.hpp"
 #include "output/files.hpp"
 #include "output/samples.hpp"
 #include "output/workers.hpp"
@@ -17,7 +16,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -83,17 +81,6 @@ std::string keyword(std::string key) {
     if (key == "encoder") return "Software";
     key[0] = static_cast<char>(std::toupper(key[0]));
     return key;
-}
-
-/// The UTF-8 text as Latin-1; nothing if a character is not in Latin-1.
-std::optional<std::string> latin1(std::string_view text) {
-    std::string result;
-    while (!text.empty()) {
-        const char32_t character = next_character(text);
-        if (character > 0xff) return std::nullopt;
-        result += static_cast<char>(character);
-    }
-    return result;
 }
 
 // flat colours compress best without a filter; any filter takes 1.7 times as long, and the file is larger
@@ -183,8 +170,8 @@ std::string png_text_chunks(const Metadata& metadata) {
     std::string chunks;
     for (const auto& [key, text] : metadata) {
         const std::string start = keyword(key) + '\0';
-        const auto short_text = latin1(text);
-        chunks += short_text ? chunk("tEXt", start + *short_text) : chunk("iTXt", start + std::string(4, '\0') + text);
+        const bool is_ascii = std::ranges::all_of(text, [](unsigned char byte) { return byte < 0x80; });
+        chunks += is_ascii ? chunk("tEXt", start + text) : chunk("iTXt", start + std::string(4, '\0') + text);
     }
     return chunks;
 }

@@ -36,8 +36,8 @@ Picture read_png(const std::filesystem::path& place);
 std::unique_ptr<Sink> make_png_sink(std::function<std::filesystem::path(long)> place_of, int threads,
                                     PngOptions options = {}, const std::atomic<bool>& stop = never_stopped);
 
-/// The metadata as PNG text chunks: tEXt if Latin-1 contains all characters of a text, otherwise iTXt. Keywords are the
-/// registered ones: "Title", "Comment", …, and "Software" for the encoder.
+/// The metadata as PNG text chunks: tEXt for ASCII, otherwise iTXt. Keywords are the registered ones: "Title",
+/// "Comment", …, and "Software" for the encoder.
 std::string png_text_chunks(const Metadata& metadata);
 
 /// `jobs` threads, or one for each core if it is 0; fewer if pictures of this size would take too much memory.

@@ -152,7 +152,7 @@ TEST_P(Formats, HaveTheFramesTimesTagsWordsAndLooksAskedFor) {
         EXPECT_EQ(video.metadata.at("comment"), "title: Three thousandths of a degree\ncomment: butterfly – 90.003°");
     } else {
         EXPECT_EQ(video.metadata.at("title"), "Three thousandths of a degree");
-        // PNG: a dash is not in Latin-1, and libav does not read iTXt
+        // PNG: a dash is not in ASCII, and libav does not read iTXt
         EXPECT_EQ(video.metadata.count("comment"), kind.format == FilmFormat::apng ? 0u : 1u);
         EXPECT_EQ(video.metadata["comment"], kind.format == FilmFormat::apng ? "" : "butterfly – 90.003°");
     }

@@ -174,9 +174,9 @@ TEST(Apng, FramesTimesAndWordsAreExact) {
     EXPECT_EQ(plays, 0u);  // repeats without end
     EXPECT_EQ(delays, (std::set<std::pair<unsigned, unsigned>>{{1001, 30000}}));
     EXPECT_EQ(texts,
-              (std::vector<std::string>{std::string("Title\0"
-                                                    "20\xb0",
-                                                    9),
+              (std::vector<std::string>{std::string("Title\0\0\0\0\0"
+                                                    "20°",
+                                                    14),
                                         std::string("Comment\0\0\0\0\0π", 14), std::string("Software\0doppel 1", 17)}));
     const Video video = read_video(path, [](const Luma& frame) {
         EXPECT_TRUE(frame.picture.rgba == moving_scene({241, 137}, frame.frame).rgba) << frame.frame;
