@@ -52,17 +52,6 @@ void refuse_empty_arguments(const std::vector<std::string>& words) {
     }
 }
 
-/// Our words for an option that was given again, otherwise those of CLI11.
-std::string words_of(const CLI::App& app, const CLI::ParseError& error) {
-    const std::string words = error.what();
-    for (const auto* command : app.get_subcommands())
-        if (const auto* option = command->get_option_no_throw(words.substr(0, words.find(':')));
-            option && dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option->count() > 1)
-            return fmt::format("{} is given {} times: {}; give it once", option->get_name(), option->count(),
-                               fmt::join(option->results(), ", "));
-    return words;
-}
-
 /// If a standard stream were closed, the next opened file would take its place, and messages would go into it. The
 /// substitute can neither be read nor written, so that uses are noticed.
 void fill_standard_streams() {
@@ -122,7 +111,7 @@ int run_program(int argc, char** argv) {
             }
             const auto parsed = app.get_subcommands();
             const auto command = parsed.empty() ? "" : parsed.front()->get_name() + " ";
-            return failed(ExitCode::bad_input, fmt::format("{}; see doppel {}--help", words_of(app, error), command));
+            return failed(ExitCode::bad_input, fmt::format("{}; see doppel {}--help", error.what(), command));
         }
         return exit_code;
     } catch (const Error& error) {

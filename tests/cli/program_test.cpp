@@ -164,7 +164,7 @@ TEST_F(Program, ExitsWith2OnBadUsageAndWritesNothing) {
         {"figure flip-map --merge -o -", "no merge of parts in a folder"},
         {"figure flip-map --shard 1/2 -o -", "no part for a merge"},
         {"fit swing.csv -o -", "--out: cannot be standard output here; give a name"},
-        {"simulate calm -o a --out b", "--out is given 2 times: a, b; give it once; see"},
+        {"simulate calm -o a --out b", "--out: At Most 1 required but received 2; see"},
     };
     for (const auto& [arguments, words] : cases) {
         EXPECT_EQ(expect_refused(arguments, 2, words).out, "");
