@@ -14,6 +14,10 @@ extern "C" {
 namespace doppel {
 namespace {
 
+std::string_view pixels_words(const VideoOptions& options) {
+    return pixel_format_names[static_cast<std::size_t>(options.pixel_format)];
+}
+
 std::string words_of(Size size) {
     return fmt::format("[{}, {}]", size.width, size.height);
 }
@@ -32,24 +36,19 @@ std::optional<FormatError> size_error(const VideoOptions& options, const FormatR
             "size", fmt::format("exceeds what libav encodes as {}, some [16000, 16000]; it is {}", row.title, given)};
     const bool halved = row.is_yuv() && options.pixel_format != PixelFormat::yuv444;
     if (halved && (width % 2 != 0 || height % 2 != 0))
-        return FormatError{"size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title,
-                                               pixel_format_names[static_cast<std::size_t>(options.pixel_format)],
-                                               given, words_of({width + width % 2, height + height % 2}))};
+        return FormatError{
+            "size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title, pixels_words(options),
+                                given, words_of({width + width % 2, height + height % 2}))};
     return std::nullopt;
 }
 
 std::optional<FormatError> alpha_error(const VideoOptions& options, const FormatRow& row) {
-    const auto error = [](std::string_view key, std::string_view value) {
+    const bool has_alpha = row.has_alpha && (!row.is_encoded() || options.pixel_format == PixelFormat::yuv420);
+    if (options.transparent && !has_alpha)
         return FormatError{
             "transparent",
-            fmt::format("needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); the {} is \"{}\"",
-                        key, value)};
-    };
-    if (!options.transparent) return std::nullopt;
-    if (!row.has_alpha && format_row(options.format, "").has_alpha) return error("codec", row.codec);
-    if (!row.has_alpha) return error("format", format_names[static_cast<std::size_t>(options.format)]);
-    if (row.is_encoded() && options.pixel_format != PixelFormat::yuv420)
-        return error("pixel_format", pixel_format_names[static_cast<std::size_t>(options.pixel_format)]);
+            fmt::format("needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); this is {}{}",
+                        row.title, row.is_yuv() ? fmt::format(" in {}", pixels_words(options)) : "")};
     return std::nullopt;
 }
 

@@ -221,23 +221,6 @@ void load_track(TomlReader& side_table, SideSpec& side) {
     if (is_read) table.guarded("start_s", [&] { replay_of(side.track); });
 }
 
-/// Samples are compared particle by particle, so that a particle of one side must exist on the other.
-void check_particles(const SideSpec& side, const SideSpec& other, TomlReader& table) {
-    const auto names = particle_names(side), others = particle_names(other);
-    if (side.particles.empty() || names == others) return;
-    if (other.particles.empty())
-        throw table.error("particle", "must be on both sides, so that they can be compared; the other is a chain");
-    for (auto& entry : table.entries("particle")) {
-        std::string name;
-        entry({.key = "name"}, name);
-        if (std::find(others.begin(), others.end(), name) != others.end()) continue;
-        throw entry.error("name", "must name a particle of both sides; \"{}\" is only on this side{}", name,
-                          did_you_mean("; ", name, {others.begin(), others.end()}));
-    }
-    if (names.size() == others.size())
-        throw table.error("particle", "must be in the order of the other side: {}", fmt::join(others, ", "));
-}
-
 /// Throws if a constraint or force of a table names a particle that the side does not have.
 void check_ends(const SideSpec& side, TomlReader& table) {
     std::vector<TomlReader> parts = table.entries("constraint"), forces = table.entries("force");
@@ -377,9 +360,11 @@ void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_
                 throw b.error("links",
                               "must be that of the other side, so that the two can be compared; they are {} and {}",
                               preset.a.links(), preset.b.links());
-            if (is_film && preset.a.particles.empty() != preset.b.particles.empty()) return;
-            check_particles(preset.a, preset.b, a);
-            check_particles(preset.b, preset.a, b);
+            const bool is_chain_a = preset.a.particles.empty(), is_chain_b = preset.b.particles.empty();
+            if ((is_chain_a && is_chain_b) || (is_film && is_chain_a != is_chain_b)) return;
+            if (const auto of_a = particle_names(preset.a), of_b = particle_names(preset.b); of_a != of_b)
+                throw b.error("particle", "must be those of side a in their order, {}, to be compared; they are {}",
+                              fmt::join(of_a, ", "), fmt::join(of_b, ", "));
         });
     }
 }

@@ -98,12 +98,16 @@ TEST(MechanismPreset, SaysWhatIsWrongWithAPart) {
     const std::pair<std::string, std::string> errors[] = {
         // both sides have the same particles in the same order
         {two + "[[b.particle]]\nname = \"bob\"\nposition_m = [0, 2]\n[[b.particle]]\nname = \"baed\"",
-         R"(presets/x.toml:14:1: [[b.particle]] 2 name must name a particle of both sides; "baed" is only on this side; did you mean "bead"?)"},
+         "presets/x.toml:10:5: [b] particle must be those of side a in their order, bead, bob, to be compared; they "
+         "are "
+         "bead, bob, baed"},
         {"[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"",
-         R"(presets/x.toml:4:1: [[a.particle]] 2 name must name a particle of both sides; "two" is only on this side)"},
+         "presets/x.toml:5:5: [b] particle must be those of side a in their order, one, two, to be compared; they are "
+         "one"},
         {"[[a.particle]]\nname = \"one\"\n[[a.particle]]\nname = \"two\"\nposition_m = [1, 0]\n"
          "[[b.particle]]\nname = \"two\"\n[[b.particle]]\nname = \"one\"\nposition_m = [1, 0]",
-         "presets/x.toml:1:5: [a] particle must be in the order of the other side: two, one"},
+         "presets/x.toml:6:5: [b] particle must be those of side a in their order, one, two, to be compared; they are "
+         "two, one"},
         // two particles with the same name
         {bead + "[[system.particle]]\nname = \"bead\"\nposition_m = [0, 1]",
          R"(presets/x.toml:8:1: [[system.particle]] 2 name must be unique; "bead" is used already)"},

@@ -285,11 +285,11 @@ TEST(FormatsRefusals, SayWhatIsPossible) {
     refused({.format = F::apng, .size = small, .fps_numerator = 65536}, {"up to 65535", "it is 65536"});
     refused({.format = F::apng, .size = small, .fps_numerator = 1, .fps_denominator = 65536}, {"65535", "1/65536"});
     refused({.format = F::mp4, .size = small, .transparent = true},
-            {"transparent needs a format with opacity", "the format is \"mp4\""});
-    refused({.format = F::webm, .codec = "av1", .size = small, .transparent = true}, {"the codec is \"av1\""});
-    refused({.format = F::gif, .size = small, .fps_numerator = 25, .transparent = true}, {"the format is \"gif\""});
+            {"transparent needs a format with opacity", "this is H.264 in yuv420p"});
+    refused({.format = F::webm, .codec = "av1", .size = small, .transparent = true}, {"this is AV1 in yuv420p"});
+    refused({.format = F::gif, .size = small, .fps_numerator = 25, .transparent = true}, {"this is GIF"});
     refused({.format = F::webm, .size = small, .pixel_format = yuv444, .transparent = true},
-            {"the pixel_format is \"yuv444p\""});
+            {"this is VP9 in yuv444p"});
     for (const Kind& kind : kinds) EXPECT_EQ(refusal(options_of(kind)), "") << kind.name;
     EXPECT_EQ(refusal({.format = F::mp4, .size = {641, 361}, .pixel_format = yuv444}), "");
     EXPECT_EQ(refusal({.format = F::apng, .size = small, .fps_numerator = 65535, .fps_denominator = 65534}), "");

@@ -403,21 +403,6 @@ TEST(Mechanism, OfAChainStartsAsTheChainDoes) {
     }
 }
 
-TEST(Particles, AreInTheOrderOfTheOtherSide) {
-    const auto particle = [](const std::string& side, const std::string& name, int x) {
-        return fmt::format("[[{}.particle]]\nname = \"{}\"\nposition_m = [{}, 0]\n", side, name, x);
-    };
-    const auto error = [&](const std::string& first, const std::string& second) {
-        return error_of([&] {
-                   scene_from(particle("a", "sun", 0) + particle("a", "moon", 1) + particle("b", first, 0) +
-                              particle("b", second, 2));
-               })
-            .second;
-    };
-    EXPECT_TRUE(says(error("moon", "sun"), "particle must be in the order of the other side: moon, sun"));
-    EXPECT_EQ(error("sun", "moon"), "no error");
-}
-
 TEST(Ensemble, GoesFromOneSideToTheOtherInEqualSteps) {
     const auto scene = scene_of("fan", {"video.members=5", "a.angle_deg=[90, 40]", "b.angle_deg=[98, 20]",
                                         "a.mass_kg=[1, 1]", "b.mass_kg=[1, 3]"});
