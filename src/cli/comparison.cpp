@@ -86,47 +86,21 @@ std::string heading(const Comparison& comparison) {
     return comparison.summary() + (unreadable > 0 ? fmt::format(", {} could not be compared", unreadable) : "");
 }
 
-/// The summary of all pictures.
 std::string header(const Comparison& comparison) {
-    std::string counts;
-    const auto count = [&](Match match, std::string_view kind, std::string_view words) {
-        const long number = comparison.count(match);
-        if (number > 0) counts += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>\n", kind, number, words);
-    };
-    count(Match::passes, "good", "pass");
-    count(Match::differs, "bad", "differ");
-    count(Match::missing, "bad", "missing");
-    count(Match::unreadable, "bad", "not readable");
     return fmt::format(
-        "<header>\n<p class=\"kind quiet\">Golden comparison</p>\n<h1>{}</h1>\n<ul class=\"counts\">\n{}</ul>\n"
+        "<header>\n<p class=\"kind quiet\">Golden comparison</p>\n<h1>{}</h1>\n"
         "<dl><dt>Expected</dt><dd><code>{}</code></dd><dt>Actual</dt><dd><code>{}</code></dd></dl>\n</header>\n",
-        markup(heading(comparison)), counts, markup(comparison.expected), markup(comparison.actual));
-}
-
-/// Links to the pictures that differ, if there are several.
-std::string contents(const Comparison& comparison) {
-    if (comparison.count(Match::differs) < 2) return {};
-    std::string links;
-    for (std::size_t i = 0; i < comparison.pictures.size(); ++i)
-        if (const auto& picture = comparison.pictures[i]; picture.match == Match::differs)
-            links += fmt::format("<li><a href=\"#picture-{}\">{}</a></li>\n", i + 1, markup(picture.name));
-    return "<nav aria-label=\"Pictures that differ\"><ul>\n" + links + "</ul></nav>\n";
+        markup(heading(comparison)), markup(comparison.expected), markup(comparison.actual));
 }
 
 /// The values, and the rules that they violate.
 std::string reasons(const ComparedPicture& picture) {
     const auto& [size, actual] = std::pair(picture.size, picture.actual_size);
     if (size != actual)
-        return fmt::format("<li>{}×{} px, expected {}×{}</li>", actual.width, actual.height, size.width, size.height);
+        return fmt::format("{}×{} px, expected {}×{}", actual.width, actual.height, size.width, size.height);
     const double pixels = static_cast<double>(size.width) * size.height;
-    auto items = fmt::format("<li>{} of {:.0f} pixels differ ({:.3g} %)</li>", picture.verdict.differing, pixels,
-                             100 * static_cast<double>(picture.verdict.differing) / pixels);
-    for (std::string_view rest = picture.verdict.why; !rest.empty();) {
-        const auto end = std::min(rest.find("; "), rest.size());
-        items += "\n<li>" + markup(rest.substr(0, end)) + "</li>";
-        rest.remove_prefix(std::min(end + 2, rest.size()));
-    }
-    return items;
+    return fmt::format("{} of {:.0f} pixels differ ({:.3g} %); {}", picture.verdict.differing, pixels,
+                       100 * static_cast<double>(picture.verdict.differing) / pixels, markup(picture.verdict.why));
 }
 
 std::string figure(std::string_view kind, std::string_view caption, const ComparedPicture& picture, Size size,
@@ -143,15 +117,14 @@ std::string url_of(const std::filesystem::path& png) {
 }
 
 /// A picture that differs; its pixels are included if `shown`.
-std::string section(const ComparedPicture& picture, std::size_t number, bool shown) {
+std::string section(const ComparedPicture& picture, bool shown) {
     const auto [width, height] = picture.size;
     const bool same_size = picture.size == picture.actual_size;
-    std::string html =
-        fmt::format("<section class=\"differs{}{}\" id=\"picture-{}\">\n<h2>{}</h2>\n<ul class=\"why\">\n{}\n</ul>\n",
-                    width <= 240   ? " small half"
-                    : width <= 480 ? " half"
-                                   : "",
-                    height > width ? " upright" : "", number, markup(picture.name), reasons(picture));
+    std::string html = fmt::format("<section class=\"differs{}{}\">\n<h2>{}</h2>\n<p class=\"why\">{}</p>\n",
+                                   width <= 240   ? " small half"
+                                   : width <= 480 ? " half"
+                                                  : "",
+                                   height > width ? " upright" : "", markup(picture.name), reasons(picture));
     if (!shown) return html + "<p class=\"quiet\">Not shown: the page would be too large.</p>\n</section>\n";
     html += fmt::format("<div class=\"three{}\">\n", same_size ? "" : " two");
     html += figure("expected", "Expected", picture, picture.size, url_of(picture.expected));
@@ -172,13 +145,8 @@ std::string list(const Comparison& comparison, bool passing) {
     for (const auto& picture : comparison.pictures) {
         const bool passes = picture.match == Match::passes;
         if (passes != passing || picture.match == Match::differs) continue;
-        const auto note =
-            picture.verdict.differing > 0
-                ? fmt::format(" <span class=\"quiet\">{} px differ a little</span>", picture.verdict.differing)
-                : "";
         const auto& told = passes && !picture.message.empty() ? picture.message : picture.name;
-        items += passes ? "<li>" + markup(told) + note + "</li>\n"
-                        : "<li><code>" + markup(picture.message) + "</code></li>\n";
+        items += passes ? "<li>" + markup(told) + "</li>\n" : "<li><code>" + markup(picture.message) + "</code></li>\n";
     }
     if (items.empty()) return {};
     if (!passing) return "<section>\n<h2>Missing or not readable</h2>\n<ul>\n" + items + "</ul>\n</section>\n";
@@ -191,10 +159,9 @@ std::string list(const Comparison& comparison, bool passing) {
 }  // namespace
 
 void write_compare_page(const std::filesystem::path& place, const Comparison& comparison) {
-    auto body = header(comparison) + contents(comparison) + "<main>\n" + list(comparison, false);
-    for (std::size_t i = 0; i < comparison.pictures.size(); ++i)
-        if (comparison.pictures[i].match == Match::differs)
-            body += section(comparison.pictures[i], i + 1, body.size() < max_bytes);
+    auto body = header(comparison) + "<main>\n" + list(comparison, false);
+    for (const auto& picture : comparison.pictures)
+        if (picture.match == Match::differs) body += section(picture, body.size() < max_bytes);
     body += list(comparison, true);
     body += fmt::format(
         "</main>\n<footer><p>A picture passes where it differs no more than graphics drivers do: in few "
