@@ -26,8 +26,12 @@ std::vector<std::jthread> start_threads(std::size_t count, const Work& work) {
     return threads;
 }
 
-/// The error for a thread that is needed and cannot be started; it names the limit that prevents it.
-Error no_thread();
+/// The error for a thread that is needed and cannot be started.
+inline Error no_thread() {
+    return io_failed(
+        "the system allows this process no more threads: raise its limits of processes (ulimit -u, pids.max of its "
+        "control group) or of memory (ulimit -v, -d), or end other programs");
+}
 
 /// Throws Error (exit 4) if this process may not start `count` further threads. Called before libraries that hang or
 /// abort when one of their threads cannot be started.

@@ -1,12 +1,8 @@
 #include "base/threads.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <atomic>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <stdexcept>
 #include <vector>
 
@@ -21,25 +17,6 @@ TEST(Threads, AreAsManyAsRequested) {
     EXPECT_EQ(ran, 5);
     EXPECT_NO_THROW(need_threads(20));
 }
-
-#ifndef DOPPEL_SANITIZE  // the sanitizer needs terabytes of address space
-TEST(Threads, NameTheLimitThatKeepsThemFromStarting) {
-    // a separate process with less address space than a stack
-    const auto end_within = [](decltype(RLIMIT_AS) limited) {
-        std::ifstream sizes("/proc/self/statm");
-        rlim_t pages = 0;
-        sizes >> pages;
-        const rlim_t maximum = limited == RLIMIT_NPROC ? 0 : pages * 4096 + (rlim_t{4} << 20);
-        const rlimit limit{maximum, maximum};
-        setrlimit(limited, &limit);
-        std::fputs(no_thread().what(), stderr);
-        std::_Exit(0);
-    };
-    const testing::ExitedWithCode told(0);
-    EXPECT_EXIT(end_within(RLIMIT_AS), told, "no memory for its stack; .* \\(ulimit -v\\)$");
-    EXPECT_EXIT(end_within(RLIMIT_NPROC), told, "no more threads; raise its limit \\(ulimit -u, ");
-}
-#endif
 
 TEST(ShareOut, DoesEachPieceOnce) {
     for (const int jobs : {0, 1, 3, 50}) {
