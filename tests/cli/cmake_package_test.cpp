@@ -72,25 +72,24 @@ TEST(CmakeInstall, InstallsWhatIsBuiltOrNothing) {
     const auto folder = fresh_folder();
     // a build folder without manual pages, and one without the program
     const auto build = fs::path(DOPPEL_TEST_OUTPUT).parent_path().string();
-    const auto made =
-        shell(folder, "mkdir -p half/tests && cp -r '" + build + "'/doppel '" + build + "'/generated '" + build +
-                          "'/changelog* half && for f in cmake_install.cmake "
-                          "tests/cmake_install.cmake; do [ ! -e '" +
-                          build + "'/$f ] || sed \"s|" + build + "|$PWD/half|g\" '" + build + "'/$f >half/$f; done");
+    const auto made = shell("mkdir -p half/tests && cp -r '" + build + "'/doppel '" + build + "'/generated '" + build +
+                            "'/changelog* half && for f in cmake_install.cmake "
+                            "tests/cmake_install.cmake; do [ ! -e '" +
+                            build + "'/$f ] || sed \"s|" + build + "|$PWD/half|g\" '" + build + "'/$f >half/$f; done");
     ASSERT_EQ(made.code, 0) << made.err;
-    const auto half = shell(folder, "cmake --install half --prefix \"$PWD/first\" && first/bin/doppel list");
+    const auto half = shell("cmake --install half --prefix \"$PWD/first\" && first/bin/doppel list");
     EXPECT_EQ(half.code, 0) << half.out << half.err;
     EXPECT_TRUE(has(half.out, "the manual pages and completions are not built"));
     EXPECT_TRUE(fs::exists(folder / "first/share/doppel/presets/calm.toml"));
     EXPECT_FALSE(fs::exists(folder / "first/share/man"));
     // its pages link to files that are there
-    const auto lost = shell(folder, R"(cd first/share/doc/doppel && ls docs/fit.md >/dev/null &&
+    const auto lost = shell(R"(cd first/share/doc/doppel && ls docs/fit.md >/dev/null &&
         grep -roP --include='*.md' '(\]\(|src="|href=")\K[^)#:" ]+(?=[)#"])' . | while IFS=: read page link; do
             [ -e "$(dirname $page)/$link" ] || echo "$page: $link"; done)");
     EXPECT_EQ(lost.out + lost.err, "");
 
     fs::remove(folder / "half/doppel");
-    const auto none = shell(folder, "cmake --install half --prefix \"$PWD/second\"");
+    const auto none = shell("cmake --install half --prefix \"$PWD/second\"");
     EXPECT_NE(none.code, 0);
     EXPECT_TRUE(has(none.err, "doppel: the program is not built"));
     EXPECT_FALSE(fs::exists(folder / "second"));

@@ -32,7 +32,7 @@ Lines completed(const fs::path& folder, const std::string& words) {
     const std::string script =
         "PATH=$PWD/bin:$PATH; source <(doppel completion bash); COMP_WORDS=(doppel); COMP_LINE=$(cat line; echo .); "
         "COMP_LINE=${COMP_LINE%.}; COMP_POINT=${#COMP_LINE}; _doppel; printf '%s\\n' \"${COMPREPLY[@]}\"";
-    const auto child = start_program(folder, "/bin/bash", {"--norc", "--noprofile", "-c", script});
+    const auto child = start_program("/bin/bash", {"--norc", "--noprofile", "-c", script});
     EXPECT_EQ(wait_for(child), 0) << bytes_of(folder / "stderr");
     EXPECT_EQ(bytes_of(folder / "stderr"), "");
     return lines_of(bytes_of(folder / "stdout"));
@@ -108,7 +108,8 @@ TEST(Completion, KnowsKeysAndTheirValues) {
 }
 
 TEST(Completion, RefusesAnUnknownShell) {
-    expect_refused(fresh_folder(), "completion tcsh", 2, "tcsh");
+    fresh_folder();
+    expect_refused("completion tcsh", 2, "tcsh");
 }
 
 /// CPU time of the finished child processes, s.
@@ -132,7 +133,7 @@ TEST(Completion, IsFast) {
     double best = 10;
     for (int i = 0; i < 5; ++i) {
         const double before = spent_by_children();
-        done(folder, "complete figure fig2-right --set grid.");
+        done("complete figure fig2-right --set grid.");
         best = std::min(best, spent_by_children() - before);
     }
     EXPECT_LT(best, maximum);

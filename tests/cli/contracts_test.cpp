@@ -76,7 +76,7 @@ TEST_F(Contracts, CheckTellsAClusterWhatARunTakes) {
     const auto beside = folder / "map";
     fs::create_directory(beside);
     const auto computes = start(  // a second of one core, while the films are checked
-        beside, "check --json flip-map --set grid.x.points=8000 --set grid.y.points=50000");
+        "check --json flip-map --set grid.x.points=8000 --set grid.y.points=50000", {}, beside);
     const auto check = [&](const Words& arguments) {
         return Json::parse(done(with("check --json", arguments)).out)[0];
     };
@@ -84,7 +84,7 @@ TEST_F(Contracts, CheckTellsAClusterWhatARunTakes) {
     const Words film = "calm --set 'video.size=[320, 180]' --set scene.duration_s=3";
     const auto small = check(film);
     rusage usage{};
-    const auto child = start(folder, with("render --progress none", film));
+    const auto child = start(with("render --progress none", film));
     int status = 0;
     wait4(child, &status, 0, &usage);
     ASSERT_EQ(status, 0) << bytes_of(folder / "stderr");

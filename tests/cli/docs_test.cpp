@@ -68,14 +68,16 @@ const std::string doppel_is_this_one = "set -e; doppel() { \"$DOPPEL\" \"$@\"; }
 
 TEST(Docs, NumbersEqualTheOutputOfTheirCommand) {
     on_every("<!-- \\$ ([^\\n]*) -->", 0, [](const fs::path& page, const std::smatch& found) {
-        const auto result = shell(fresh_folder(), doppel_is_this_one + found.str(1));
+        fresh_folder();
+        const auto result = shell(doppel_is_this_one + found.str(1));
         EXPECT_EQ(result.code, 0) << page << ": " << found.str(1) << '\n' << result.out << result.err;
     });
 }
 
 TEST(Docs, ExamplesPrintTheShownLines) {
     on_every("\\n```\\n\\$ ./(doppel [^\\n]*)\\n([^`]*)```", 0, [](const fs::path& page, const std::smatch& found) {
-        const auto result = shell(fresh_folder(), doppel_is_this_one + found.str(1));
+        fresh_folder();
+        const auto result = shell(doppel_is_this_one + found.str(1));
         EXPECT_TRUE(has(result.out, found.str(2))) << page << ": " << found.str(1) << '\n' << result.err;
     });
 }
@@ -130,8 +132,8 @@ TEST_P(PageOfCommands, Runs) {
     write_bytes(folder / "doppel", shortened);
     fs::permissions(folder / "doppel", fs::perms::owner_all);
     const bool has_goldens = std::regex_search(commands, std::regex("golden|kept"));
-    const auto result = shell(folder, "set -e; unset CI; PATH=\"$PWD:$PATH\"\n" + std::string(prepare) +
-                                          (has_goldens ? prepare_goldens : "") + "set -x\n" + commands);
+    const auto result = shell("set -e; unset CI; PATH=\"$PWD:$PATH\"\n" + std::string(prepare) +
+                              (has_goldens ? prepare_goldens : "") + "set -x\n" + commands);
     EXPECT_EQ(result.code, 0) << result.out << result.err;
 }
 

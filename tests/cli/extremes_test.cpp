@@ -29,7 +29,7 @@ void expect_answer(const std::string& command, const Request& requested) {
         const rlimit little{10, 10};  // s of CPU time; measured 0.7 at most
         setrlimit(RLIMIT_CPU, &little);
     };
-    const int code = wait_at_most(start(folder, line, patience), 120);
+    const int code = wait_at_most(start(line, patience), 120);
     const auto message = bytes_of(folder / "stderr");
     const auto made = listing(folder / "out");
     EXPECT_EQ(code, requested.code) << what << "\n" << message;
@@ -121,7 +121,7 @@ TEST(Extremes, EndlessRunsStopOnRequest) {
                                 "--set scene.sample_hz=1/100000 --set scene.duration_s=100000",
                                 "--set system.accuracy=1e-9 --set system.omega_deg_per_s=1e9"}) {
         const auto folder = fresh_folder();
-        const auto child = start(folder, with("simulate butterfly --progress none", request));
+        const auto child = start(with("simulate butterfly --progress none", request));
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         kill(child, SIGINT);
         EXPECT_EQ(wait_at_most(child, 2), 130) << fmt::format("{}", fmt::join(request, " "));

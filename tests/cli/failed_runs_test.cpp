@@ -50,9 +50,9 @@ std::vector<std::string> film(const std::string& format, const Words& more) {
 }
 
 /// Starts a very long film, and returns once it writes its pictures, with the process id.
-pid_t start_endless(const fs::path& folder, const std::string& format) {
-    const auto child = start(folder, film(format, endless));
-    const auto part = folder / "out/butterfly/.doppel-run" / (format == "mp4" ? "butterfly.mp4" : "frames");
+pid_t start_endless(const std::string& format) {
+    const auto child = start(film(format, endless));
+    const auto part = test_folder() / "out/butterfly/.doppel-run" / (format == "mp4" ? "butterfly.mp4" : "frames");
     EXPECT_TRUE(wait_until([&] {
         return format == "mp4" ? fs::exists(part) && fs::file_size(part) > 0 : fs::exists(part / "000005.png");
     }));
@@ -60,7 +60,7 @@ pid_t start_endless(const fs::path& folder, const std::string& format) {
 }
 
 TEST_F(FailedRuns, AFullDiskIsReportedAndKeepsOnlyNamedFinishedFiles) {
-    if (!can_mount(folder))
+    if (!can_mount())
         GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4OnAFullDiskAndLeavesNothing stands in";
     // a disk with so few pages or files that the run stops at different places; the last one is large enough
     const std::string script = R"sh(set -u; mkdir -p out
@@ -103,7 +103,7 @@ TEST_F(FailedRuns, AFullDiskIsReportedAndKeepsOnlyNamedFinishedFiles) {
 }
 
 TEST_F(FailedRuns, AReadOnlyTargetIsReported) {
-    if (!can_mount(folder))
+    if (!can_mount())
         GTEST_SKIP() << "mounting is not allowed here; Program.ExitsWith4WhereNothingCanBeWritten stands in";
     const auto result = shell_with_mounts(R"sh(mkdir -p out && mount -t tmpfs none out && mkdir out/butterfly &&
         mount -o remount,ro out && "$DOPPEL" simulate butterfly --progress none)sh");
@@ -115,7 +115,7 @@ TEST_F(FailedRuns, AfterKill9TheNextRunIsComplete) {
     for (const std::string format : {"mp4", "png"})
         for (const std::string next : {"mp4", "png"}) {
             fresh_folder();  // empties it
-            kill(start_endless(folder, format), SIGKILL);
+            kill(start_endless(format), SIGKILL);
             wait_for(-1);
             EXPECT_FALSE(fs::exists(folder / "out/butterfly/butterfly.mp4"));
             EXPECT_FALSE(fs::exists(folder / "out/butterfly/frames"));
@@ -131,7 +131,7 @@ TEST_F(FailedRuns, AfterKill9TheNextRecordingLeavesNothingElse) {
             return entry.path().filename().string().starts_with(".doppel-b.motion");
         });
     };
-    const auto child = start(folder, with(recorded, "--set scene.duration_s=100000"));
+    const auto child = start(with(recorded, "--set scene.duration_s=100000"));
     EXPECT_TRUE(wait_until([&] { return hidden() > 0; }));
     kill(child, SIGKILL);
     wait_for(child);
@@ -145,7 +145,7 @@ TEST_F(FailedRuns, StopsSoonAndCleanly) {
     for (const auto& [signal, format] :
          {std::pair(SIGINT, "mp4"), {SIGTERM, "png"}, {SIGHUP, "mp4"}, {SIGINT, "png"}}) {
         fresh_folder();  // empties it
-        const auto child = start_endless(folder, format);
+        const auto child = start_endless(format);
         const auto requested = std::chrono::steady_clock::now();
         for (int times = 0; times < 2; ++times) kill(child, signal);  // as timeout does
         EXPECT_EQ(wait_for(child), signal == SIGTERM ? 143 : 130);
@@ -159,7 +159,7 @@ TEST_F(FailedRuns, ASecondCtrlCEndsAProgramThatHangs) {
     std::array<int, 2> ends{};
     ASSERT_EQ(pipe(ends.data()), 0);
     fcntl(ends[1], F_SETPIPE_SZ, 4096);  // less than a picture
-    const auto child = start(folder, film("y4m", with(endless, "-o -")), [&] {
+    const auto child = start(film("y4m", with(endless, "-o -")), [&] {
         setenv("TMPDIR", ".", 1);
         dup2(ends[1], STDOUT_FILENO);
     });
@@ -203,11 +203,11 @@ TEST_F(FailedRuns, OldFramesStayWhereTheNewRunFails) {
     };
     const auto before = contents();
     // runs that were interrupted or killed, or that ran on a full disk
-    auto child = start_endless(folder, "png");
+    auto child = start_endless("png");
     kill(child, SIGTERM);
     EXPECT_EQ(wait_for(child), 143);
     EXPECT_EQ(contents(), before);
-    child = start_endless(folder, "png");
+    child = start_endless("png");
     kill(child, SIGKILL);
     wait_for(child);
     ends(film("png", endless), 4, [] {
@@ -256,7 +256,7 @@ TEST_F(FailedRuns, FilesOfAnotherFormatStayDoppelsOwn) {
 }
 
 TEST_F(FailedRuns, ASecondRunIsRefusedWhileTheFirstIsWriting) {
-    const auto first = start_endless(folder, "mp4");
+    const auto first = start_endless("mp4");
     expect_refused(film("png", quick), 75,
                    fmt::format("doppel: out/butterfly: another run, process {}, is writing there; wait for it, "
                                "or give another folder with --out\n",
@@ -273,7 +273,7 @@ TEST_F(FailedRuns, OneOfSimultaneousRunsCompletes) {
     for (int round = 0; round < 3; ++round) {
         fresh_folder();  // empties it
         std::vector<pid_t> runs;
-        for (int i = 0; i < 4; ++i) runs.push_back(start(folder, film("mp4", quick)));
+        for (int i = 0; i < 4; ++i) runs.push_back(start(film("mp4", quick)));
         int done = 0;
         for (const auto run : runs) {
             const int code = wait_for(run);
@@ -291,7 +291,7 @@ TEST_F(FailedRuns, APresetIsReadOnce) {
     const auto run = [&](const std::function<void()>& meanwhile) {
         fs::remove_all(folder / "out");
         write_bytes(folder / "butterfly.toml", text);
-        const auto child = start(folder, with("render butterfly.toml --set scene.duration_s=4 --format png", small));
+        const auto child = start(with("render butterfly.toml --set scene.duration_s=4 --format png", small));
         EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/.doppel-run/frames/000005.png"); }));
         meanwhile();
         EXPECT_FALSE(fs::exists(folder / "out/butterfly/frames")) << "it was over before the preset changed";
@@ -306,15 +306,15 @@ TEST_F(FailedRuns, APresetIsReadOnce) {
 }
 
 /// The maximum resident memory of a run, kB.
-long peak_memory(const fs::path& folder, const Words& arguments) {
-    const auto child = start(folder, arguments, [] {
+long peak_memory(const Words& arguments) {
+    const auto child = start(arguments, [] {
         // otherwise the sanitizer keeps freed memory, some of it for each thread
         setenv("ASAN_OPTIONS", "quarantine_size_mb=0:thread_local_quarantine_size_kb=0", 1);
     });
     int status = 0;
     rusage usage{};
     wait4(child, &status, 0, &usage);
-    EXPECT_EQ(status, 0) << bytes_of(folder / "stderr");
+    EXPECT_EQ(status, 0) << bytes_of(test_folder() / "stderr");
     return usage.ru_maxrss;
 }
 
@@ -325,7 +325,7 @@ TEST_F(FailedRuns, MemoryGrowsByTheMotionThatAFilmKeepsAndNoMore) {
                 fmt::format("{} butterfly --set system.integrator=taylor --set scene.duration_s={} --progress none",
                             command, seconds);
             if (command == "render") line = with(line, "--size 64x64 --set video.fps=60 --quality draft");
-            return peak_memory(folder, line);
+            return peak_memory(line);
         };
         // Frames in flight vary by 1 MB between runs, with sanitizers on a busy machine by more than 3: only a growth
         // that is too large in four pairs of runs counts. Measured 0.1 MB of simulate, 4.3 of render: 0.7 kB a sample.

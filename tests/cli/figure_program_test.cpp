@@ -80,7 +80,7 @@ TEST_F(FigureProgram, ReportsProgressAsJson) {
 TEST_F(FigureProgram, ExitsWithinASecondOfASignalWhileItsThreadsCompute) {
     for (const auto& [signal, code] : {std::pair(SIGINT, 130), {SIGTERM, 143}}) {
         fresh_folder();  // empties it
-        const auto child = start(folder, "figure fig6 droplet --progress none --jobs 4");
+        const auto child = start("figure fig6 droplet --progress none --jobs 4");
         EXPECT_TRUE(appears(folder / "out/fig6/fig6.json"));
         const auto requested = std::chrono::steady_clock::now();
         kill(child, signal);
@@ -103,7 +103,7 @@ TEST_F(FigureProgram, AMissingShardIsExit75) {
 class LongFigure : public ProgramTest {
 protected:
     void SetUp() override {
-        child_ = start(folder, with(long_map, "--jobs 1 --progress none"));
+        child_ = start(with(long_map, "--jobs 1 --progress none"));
         // stopped for 2 s, so that it counts as a long run
         for (int i = 0; i < 60'000 && cpu_s() < 0.2; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         kill(child_, SIGSTOP);
@@ -171,9 +171,9 @@ TEST_F(LongFigure, ReportsItsRecordAfterCtrlC) {
 const std::string settings = " --set grid.x.to=20 --set scene.duration_s=0.5 --size 320x180 --progress none";
 
 void expect_merged(const fs::path& folder) {
-    const auto merge = shell(folder, program + "figure fig2-right --merge" + settings);
+    const auto merge = shell(program + "figure fig2-right --merge" + settings);
     EXPECT_EQ(merge.code, 0) << merge.err;
-    EXPECT_EQ(shell(folder, program + "figure fig2-right -o whole" + settings).code, 0);
+    EXPECT_EQ(shell(program + "figure fig2-right -o whole" + settings).code, 0);
     for (const char* file : {"fig2-right.csv", "fig2-right.png"})
         EXPECT_TRUE(bytes_of(folder / "out/fig2-right" / file) == bytes_of(folder / "whole/fig2-right" / file)) << file;
 }

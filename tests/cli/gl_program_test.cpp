@@ -62,7 +62,7 @@ TEST_F(GlProgram, ExitsWith4WhereNothingCanDraw) {
         {with("render butterfly --gl egl", film), {"doppel: EGL cannot draw", "libEGL.so.1: "}}};
     for (const auto& [command, all_words] : cases) {
         for (const auto& words : all_words) expect_refused(command, 4, words, spoilt);
-        EXPECT_TRUE(left_nothing(folder));
+        EXPECT_TRUE(left_nothing());
     }
 }
 

@@ -39,8 +39,8 @@ inline Words with(Words command, const Words& more) {
 }
 
 /// Starts a program in `folder`; its standard output and error go to the files stdout and stderr there.
-inline pid_t start_program(const std::filesystem::path& folder, const char* program, const Words& arguments,
-                           const std::function<void()>& prepare = {}) {
+inline pid_t start_program(const char* program, const Words& arguments, const std::function<void()>& prepare = {},
+                           const std::filesystem::path& folder = test_folder()) {
     const pid_t child = forked(fork());
     if (child != 0) return child;
     if (chdir(folder.c_str()) != 0) _exit(99);
@@ -56,9 +56,9 @@ inline pid_t start_program(const std::filesystem::path& folder, const char* prog
     _exit(98);
 }
 
-inline pid_t start(const std::filesystem::path& folder, const Words& arguments,
-                   const std::function<void()>& prepare = {}) {
-    return start_program(folder, DOPPEL_PROGRAM, arguments, prepare);
+inline pid_t start(const Words& arguments, const std::function<void()>& prepare = {},
+                   const std::filesystem::path& folder = test_folder()) {
+    return start_program(DOPPEL_PROGRAM, arguments, prepare, folder);
 }
 
 inline int code_of(int status) {
@@ -97,14 +97,13 @@ struct Outcome {
     std::string out, err;
 };
 
-inline Outcome outcome_of(const std::filesystem::path& folder, pid_t child) {
+inline Outcome outcome_of(pid_t child) {
     const int code = wait_for(child);
-    return {code, bytes_of(folder / "stdout"), bytes_of(folder / "stderr")};
+    return {code, bytes_of(test_folder() / "stdout"), bytes_of(test_folder() / "stderr")};
 }
 
-inline Outcome doppel(const std::filesystem::path& folder, const Words& arguments,
-                      const std::function<void()>& prepare = {}) {
-    return outcome_of(folder, start(folder, arguments, prepare));
+inline Outcome doppel(const Words& arguments, const std::function<void()>& prepare = {}) {
+    return outcome_of(start(arguments, prepare));
 }
 
 /// Whether the text is one line that begins with "doppel: ".
@@ -114,21 +113,19 @@ inline testing::AssertionResult one_line(const std::string& text) {
 }
 
 /// The same; the program must exit with this code.
-inline Outcome ends(const std::filesystem::path& folder, const Words& arguments, int code,
-                    const std::function<void()>& prepare = {}) {
-    auto outcome = doppel(folder, arguments, prepare);
+inline Outcome ends(const Words& arguments, int code, const std::function<void()>& prepare = {}) {
+    auto outcome = doppel(arguments, prepare);
     EXPECT_EQ(outcome.code, code) << fmt::format("{}\n{}{}", fmt::join(arguments, " "), outcome.out, outcome.err);
     return outcome;
 }
-inline Outcome done(const std::filesystem::path& folder, const Words& arguments,
-                    const std::function<void()>& prepare = {}) {
-    return ends(folder, arguments, 0, prepare);
+inline Outcome done(const Words& arguments, const std::function<void()>& prepare = {}) {
+    return ends(arguments, 0, prepare);
 }
 
 /// The same; and with one line that has the words.
-inline Outcome expect_refused(const std::filesystem::path& folder, const Words& arguments, int code,
-                              std::string_view words, const std::function<void()>& prepare = {}) {
-    auto outcome = ends(folder, arguments, code, prepare);
+inline Outcome expect_refused(const Words& arguments, int code, std::string_view words,
+                              const std::function<void()>& prepare = {}) {
+    auto outcome = ends(arguments, code, prepare);
     EXPECT_TRUE(one_line(outcome.err)) << fmt::format("{}", fmt::join(arguments, " "));
     EXPECT_TRUE(has(outcome.err, words)) << fmt::format("{}", fmt::join(arguments, " "));
     return outcome;
@@ -137,25 +134,24 @@ inline Outcome expect_refused(const std::filesystem::path& folder, const Words& 
 /// In a shell command, the program.
 inline const std::string program = "\"$DOPPEL\" ";
 
-/// Runs a shell command in `folder`; "$DOPPEL" is the program.
-inline Outcome shell(const std::filesystem::path& folder, const std::string& script,
-                     const std::string& start = "exec /bin/sh -c \"$0\"") {
+/// Runs a shell command in the folder of the test; "$DOPPEL" is the program.
+inline Outcome shell(const std::string& script, const std::string& start = "exec /bin/sh -c \"$0\"") {
     const auto prepare = [] { setenv("DOPPEL", DOPPEL_PROGRAM, 1); };
-    return outcome_of(folder, start_program(folder, "/bin/sh", {"-c", start, script}, prepare));
+    return outcome_of(start_program("/bin/sh", {"-c", start, script}, prepare));
 }
 
 /// The same, where it may mount without effect on other processes.
-inline Outcome shell_with_mounts(const std::filesystem::path& folder, const std::string& script) {
-    return shell(folder, script, fmt::format("exec unshare {} /bin/sh -c \"$0\"", geteuid() == 0 ? "-m" : "-rm"));
+inline Outcome shell_with_mounts(const std::string& script) {
+    return shell(script, fmt::format("exec unshare {} /bin/sh -c \"$0\"", geteuid() == 0 ? "-m" : "-rm"));
 }
 
 /// Whether this machine allows tests to mount.
-inline bool can_mount(const std::filesystem::path& folder) {
-    return shell_with_mounts(folder, "mkdir -p m && mount -t tmpfs none m").code == 0;
+inline bool can_mount() {
+    return shell_with_mounts("mkdir -p m && mount -t tmpfs none m").code == 0;
 }
 
-inline bool left_nothing(const std::filesystem::path& folder) {
-    return listing(folder / "out").empty();
+inline bool left_nothing() {
+    return listing(test_folder() / "out").empty();
 }
 
 inline std::vector<std::string> lines_of(const std::string& text) {
@@ -166,24 +162,7 @@ inline std::vector<std::string> lines_of(const std::string& text) {
 }
 
 /// A test that runs the program in an empty folder.
-class ProgramTest : public InFolder {
-protected:
-    Outcome doppel(const Words& arguments, const std::function<void()>& prepare = {}) const {
-        return test::doppel(folder, arguments, prepare);
-    }
-    Outcome ends(const Words& arguments, int code, const std::function<void()>& prepare = {}) const {
-        return test::ends(folder, arguments, code, prepare);
-    }
-    Outcome done(const Words& arguments, const std::function<void()>& prepare = {}) const {
-        return ends(arguments, 0, prepare);
-    }
-    Outcome expect_refused(const Words& arguments, int code, std::string_view words,
-                           const std::function<void()>& prepare = {}) const {
-        return test::expect_refused(folder, arguments, code, words, prepare);
-    }
-    Outcome shell(const std::string& script) const { return test::shell(folder, script); }
-    Outcome shell_with_mounts(const std::string& script) const { return test::shell_with_mounts(folder, script); }
-};
+using ProgramTest = InFolder;
 
 /// A preset: a map of flip times, 8 × 8.
 inline constexpr const char* small_map =

@@ -227,7 +227,7 @@ TEST_F(Program, ACheckEndsHoweverManyStepsThereAre) {
     const Words endless = "--set system.integrator=taylor --set system.omega_deg_per_s=1e13";
     check(endless, "more than ");
 
-    const auto child = start(folder, with("check butterfly", endless));
+    const auto child = start(with("check butterfly", endless));
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
     kill(child, SIGINT);
     EXPECT_EQ(wait_for(child), 130);
@@ -268,20 +268,20 @@ TEST_F(Program, ExitsWith4OnAFullDiskAndLeavesNothing) {
                            const rlimit small{20'000, 20'000};
                            setrlimit(RLIMIT_FSIZE, &small);
                        });
-        EXPECT_TRUE(left_nothing(folder)) << format;
+        EXPECT_TRUE(left_nothing()) << format;
     }
 }
 
 TEST_F(Program, ExitsWith4WhereOpenGLIsTooOld) {
     expect_refused(with("render butterfly", tiny), 4, "OpenGL 3.3",
                    [] { setenv("MESA_GL_VERSION_OVERRIDE", "2.1", 1); });
-    EXPECT_TRUE(left_nothing(folder));
+    EXPECT_TRUE(left_nothing());
 }
 
 TEST_F(Program, ExitsWith130WithinASecondOfCtrlC) {
     for (const char* command : {"render", "simulate"}) {
         fresh_folder();  // empties it
-        const auto child = start(folder, with(command, "butterfly --set scene.duration_s=3600 --progress none"));
+        const auto child = start(with(command, "butterfly --set scene.duration_s=3600 --progress none"));
         EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/.doppel-run"); }));
         std::this_thread::sleep_for(std::chrono::milliseconds(100));  // until it simulates
         const auto requested = std::chrono::steady_clock::now();
@@ -289,7 +289,7 @@ TEST_F(Program, ExitsWith130WithinASecondOfCtrlC) {
         EXPECT_EQ(wait_for(child), 130);
         EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1)) << command;  // measured 0.1 s
         EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
-        EXPECT_TRUE(left_nothing(folder)) << command;
+        EXPECT_TRUE(left_nothing()) << command;
     }
 }
 

@@ -31,7 +31,7 @@ TEST_F(Schema, LineOfAShownPresetIsRightForACopy) {
     fs::create_directories(folder / "usr/share/doppel/presets");
     fs::rename(folder / "presets/preset.schema.json", folder / "usr/share/doppel/presets/preset.schema.json");
     fs::copy_file(DOPPEL_PROGRAM, folder / "usr/bin/doppel");
-    const auto installed = wait_for(start_program(folder, (folder / "usr/bin/doppel").c_str(), {"show", "butterfly"}));
+    const auto installed = wait_for(start_program((folder / "usr/bin/doppel").c_str(), {"show", "butterfly"}));
     EXPECT_EQ(installed, 0);
     EXPECT_EQ(bytes_of(folder / "stdout"),
               "#:schema file://" + (folder / "usr/share/doppel/presets/preset.schema.json").string() + "\n" + rest);

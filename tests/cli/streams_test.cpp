@@ -98,7 +98,7 @@ TEST_F(Streams, ClosedStreamsDoNotReceiveTheFilm) {
     for (const auto* streams : {"<&- >&- 2>&-", "<&-", ">&-", "2>&-", ">&- 2>&-"})
         EXPECT_EQ(run(streams), whole) << streams;
     // the standard descriptors refer to /dev/null while the run writes its files
-    const auto child = start(folder, "simulate butterfly --set scene.duration_s=100000 --progress plain", [] {
+    const auto child = start("simulate butterfly --set scene.duration_s=100000 --progress plain", [] {
         for (const int stream : {0, 1, 2}) close(stream);
     });
     const auto link = [&](int number) {
@@ -112,12 +112,12 @@ TEST_F(Streams, ClosedStreamsDoNotReceiveTheFilm) {
 }
 
 /// The first complete lines of a bar on a terminal of so many columns; none if there is no terminal.
-std::vector<std::string> lines_of_bar(const fs::path& folder, unsigned short columns) {
+std::vector<std::string> lines_of_bar(unsigned short columns) {
     const winsize window{.ws_row = 24, .ws_col = columns, .ws_xpixel = 0, .ws_ypixel = 0};
     int side = -1, terminal = -1;
     if (openpty(&side, &terminal, nullptr, nullptr, &window) != 0) return {};
     const auto child =
-        start(folder, "simulate 振り子.toml --set scene.duration_s=100000", [&] { dup2(terminal, STDERR_FILENO); });
+        start("simulate 振り子.toml --set scene.duration_s=100000", [&] { dup2(terminal, STDERR_FILENO); });
     close(terminal);  // so that reading ends with the program
     const std::string before = "\r\033[K";
     std::string said;
@@ -137,7 +137,7 @@ std::vector<std::string> lines_of_bar(const fs::path& folder, unsigned short col
 TEST_F(Streams, TheBarIsNarrowerThanItsTerminal) {
     write_bytes(folder / "振り子.toml", "title = \"x\"\n[b]\nangle_deg = 91\n");
     for (const int columns : {120, 80, 60, 30, 8}) {
-        const auto lines = lines_of_bar(folder, static_cast<unsigned short>(columns));
+        const auto lines = lines_of_bar(static_cast<unsigned short>(columns));
         if (lines.empty()) GTEST_SKIP() << "no terminal, as in a root without /dev/pts";
         for (std::size_t i = 1; i < lines.size(); ++i) {  // before the first one is nothing
             auto rest = std::string_view(lines[i]);
@@ -249,7 +249,7 @@ TEST_F(Streams, APipeAsPresetIsReadAndDoesNotSwallowCtrlC) {
     write_bytes(folder / "work.toml", "[scene]\nkind = \"work-precision\"\n[work_precision]\nscene = \"pipe.toml\"\n");
     for (const auto& command : std::vector<Words>{"render pipe.toml", "simulate pipe.toml", "check pipe.toml",
                                                   "show pipe.toml", "figure pipe.toml"}) {
-        const auto child = start(folder, command);
+        const auto child = start(command);
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
         kill(child, SIGINT);
         EXPECT_EQ(wait_at_most(child, 2), 130) << command[0];

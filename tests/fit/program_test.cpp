@@ -17,13 +17,12 @@ using test::fresh_folder;
 
 const fs::path data = fs::path(DOPPEL_SOURCE_DIR) / "presets/data/double-pendulum-track";
 
-test::Outcome fit(const fs::path& folder, const std::vector<fs::path>& files,
-                  const std::vector<std::string>& more = {}) {
+test::Outcome fit(const std::vector<fs::path>& files, const std::vector<std::string>& more = {}) {
     std::vector<std::string> words{"fit"};
     for (const auto& file : files) words.push_back(file.string());
     words.insert(words.end(), more.begin(), more.end());
     words.insert(words.end(), {"--progress", "none"});
-    return test::doppel(folder, words);
+    return test::doppel(words);
 }
 
 const std::vector<fs::path> lab{data / "piece-00.csv", data / "piece-02.csv", data / "piece-04.csv"};
@@ -63,10 +62,9 @@ double worst_difference(const std::vector<double>& one, const std::vector<double
 
 /// The maximum difference, rad, between the angles of a preset's run and the first piece of the track it was fitted to.
 double worst_of_preset(const fs::path& folder, const std::string& name, const TrackPiece& piece, const char* hz) {
-    const auto run =
-        test::doppel(folder, {"simulate", fmt::format("out/{0}/{0}.toml", name), "--set", "scene.duration_s=2", "--set",
-                              fmt::format("scene.sample_hz={}", hz), "--columns", "a_theta1_rad,a_theta2_rad",
-                              "--progress", "none", "-o", "runs"});
+    const auto run = test::doppel({"simulate", fmt::format("out/{0}/{0}.toml", name), "--set", "scene.duration_s=2",
+                                   "--set", fmt::format("scene.sample_hz={}", hz), "--columns",
+                                   "a_theta1_rad,a_theta2_rad", "--progress", "none", "-o", "runs"});
     EXPECT_EQ(run.code, 0) << run.err;
     auto columns = columns_of(folder / fmt::format("runs/{0}/{0}.csv", name));
     return std::max(worst_difference(columns["a_theta1_rad"], piece.angle[0]),
@@ -76,7 +74,7 @@ double worst_of_preset(const fs::path& folder, const std::string& name, const Tr
 /// The real pendulum: the statements of README and docs/fit.md.
 TEST(FitProgram, FitsARealPendulum) {
     const auto folder = fresh_folder();
-    const auto result = fit(folder, lab, {"--name", "lab"});
+    const auto result = fit(lab, {"--name", "lab"});
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err, "");
     for (const char* ending : {".toml", ".fit.json", ".residuals.csv", ".png"})
@@ -104,7 +102,7 @@ TEST(FitProgram, OmittedDataIsReportedAsANote) {
     const auto folder = fresh_folder();
     auto track = read_tracks({lab[0]});
     track.pieces[0].angle[0][500] += 5;
-    const auto result = fit(folder, files_of(folder, track), {"--model", "point"});
+    const auto result = fit(files_of(folder, track), {"--model", "point"});
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err, "p0: 1 of 2668 angles are outliers, and were left out\n");
 }
@@ -112,11 +110,11 @@ TEST(FitProgram, OmittedDataIsReportedAsANote) {
 /// Pieces that were not fitted: two seconds determine the start, the rest is predicted.
 TEST(FitProgram, ItsPresetRunsBesideATrack) {
     const auto folder = fresh_folder();
-    ASSERT_EQ(fit(folder, {data / "piece-00.csv", data / "piece-02.csv"}, {"--name", "lab"}).code, 0);
+    ASSERT_EQ(fit({data / "piece-00.csv", data / "piece-02.csv"}, {"--name", "lab"}).code, 0);
     const auto beside = [&](const std::string& track, const std::vector<std::string>& more = {}) {
         std::vector<std::string> words{"simulate", "out/lab/lab.toml", "--beside", track, "--progress", "none"};
         words.insert(words.end(), more.begin(), more.end());
-        return test::doppel(folder, words);
+        return test::doppel(words);
     };
     const auto left_out = (data / "piece-04.csv").string();
     const auto result = beside(left_out);
@@ -145,15 +143,15 @@ TEST(FitProgram, ItsPresetRunsBesideATrack) {
 TEST(FitProgram, WritesTheSameBytesForAnyNumberOfThreads) {
     const auto folder = fresh_folder(), preset = folder / "out/lab/lab.toml",
                table = folder / "out/lab/lab.residuals.csv";
-    ASSERT_EQ(fit(folder, lab, {"--name", "lab", "-j", "1"}).code, 0);
+    ASSERT_EQ(fit(lab, {"--name", "lab", "-j", "1"}).code, 0);
     const auto preset_bytes = bytes_of(preset), table_bytes = bytes_of(table);
-    ASSERT_EQ(fit(folder, lab, {"--name", "lab", "-j", "3"}).code, 0);
+    ASSERT_EQ(fit(lab, {"--name", "lab", "-j", "3"}).code, 0);
     EXPECT_EQ(bytes_of(preset), preset_bytes);
     EXPECT_EQ(bytes_of(table), table_bytes);
     fs::remove_all(folder / "out");
     fs::create_directories(folder / "out/lab");
     test::write_bytes(preset, "mine");
-    const auto refused = fit(folder, lab, {"--name", "lab"});
+    const auto refused = fit(lab, {"--name", "lab"});
     EXPECT_EQ(refused.code, 4) << refused.err;
     EXPECT_EQ(bytes_of(preset), "mine");
 }
@@ -164,21 +162,21 @@ TEST(FitProgram, RefusesWithAReasonAndLeavesNothing) {
     for (const auto& [file, words] :
          {std::pair("none.csv", "doppel: none.csv: there is no such file\n"),
           std::pair("bad.csv", "doppel: bad.csv:2: theta2_rad is nan; leave out rows without a measurement\n")}) {
-        const auto refused = fit(folder, {file});
+        const auto refused = fit({file});
         EXPECT_EQ(refused.code, 2);
         EXPECT_EQ(refused.err, words);
     }
     fs::copy_file(lab[0], folder / "swing.csv");
-    const auto twice = fit(folder, {"swing.csv", lab[1], "./swing.csv"});
+    const auto twice = fit({"swing.csv", lab[1], "./swing.csv"});
     EXPECT_EQ(twice.code, 2);
     EXPECT_EQ(twice.err,
               "doppel: swing.csv and ./swing.csv are the same file; samples counted twice would make the "
               "errors too small\n");
-    EXPECT_EQ(fit(folder, {"swing.csv"}, {"--every", "30"}).err,
+    EXPECT_EQ(fit({"swing.csv"}, {"--every", "30"}).err,
               "doppel: --every is the time from a piece to the next, and swing.csv is one piece\n");
     for (const auto& [option, value] :
          {std::pair("--every", "1"), std::pair("--name", "../lab"), std::pair("--model", "rope")})
-        EXPECT_EQ(fit(folder, lab, {option, value}).code, 2) << option;
+        EXPECT_EQ(fit(lab, {option, value}).code, 2) << option;
     EXPECT_FALSE(fs::exists(folder / "out/bad"));
     EXPECT_FALSE(fs::exists(folder / "out/piece-00/piece-00.toml"));
 }
@@ -190,14 +188,14 @@ TEST(FitProgram, ControlCharactersInNamesAreSanitised) {
                              "a\xe2\x80\xae"
                              "b",
                              "\xff"}) {
-        const auto refused = fit(folder, lab, {"--name", name});
+        const auto refused = fit(lab, {"--name", name});
         EXPECT_EQ(refused.code, 2) << refused.err;
         EXPECT_EQ(refused.err.find(name), std::string::npos);
     }
     const auto track = folder / "a\n[video]\nformat=\"png\"\n#.csv";
     fs::copy_file(lab[0], track);
-    EXPECT_EQ(fit(folder, {track}).code, 2);  // the default name of the files would be the track's name
-    ASSERT_EQ(fit(folder, {track}, {"--name", "lab"}).code, 0);
+    EXPECT_EQ(fit({track}).code, 2);  // the default name of the files would be the track's name
+    ASSERT_EQ(fit({track}, {"--name", "lab"}).code, 0);
     const auto preset = bytes_of(folder / "out/lab/lab.toml");
     EXPECT_TRUE(preset.starts_with("# Fitted by doppel fit to a [video] format=\"png\" #.csv: ")) << preset;
     const auto json = nlohmann::json::parse(bytes_of(folder / "out/lab/lab.fit.json"));
@@ -212,7 +210,7 @@ TEST(FitProgram, ItsPresetSwingsAsTheTrackDid) {
     const auto track = test::simulated(test::ratios_of(test::point_masses(1.3, 1, 0.2, 0.25)), Drag::own,
                                        {.pieces = 3, .noise = 1e-4});
     const auto folder = fresh_folder();
-    ASSERT_EQ(fit(folder, files_of(folder, track), {"--name", "points"}).code, 0);
+    ASSERT_EQ(fit(files_of(folder, track), {"--name", "points"}).code, 0);
     EXPECT_LT(worst_of_preset(folder, "points", track.pieces[0], "100"), 2e-3);  // measured 5e-4
 }
 

@@ -15,9 +15,13 @@ namespace doppel::test {
 
 namespace fs = std::filesystem;
 
-fs::path fresh_folder() {
+fs::path test_folder() {
     const auto& test = *testing::UnitTest::GetInstance()->current_test_info();
-    const fs::path folder = fs::path(DOPPEL_TEST_OUTPUT) / (std::string(test.test_suite_name()) + "." + test.name());
+    return fs::path(DOPPEL_TEST_OUTPUT) / (std::string(test.test_suite_name()) + "." + test.name());
+}
+
+fs::path fresh_folder() {
+    const auto folder = test_folder();
     fs::remove_all(folder);
     fs::create_directories(folder);
     return folder;

@@ -18,7 +18,8 @@
 
 namespace doppel::test {
 
-/// An empty folder for the current test.
+/// The folder of the current test; fresh_folder() empties it.
+std::filesystem::path test_folder();
 std::filesystem::path fresh_folder();
 
 /// A test with an empty folder.
