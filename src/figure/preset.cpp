@@ -182,7 +182,7 @@ std::string FigurePreset::resolved() const {
 FigurePreset read_figure(const PresetText& source, const std::vector<Override>& overrides,
                          const std::atomic<bool>& stop) {
     const auto document = parse_document(source, overrides);
-    KeyErrors errors(overrides);
+    KeyErrors errors;
     read_once(source, document, &errors, stop);
     auto figure = read_once(source, document, nullptr, stop);
     const auto is_set = [&](std::string_view key) { return std::ranges::count(overrides, key, &Override::key) > 0; };

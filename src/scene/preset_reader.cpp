@@ -204,7 +204,7 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     Preset preset;
     const auto document = parse_document(source, overrides);
-    KeyErrors errors(overrides);
+    KeyErrors errors;
     preset.name = preset.title = source.name;
     auto first = document.top(&errors);
     const bool knows_font = read_font(first, source.path, preset.video);

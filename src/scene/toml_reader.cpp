@@ -74,19 +74,16 @@ TomlReader::TomlReader(const toml::table* table, std::string name, std::string p
       errors_(errors) {}
 
 std::pair<std::string, ErrorPlace> TomlReader::place_of(std::string_view key) const {
-    if (!table_) return {path_, {}};
+    if (!table_) return {path_, no_place};
     const auto entry = table_->find(key);
     const bool is_given = entry != table_->end();
     const toml::node& holder = is_given ? entry->second : *table_;
     const bool is_placed = is_given || name_.starts_with("[[");  // one of several entries
-    if (is_placed && is_typed(holder)) {
-        const auto& option = *holder.source().path;
-        return {option, errors_ ? errors_->of_option(option) : ErrorPlace{}};
-    }
+    if (is_placed && is_typed(holder)) return {*holder.source().path, no_place};
     const auto& at = (is_given ? entry->first.source() : table_->source()).begin;
     const bool is_known = at.line > 0 && (is_given || !name_.empty());
     return {is_placed ? fmt::format("{}:{}:{}", path_, at.line, at.column) : path_,
-            is_known ? ErrorPlace{at.line, at.column} : ErrorPlace{}};
+            is_known ? ErrorPlace{at.line, at.column} : no_place};
 }
 
 void TomlReader::refuse(const KeyError& error) const {
@@ -189,11 +186,6 @@ bool TomlReader::counts(const Field& field) {
 void TomlReader::require(const Field& field, bool given) const {
     if (!given && !field.needed_by.empty())
         throw error(field.key, "is missing; a {} needs it", field.needed_by).with(beside("kind"));
-}
-
-ErrorPlace KeyErrors::of_option(const std::string& origin) const {
-    const auto at = std::ranges::find(overrides_, origin, &Override::origin);
-    return {ErrorPlace::no_line + 1 + static_cast<std::size_t>(at - overrides_.begin()), 0};
 }
 
 bool KeyErrors::concern(std::string_view group) const {

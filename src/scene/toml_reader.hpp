@@ -6,7 +6,6 @@
 
 #include <toml++/toml.h>
 
-#include <compare>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -61,12 +60,9 @@ std::optional<std::string> missed_range(const Bounds& bounds, const Quad& number
 /// Whether it was given on the command line.
 bool is_typed(const toml::node& node);
 
-/// Sort key of an error: line and column in the file, then errors without a line, then command line options by number.
-struct ErrorPlace {
-    static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max() / 2;
-    std::size_t line = no_line, column = 0;
-    auto operator<=>(const ErrorPlace&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 takes it for 0
-};
+/// Sort key of an error: line and column in the file; errors without a line and of the command line come last.
+using ErrorPlace = std::pair<std::size_t, std::size_t>;
+inline constexpr ErrorPlace no_place{std::numeric_limits<std::size_t>::max(), 0};
 
 /// An error in a key (exit 2). If the key is only wrong together with another key of the same table, that key is
 /// `beside`; it may be the wrong one. An empty `beside` stands for any key of the group.
@@ -91,10 +87,6 @@ struct KeyError : Error {
 /// only the first is kept, because that key may be wrong.
 class KeyErrors {
 public:
-    explicit KeyErrors(const std::vector<Override>& overrides) : overrides_(overrides) {}
-
-    /// The place of a value that this command line option gave.
-    ErrorPlace of_option(const std::string& origin) const;
     void add(const KeyError& error) { errors_.push_back(error); }
     bool concern(std::string_view group) const;
     /// Throws one Error (exit 2) with all remaining errors, without duplicates, sorted by place. Returns if there is
@@ -102,7 +94,6 @@ public:
     void throw_if_any() const;
 
 private:
-    std::vector<Override> overrides_;
     std::vector<KeyError> errors_;
 };
 

@@ -52,9 +52,9 @@ mas_kg = 3
         "9:1: [scene] duration_s must be a number; it is an array ([3])",
         "11:1: [system] gravity_m_per_s2 must be > 0; it is -1",
         R"(12:1: [system] has no "mas_kg"; did you mean "mass_kg"?)",
-        "--set video.hold_end_s: [video] hold_end_s must be ≥ 0; it is -1",
         R"(--set a.lable: [a] has no "lable"; did you mean "label"?)",
-        R"(--set video.fps: [video] fps must be a number or a fraction such as "1/30000"; it is "fast")"};
+        R"(--set video.fps: [video] fps must be a number or a fraction such as "1/30000"; it is "fast")",
+        "--set video.hold_end_s: [video] hold_end_s must be ≥ 0; it is -1"};
     EXPECT_EQ(errors, expected);
 }
 
