@@ -30,8 +30,8 @@ void check_cairo(cairo_status_t status) {
 
 using CairoFontFace = Owned<cairo_font_face_t, cairo_font_face_destroy>;
 
-/// The font for Cairo; if it lacks the weight, FreeType emboldens it. FreeType lives until Cairo has released the font.
-CairoFontFace load_font(const Font& font, Weight weight) {
+/// The font for Cairo. FreeType lives until Cairo has released the font.
+CairoFontFace load_font(const Font& font) {
     struct Loaded {
         FT_Library library = nullptr;
         FT_Face face = nullptr;
@@ -51,7 +51,6 @@ CairoFontFace load_font(const Font& font, Weight weight) {
     check_cairo(cairo_font_face_set_user_data(face.get(), &key, loaded.get(),
                                               [](void* kept) { delete static_cast<Loaded*>(kept); }));
     static_cast<void>(loaded.release());
-    if (font.lacks(weight)) cairo_ft_font_face_set_synthesize(face.get(), CAIRO_FT_SYNTHESIZE_BOLD);
     return face;
 }
 
@@ -242,7 +241,7 @@ public:
                 end = i + 1 < line.glyphs.size() ? line.glyphs[i + 1].byte : label.text.size();
                 letters.push_back({static_cast<int>(end - glyph.byte), 1});
             }
-            cairo_set_font_face(to_, face_of(*font, label.weight));
+            cairo_set_font_face(to_, face_of(*font));
             if (pixels_) {
                 cairo_glyph_path(to_, glyphs.data(), static_cast<int>(glyphs.size()));
                 fill(label.color);
@@ -296,9 +295,9 @@ private:
         cairo_clip(to_);
     }
 
-    cairo_font_face_t* face_of(const Font& font, Weight weight) {
-        auto& face = faces_[{&font, weight}];
-        if (!face) face = load_font(font, weight);
+    cairo_font_face_t* face_of(const Font& font) {
+        auto& face = faces_[&font];
+        if (!face) face = load_font(font);
         return face.get();
     }
 
@@ -306,7 +305,7 @@ private:
     const Typeface& typeface_;
     float scale_;  // px per unit of the items
     bool pixels_;
-    std::map<std::pair<const Font*, Weight>, CairoFontFace> faces_;
+    std::map<const Font*, CairoFontFace> faces_;
 };
 
 /// Draws the page with `units` of the surface per pixel of the page. With `pixels`, letters are drawn as paths at

@@ -26,39 +26,12 @@
 namespace doppel {
 namespace {
 
-/// Synthetic bold, em: extra width and height of the letters, and extra distance between them.
-constexpr float bold_width = 0.043f, bold_height = 0.026f, bold_spacing = 0.030f;
-
 /// The rectangle that contains an outline, in px right of the pen's pixel and below the baseline.
 Area extent_of(const FT_Outline& outline, float scale, float shift) {
     FT_BBox units;
     FT_Outline_Get_CBox(&outline, &units);
     const auto pixels = [&](FT_Pos of) { return static_cast<float>(of) * scale; };
     return {pixels(units.xMin) + shift, -pixels(units.yMax), pixels(units.xMax) + shift, -pixels(units.yMin)};
-}
-
-/// The part of pixel i…i + 1 that lies between `from` and `to`, 0…1.
-float overlap(int i, float from, float to) {
-    const auto pixel = static_cast<float>(i);
-    return std::max(0.0f, std::min(pixel + 1, to) - std::max(pixel, from));
-}
-
-/// The hollow box drawn for a missing glyph; the font's own box is empty.
-Coverage missing_box(float size, Weight weight, float shift) {
-    const float pen = size * (weight == Weight::bold ? 0.09f : 0.06f);
-    const float left = shift + 0.1f * size, right = shift + 0.5f * size, height = 0.7f * size;
-    Coverage coverage;
-    coverage.left = static_cast<int>(std::floor(left));
-    coverage.top = static_cast<int>(std::floor(-height));
-    coverage.size = {static_cast<int>(std::ceil(right)) - coverage.left, -coverage.top};
-    for (int y = coverage.top; y < 0; ++y) {
-        for (int x = coverage.left; x < coverage.left + coverage.size.width; ++x) {
-            const float outer = overlap(x, left, right) * overlap(y, -height, 0);
-            const float inner = overlap(x, left + pen, right - pen) * overlap(y, pen - height, -pen);
-            coverage.values.push_back(byte_of(outer - inner));
-        }
-    }
-    return coverage;
 }
 
 constexpr float max_ems = 16;  // largest distance from the pen; a glyph that extends further is damaged
@@ -115,12 +88,11 @@ struct Font::Tables {
     float scale(float size) const { return size / static_cast<float>(face->units_per_EM); }
 };
 
-Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index, Weight weight)
+Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index)
     : file_(std::move(file)),
       owned_(std::move(owned)),
       bytes_(owned_.empty() ? bytes : owned_),
       index_(index),
-      weight_(weight),
       tables_(std::make_unique<Tables>()) {
     auto& [mutex, library, face, is_complete] = *tables_;
     if (FT_Init_FreeType(&library) != 0) throw io_failed("FreeType cannot be started");
@@ -137,11 +109,8 @@ Font::Font(std::filesystem::path file, std::string owned, std::string_view bytes
 Font::~Font() = default;
 
 const Font& Font::built_in(Weight weight) {
-    const auto load = [](std::string_view name, Weight of) {
-        return Font({}, {}, embedded_file(render_files(), name), 0, of);
-    };
-    static const Font regular = load("DejaVuSans.ttf", Weight::regular);
-    static const Font bold = load("DejaVuSans-Bold.ttf", Weight::bold);
+    static const Font regular({}, {}, embedded_file(render_files(), "DejaVuSans.ttf"), 0);
+    static const Font bold({}, {}, embedded_file(render_files(), "DejaVuSans-Bold.ttf"), 0);
     return weight == Weight::bold ? bold : regular;
 }
 
@@ -165,31 +134,23 @@ int Font::number_of(char32_t character) const {
     return outline && outline->n_points > 0 ? number : 0;
 }
 
-float Font::advance(int glyph, float size, Weight weight) const {
+float Font::advance(int glyph, float size) const {
     const std::lock_guard lock(tables_->mutex);
     FT_Fixed units = 0;
     if (FT_Get_Advance(tables_->face, static_cast<FT_UInt>(glyph), FT_LOAD_NO_SCALE, &units) != 0) units = 0;
-    // letters move apart by less than they grow, because heavier text is set tighter
-    const float extra = lacks(weight) && units > 0 ? bold_spacing * size : 0;
-    return static_cast<float>(units) * tables_->scale(size) + extra;
+    return static_cast<float>(units) * tables_->scale(size);
 }
 
-Coverage Font::rasterised(int glyph, float size, Weight weight, float shift) const {
-    if (glyph == 0) return missing_box(size, weight, shift);
+Coverage Font::rasterised(int glyph, float size, float shift) const {
     const std::lock_guard lock(tables_->mutex);
-    FT_Outline* const read = tables_->outline_of(glyph);
-    if (!read) return missing_box(size, weight, shift);
+    FT_Outline* const read = glyph > 0 ? tables_->outline_of(glyph) : nullptr;
+    if (!read) return {};
     const float scale = tables_->scale(size);
-    if (lacks(weight)) {
-        const auto units = [&](float em) { return static_cast<FT_Pos>(std::lround(em * size / scale)); };
-        FT_Outline_EmboldenXY(read, units(bold_width), units(bold_height));  // to the right and up
-        FT_Outline_Translate(read, units((bold_spacing - bold_width) / 2), units(-bold_height / 2));
-    }
     auto outline = vertices_of(*read);
     if (outline.empty()) return {};
     const Area extent = extent_of(*read, scale, shift);
     const float reach = std::max({-extent.left, -extent.top, extent.right, extent.bottom});
-    if (!(reach <= max_ems * size)) return missing_box(size, weight, shift);
+    if (!(reach <= max_ems * size)) return {};
 
     Coverage coverage;
     coverage.left = static_cast<int>(std::floor(extent.left));

@@ -20,7 +20,7 @@ struct Coverage {
 };
 
 /// A TrueType or OpenType font with outlines. It is immutable, so threads may share it. FreeType reads it: a damaged
-/// font only gives wrong or missing letters, or boxes.
+/// font only gives wrong or missing letters.
 class Font {
 public:
     static const Font& built_in(Weight weight = Weight::regular);
@@ -35,26 +35,21 @@ public:
     /// The contents of the file, and the index of this font in it.
     std::string_view bytes() const { return bytes_; }
     int index() const { return index_; }
-    /// Whether this weight has to be synthesised.
-    bool lacks(Weight weight) const { return weight == Weight::bold && weight_ != Weight::bold; }
     /// The glyph number of a character; 0 if it has none or no outline, as in fonts of coloured letters.
     int number_of(char32_t character) const;
     /// The advance of the pen after a glyph, px.
-    float advance(int glyph, float size, Weight weight) const;
-    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; number 0 gives a hollow box. If the
-    /// font lacks the weight, its outline is emboldened.
-    Coverage rasterised(int glyph, float size, Weight weight, float shift) const;
+    float advance(int glyph, float size) const;
+    /// A glyph drawn with the pen `shift` px, 0…1, right of a pixel's left edge; empty for number 0.
+    Coverage rasterised(int glyph, float size, float shift) const;
 
 private:
     struct Tables;  // of FreeType
-    Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index,
-         Weight weight = Weight::regular);
+    Font(std::filesystem::path file, std::string owned, std::string_view bytes, int index);
 
     std::filesystem::path file_;
     std::string owned_;       // contents of a file
     std::string_view bytes_;  // these, or the built-in font
     int index_;
-    Weight weight_;
     std::unique_ptr<Tables> tables_;
 };
 

@@ -35,17 +35,6 @@ void attach(GLuint program, GLenum type, const std::string& name) {
     if (!compiled) throw io_failed("shaders/{}: {}", name, log(GetShaderInfoLog, shader));
 }
 
-std::string name_of(GLenum error) {
-    constexpr std::pair<GLenum, const char*> names[] = {
-        {GL_INVALID_ENUM, "GL_INVALID_ENUM"},
-        {GL_INVALID_VALUE, "GL_INVALID_VALUE"},
-        {GL_INVALID_OPERATION, "GL_INVALID_OPERATION"},
-        {GL_INVALID_FRAMEBUFFER_OPERATION, "GL_INVALID_FRAMEBUFFER_OPERATION"}};
-    for (const auto& [number, name] : names)
-        if (number == error) return name;
-    return fmt::format("error {:#06x}", error);
-}
-
 /// The corners of a rotated primitive, in order.
 std::array<Point, 4> outline(const Primitive& primitive) {
     const float room = 0.05f;  // px, so that rounding excludes no pixel
@@ -67,7 +56,7 @@ void check_errors(const std::string& what) {
     GLenum error = first;
     for (int k = 0; k < 16 && error != GL_NO_ERROR; ++k, error = GetError()) no_memory |= error == GL_OUT_OF_MEMORY;
     if (no_memory) throw io_failed("OpenGL has no memory for {}", what);
-    throw io_failed("OpenGL failed at {}: {}", what, name_of(first));
+    throw io_failed("OpenGL failed at {}: error {:#06x}", what, first);
 }
 
 Program::Program(const std::string& fragment) : number_(CreateProgram()) {

@@ -100,8 +100,7 @@ public:
         const float whole = std::floor(start);
         for (const TextLine::Glyph& glyph : line.glyphs) {
             const int subpixel = static_cast<int>(std::lround((start - whole + glyph.pen) * GlyphAtlas::subpixels));
-            const GlyphAtlas::Slot& slot =
-                atlas_.slot(glyph, label.size, label.weight, subpixel % GlyphAtlas::subpixels);
+            const GlyphAtlas::Slot& slot = atlas_.slot(glyph, label.size, subpixel % GlyphAtlas::subpixels);
             if (slot.size.width == 0) continue;
             const Point corner{whole + static_cast<float>(subpixel / GlyphAtlas::subpixels + slot.left),
                                baseline + static_cast<float>(slot.top)};
@@ -293,11 +292,11 @@ std::vector<Rect> dirty_regions(const RenderList& before, const RenderList& afte
     return merged(std::move(touched));
 }
 
-const GlyphAtlas::Slot& GlyphAtlas::slot(const TextLine::Glyph& glyph, float size, Weight weight, int subpixel) {
-    const Key key{glyph.font, glyph.number, size, weight, subpixel};
+const GlyphAtlas::Slot& GlyphAtlas::slot(const TextLine::Glyph& glyph, float size, int subpixel) {
+    const Key key{glyph.font, glyph.number, size, subpixel};
     if (const auto found = slots_.find(key); found != slots_.end()) return found->second;
 
-    const Coverage drawn = glyph.font->rasterised(glyph.number, size, weight, static_cast<float>(subpixel) / subpixels);
+    const Coverage drawn = glyph.font->rasterised(glyph.number, size, static_cast<float>(subpixel) / subpixels);
     if (pen_ + drawn.size.width > width) {
         pen_ = 0;
         shelf_ += shelf_height_;

@@ -31,14 +31,14 @@ public:
     const Typeface& typeface() const { return typeface_; }
 
     /// The slot of a glyph, which is rasterised if it is new. Throws Error if the atlas is full.
-    const Slot& slot(const TextLine::Glyph& glyph, float size, Weight weight, int subpixel);
+    const Slot& slot(const TextLine::Glyph& glyph, float size, int subpixel);
 
     const std::vector<std::uint8_t>& values() const { return values_; }
     int height() const { return static_cast<int>(values_.size()) / width; }
     std::size_t count() const { return slots_.size(); }
 
 private:
-    using Key = std::tuple<const Font*, int, float, Weight, int>;
+    using Key = std::tuple<const Font*, int, float, int>;
     Typeface typeface_;
     std::map<Key, Slot> slots_;
     std::vector<std::uint8_t> values_;

@@ -57,7 +57,7 @@ TextLine Typeface::lay_out(std::string_view text, float size, Weight weight) con
         auto& glyph = line.glyphs.emplace_back(glyph_of(character, weight));
         glyph.pen = line.width;
         glyph.byte = byte;
-        line.width += glyph.font->advance(glyph.number, size, weight);
+        line.width += glyph.font->advance(glyph.number, size);
     }
     return line;
 }

@@ -14,7 +14,7 @@ namespace doppel {
 struct TextLine {
     struct Glyph {
         const Font* font = nullptr;  // of the typeface
-        int number = 0;              // glyph number in the font; 0 = a hollow box
+        int number = 0;              // glyph number in the font; 0 = nothing is drawn
         float pen = 0;               // px right of the start of the line
         std::size_t byte = 0;        // index in the text of its character's first byte
     };

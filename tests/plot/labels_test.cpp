@@ -65,13 +65,6 @@ TEST_F(LabelTest, BoldIsHeavierButNotAnotherText) {
     EXPECT_GT(text_width("Runge", 30, Weight::bold), text_width("Runge", 30));
 }
 
-TEST_F(LabelTest, MissingGlyphsShowAsABox) {
-    const Picture box = drawn(label("日", {20, 50}, 30));
-    EXPECT_GT(ink(box).area, 50);
-    EXPECT_EQ(box.at(30, 40)[0], 0) << "the box is hollow";
-    EXPECT_EQ(extent(box).bottom, 50);
-}
-
 TEST_F(LabelTest, IsTransparentAsItsColour) {
     Label words = label("Half", {20, 50}, 30);
     const double all = ink(drawn(words)).area;
