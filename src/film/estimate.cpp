@@ -11,14 +11,14 @@
 #include <filesystem>
 #include <future>
 #include <limits>
+#include <utility>
 
 namespace doppel {
 namespace {
 
 /// How far a probe has come.
 struct ProbePoint {
-    double cpu_s = 0;
-    long done = 0, steps = 0;
+    double cpu_s = 0, done = 0, steps = 0;
 };
 
 SimulationEstimate estimated_side(const Scene& scene, Side side, char name, const std::atomic<bool>& stop) {
@@ -27,31 +27,34 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
     const double probe_s = adaptive ? 1 : 0.025;
     constexpr double patience_s = 0.3, longest_s = 4;  // of the first sample; of all, if other programs run
     constexpr double recent = 2.0 / 3;  // from this share of the probe on, its steps are like those of the rest
+    const auto samples = static_cast<double>(scene.samples),
+               steps_in_all = samples * static_cast<double>(side.motion.steps_per_sample);
     // one sample may take many steps: parts of it are timed
-    constexpr long few_steps = 250;
-    constexpr double shortened_s = 0.01, max_parts = 1e12;
-    auto& interval = side.motion.sample_interval;
-    const long steps_per_sample = side.motion.steps_per_sample;
-    long parts = adaptive ? std::llround(std::clamp(std::ceil(interval.value() / shortened_s), 1.0, max_parts))
-                          : std::max(1L, steps_per_sample / few_steps);
-    if (const auto shortened = quotient(interval, {parts, 1}))
-        interval = *shortened, side.motion.steps_per_sample = std::max(1L, steps_per_sample / parts);
+    constexpr double shortened_s = 0.01, few_steps = 250, max_parts = 1e12;
+    const double wanted_parts =
+        adaptive ? side.motion.sample_interval.value() / shortened_s : steps_in_all / samples / few_steps;
+    long parts = std::lround(std::clamp(std::ceil(wanted_parts), 1.0, max_parts));
+    if (const auto shortened = quotient(side.motion.sample_interval, {parts, 1}))
+        side.motion.sample_interval = *shortened;
     else
         parts = 1;
-    const double all = static_cast<double>(scene.samples) * static_cast<double>(parts);
+    side.motion.steps_per_sample = std::max(1L, side.motion.steps_per_sample / parts);
+    const double all = samples * static_cast<double>(parts);
     SideRun run(scene, side, name);
     const TimeLimit first_limit(patience_s, stop), limit(longest_s, stop);
     ProbePoint from, last;  // from: where the recent part of the probe begins
     double start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
     const auto add_point = [&] {
         if (last.cpu_s <= recent * probe_s) from = last;
-        last = {seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, last.done + 1, std::max(run.effort().steps, 1L)};
+        const long least = adaptive ? 1 : side.motion.steps_per_sample;
+        last = {seconds_of(CLOCK_THREAD_CPUTIME_ID) - start, last.done + 1,
+                static_cast<double>(std::max(run.effort().steps, least))};
     };
     bool at_least = false;
     try {
         run.next(first_limit.reached());
         start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
-        while (static_cast<double>(last.done) < all && last.cpu_s < probe_s) {
+        while (last.done < all && last.cpu_s < probe_s) {
             run.next((last.done == 0 ? first_limit : limit).reached());
             add_point();
         }
@@ -60,14 +63,9 @@ SimulationEstimate estimated_side(const Scene& scene, Side side, char name, cons
         at_least = last.done == 0;
         if (at_least) add_point();
     }
-    const double rest = all - static_cast<double>(last.done),
-                 rate = static_cast<double>(last.steps - from.steps) / static_cast<double>(last.done - from.done),
-                 probed = static_cast<double>(last.steps);
-    if (!adaptive)
-        return {last.cpu_s * all / static_cast<double>(last.done),
-                static_cast<double>(scene.samples) * static_cast<double>(steps_per_sample), at_least};
-    const double steps = probed + rest * rate;
-    return {last.cpu_s * steps / probed, steps, at_least};
+    const double rate = (last.steps - from.steps) / (last.done - from.done),
+                 steps = adaptive ? last.steps + (all - last.done) * rate : steps_in_all;
+    return {last.cpu_s * steps / last.steps, steps, at_least};
 }
 
 /// Time for the motion of an ensemble's members, s per sample.
@@ -100,11 +98,12 @@ Scene beginning_of(Scene scene, long samples) {
     return scene;
 }
 
-struct FrameCost {
-    double frames = 1, wall_s = 0, cpu_s = 0;  // from the first of them on
-    double bytes = 0;                          // of the film
-    double rows = 0, table_bytes = 0;          // of the table, with its header
-    double run_s = 0, key_bytes = 0;           // of the whole run; what a key frame has more than others
+/// What a run takes.
+struct Trial {
+    double frames, rows;        // of the film; of the table
+    double wall_s, cpu_s;       // from the first frame or row on
+    double run_s;               // of the whole run
+    double bytes, table_bytes;  // of the film; of the table, with its header
 };
 
 double bytes_of(const std::filesystem::path& film) {
@@ -114,8 +113,8 @@ double bytes_of(const std::filesystem::path& film) {
     return bytes;
 }
 
-/// Measured on the last `count` frames of the scene.
-FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>& stop) {
+/// Of the last `count` frames of the scene.
+Trial trial_of(const Scene& scene, long count, const std::atomic<bool>& stop) {
     const TemporaryFolder folder;
     double wall_s = 0, cpu_s = 0;
     const RunOptions options{
@@ -124,49 +123,26 @@ FrameCost cost_of_frames(const Scene& scene, long count, const std::atomic<bool>
         if (progress.done == 1) wall_s = seconds_of(CLOCK_MONOTONIC), cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     });
     return {.frames = static_cast<double>(result.frames),
+            .rows = static_cast<double>(result.samples),
             .wall_s = seconds_of(CLOCK_MONOTONIC) - wall_s,
             .cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_s,
+            .run_s = result.wall_s,
             .bytes = bytes_of(result.files.front()),
-            .rows = static_cast<double>(result.samples),
-            .table_bytes = bytes_of(folder.path() / scene.preset.name / (scene.preset.name + ".csv")),
-            .run_s = result.wall_s};
+            .table_bytes = bytes_of(folder.path() / scene.preset.name / (scene.preset.name + ".csv"))};
 }
 
-/// The cost of one frame, and of one row: the difference between many frames and few. `run_s` is that of few.
-FrameCost cost_of_frame(const Scene& scene, const std::atomic<bool>& stop) {
-    constexpr double sufficient_s = 0.1, slow_s = 2;
-    const auto few = cost_of_frames(scene, 2, stop);
-    FrameCost cost = few;
-    for (double* part : {&cost.wall_s, &cost.cpu_s, &cost.bytes}) *part /= few.frames;
-    cost.table_bytes /= std::max(few.rows, 1.0);
-    for (long count = 8; count <= 128 && few.cpu_s < slow_s; count *= 4) {
-        const auto many = cost_of_frames(scene, count, stop);
-        const double more = many.frames - few.frames, wall_s = many.wall_s - few.wall_s;
-        if (more < 1) break;
-        cost.wall_s = std::max(wall_s, 0.0) / more;
-        cost.cpu_s = std::max(many.cpu_s - few.cpu_s, 0.0) / more;
-        cost.bytes = std::max(many.bytes - few.bytes, 0.0) / more;
-        cost.key_bytes = std::max(few.bytes - few.frames * cost.bytes, 0.0);
-        if (many.rows > few.rows) cost.table_bytes = (many.table_bytes - few.table_bytes) / (many.rows - few.rows);
-        if (wall_s > sufficient_s) break;
+/// Of few frames, and of many, if that takes little time; of a page, of few samples and of all.
+std::pair<Trial, Trial> trials_of(const Scene& scene, const std::atomic<bool>& stop) {
+    if (scene.preset.video.format == FilmFormat::html) {
+        const auto few = beginning_of(scene, std::min(scene.samples, 2L));
+        return {trial_of(few, few.frames.count, stop), trial_of(scene, scene.frames.count, stop)};
     }
-    return cost;
-}
-
-/// The cost of one sample of a page: the difference between a page of all samples and one of few. The rest, which does
-/// not depend on the number of samples, is like a key frame.
-FrameCost cost_of_page_sample(const Scene& scene, double simulate_s, const std::atomic<bool>& stop) {
-    const auto beginning = beginning_of(scene, std::min(scene.samples, 2L));
-    const auto few = cost_of_frames(beginning, beginning.frames.count, stop),
-               many = cost_of_frames(scene, scene.frames.count, stop);
-    const double more = std::max(many.rows - few.rows, 1.0),
-                 each_s = std::max((many.run_s - few.run_s) / more - simulate_s, 0.0);
-    return {.wall_s = each_s,
-            .cpu_s = each_s,
-            .bytes = (many.bytes - few.bytes) / more,
-            .table_bytes = (many.table_bytes - few.table_bytes) / more,
-            .run_s = few.run_s,
-            .key_bytes = few.bytes};
+    constexpr double sufficient_s = 0.1, slow_s = 2;
+    const auto few = trial_of(scene, 2, stop);
+    auto many = few;
+    for (long count = 8; count <= 128 && few.cpu_s < slow_s && many.wall_s - few.wall_s < sufficient_s; count *= 4)
+        many = trial_of(scene, count, stop);
+    return {few, many};
 }
 
 /// Memory of x264's own presets for the frames that they look ahead, bytes: the trial is too short to fill it.
@@ -197,15 +173,12 @@ Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation,
     const bool is_page = video.format == FilmFormat::html;
     const double begin_s = is_page ? 2 : 0.6, patience_s = 1;  // a page draws nothing in the meantime
     const auto samples = static_cast<double>(scene.samples);
-    // add_warnings() compares each side with two finer runs; measured on the presets
-    constexpr double compared = 3;
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
     const double sample_s = motions_s / samples;
     Needs estimate{.seconds = motions_s,
                    .cpu_s = motions_s,
                    .repeated_cpu_s = motions_s,
-                   .disk_bytes = unknown,
+                   .disk_bytes = std::numeric_limits<double>::quiet_NaN(),  // unknown
                    .at_least = simulation.at_least};
     const auto second = scene.frames.at(std::min(1L, scene.frames.count - 1));
     const long one_frame = std::max(1L, second.sample + (second.share > 0 ? 1 : 0));
@@ -213,18 +186,24 @@ Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation,
         const double wanted = std::min(is_page ? samples : samples / 2, begin_s / std::max(sample_s, 1e-12));
         const auto begun = beginning_of(
             scene, std::clamp(static_cast<long>(wanted), std::min(one_frame, scene.samples), scene.samples));
-        const auto cost = is_page ? cost_of_page_sample(begun, sample_s, stop) : cost_of_frame(begun, stop);
-        const double frames = is_page ? samples : static_cast<double>(schedule_of(scene).frames());
-        const double segments = is_page ? 1 : static_cast<double>(max_shards(scene));
+        const auto [few, many] = trials_of(begun, stop);
+        // the cost of one frame, or of one sample of a page; what the first of them have more, each segment has
+        const auto each = [&few = few, &many = many](double Trial::*number, double Trial::*part) {
+            const double more = many.*number - few.*number;
+            return more > 0 ? std::max(many.*part - few.*part, 0.0) / more : few.*part / std::max(few.*number, 1.0);
+        };
+        const auto number = is_page ? &Trial::rows : &Trial::frames;
+        const double count = is_page ? samples + 1 : static_cast<double>(schedule_of(scene).frames()),
+                     bytes = each(number, &Trial::bytes),
+                     wall_s = count * (is_page ? std::max(each(number, &Trial::run_s) - sample_s, 0.0)
+                                               : each(number, &Trial::wall_s)),
+                     cpu_s = is_page ? wall_s : count * each(number, &Trial::cpu_s);
         if (video.format_row().has_parts()) estimate.most_shards = max_shards(scene);
-        estimate.seconds += cost.run_s + std::max(cost.wall_s * frames, cost.cpu_s * frames / cores());
-        estimate.cpu_s += cost.run_s + cost.cpu_s * frames;
-        const double checks_s =
-            std::min(compared * motions_s, std::clamp(estimate.seconds, min_patience_s, max_patience_s));
-        estimate.seconds += checks_s;
-        estimate.cpu_s += checks_s;
-        estimate.film_bytes = cost.bytes * frames + cost.key_bytes * segments;
-        estimate.disk_bytes = cost.table_bytes * (samples + 1) + estimate.film_bytes;
+        estimate.seconds += few.run_s + std::max(wall_s, cpu_s / cores());
+        estimate.cpu_s += few.run_s + cpu_s;
+        estimate.film_bytes = bytes * count + std::max(few.bytes - few.*number * bytes, 0.0) *
+                                                  static_cast<double>(std::max(estimate.most_shards, 1L));
+        estimate.disk_bytes = each(&Trial::rows, &Trial::table_bytes) * (samples + 1) + estimate.film_bytes;
     }
     const bool keeps_motion = depends_on_motion(scene) || video.contact_sheet;
     const double motion_bytes = recorded_bytes(scene, {scene.samples + 1});

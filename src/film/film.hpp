@@ -32,9 +32,6 @@ struct RunRecord : RunResult {
     std::string failure;                   // the error that ended the run, if any
 };
 
-/// How long a run at least and at most looks for the time when its error is half a radian.
-inline constexpr double min_patience_s = 1, max_patience_s = 2;
-
 /// Adds warnings about sides whose energy changed by more than 1 % of the potential range although it is conserved.
 /// They also state when the error reaches half a radian, if that can be found in about the time of the run.
 void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>& stop);

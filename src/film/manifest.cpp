@@ -93,7 +93,7 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
         record.warnings.push_back(
             fmt::format("{}; nothing is proved after that", certificate_words(scene, *proof).front()));
     try {
-        const TimeLimit limit(std::clamp(record.wall_s, min_patience_s, max_patience_s), stop);
+        const TimeLimit limit(std::clamp(record.wall_s, 1.0, 2.0), stop);
         for (const char name : scene.letters())
             if (const auto words = early_error(scene, scene.side(name), record.last_sample, limit.reached()))
                 record.warnings.push_back(fmt::format("side {}: {}", name, *words));
