@@ -46,8 +46,7 @@ PendulumPanel still_panel(const Layout& layout) {
 
 }  // namespace
 
-Composer::Composer(const Scene& scene, const MotionBounds& bounds, PictureKind kind)
-    : state_{scene, make_layout(scene, bounds, kind)} {
+Composer::Composer(const Scene& scene, const MotionBounds& bounds) : state_{scene, make_layout(scene, bounds)} {
     const auto& layout = state_.layout;
     layers_ = layers_of(state_);
     const auto& video = scene.preset.video;

@@ -13,8 +13,8 @@ namespace doppel {
 class Composer {
 public:
     /// `bounds` as for make_layout(). The composer reads the scene as long as it lives.
-    Composer(const Scene& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film);
-    Composer(const Scene&& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film) = delete;
+    Composer(const Scene& scene, const MotionBounds& bounds);
+    Composer(const Scene&& scene, const MotionBounds& bounds) = delete;
     Composer(const Composer&) = delete;
     Composer& operator=(const Composer&) = delete;
 

@@ -41,6 +41,9 @@ Json method_json(const Scene& scene, const Side& side);
 /// Writes the manifest `name` with the hashes of the complete files. Throws Error (exit 4).
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record);
 
+/// A tile of a contact sheet: only the pendulums, and their time.
+Scene tile_scene(Scene scene);
+DisplayList tile_of(const Scene& tile, const Composer& composer, double time);
 /// One picture with frames from first … last − 1 of a recording, as many as the preset sets, in rows below a title.
 Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,
                          const std::atomic<bool>& stop);

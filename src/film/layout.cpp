@@ -245,38 +245,8 @@ void place_pendulums(Layout& layout, const Scene& scene, const MotionBounds& see
     if (style.width.bob) layout.last_bob_radius = std::min(layout.last_bob_radius, layout.bob_radius);
 }
 
-/// Ratio of px in a tile's panels to px in the film's.
-float tile_unit(const VideoSpec& video, float width) {
-    const auto panels = static_cast<float>(panel_count(video));
-    return width / panels / 888;
-}
-
-/// The same ratio for text.
-float tile_text(float unit) {
-    return std::max(2 * unit, 0.5f);
-}
-
 /// least ratio of text px to those of a 1920×1080 picture; smallest text, px per em
 constexpr float min_unit = 1.0f / 3, min_text = 9;
-
-constexpr float tile_clock = 44;  // height of the time above a tile's panels, px of its text
-
-Layout make_tile(const Scene& scene, const MotionBounds& seen) {
-    const auto& video = scene.preset.video;
-    const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
-    Layout layout;
-    layout.unit = tile_unit(video, width);
-    layout.text = tile_text(layout.unit);
-    layout.style = make_style(video, layout.unit, layout.text);
-    layout.page = {0, 0, width, height};
-    layout.clock =
-        label("", {4 * layout.text, 33 * layout.text}, 0.8f * px(layout.style.font.clock), layout.style.theme.text);
-    const auto regions = split({0, std::round(tile_clock * layout.text), width, height},
-                               {.panels = panel_count(video), .gap = std::round(24 * layout.unit)});
-    place_panels(layout, scene, regions.panels, seen);
-    place_pendulums(layout, scene, seen);
-    return layout;
-}
 
 // in units of the picture's height: curves of a strip; circles of a pair for which strips still go below
 constexpr float min_curves = 0.2f, max_curves = 0.34f, min_circle = 0.45f;
@@ -361,14 +331,6 @@ Regions with_strips_beside(const Area& room, const RegionNeeds& needs) {
 }
 
 }  // namespace
-
-Size tile_size(const Scene& scene, int width) {
-    const auto& video = scene.preset.video;
-    const float unit = tile_unit(video, static_cast<float>(width)), text = tile_text(unit);
-    const auto across = static_cast<float>(width);
-    const float panel = (across - (panel_count(video) > 1 ? 24 * unit : 0)) / static_cast<float>(panel_count(video));
-    return {width, static_cast<int>(std::ceil(panel + tile_clock * text))};
-}
 
 Style make_style(const VideoSpec& video, float unit, float text) {
     Style style{themed(video), video.widths, video.fonts, 0, video.typeface};
@@ -461,8 +423,7 @@ bool depends_on_motion(const Scene& scene) {
                                [&](StripKind kind) { return !video.ranges[static_cast<std::size_t>(kind)]; });
 }
 
-Layout make_layout(const Scene& scene, const MotionBounds& seen, PictureKind kind) {
-    if (kind == PictureKind::tile) return make_tile(scene, seen);
+Layout make_layout(const Scene& scene, const MotionBounds& seen) {
     const auto& video = scene.preset.video;
     const auto width = static_cast<float>(video.size.width), height = static_cast<float>(video.size.height);
     const bool tall = is_tall(video), is_portrait = video.layout == Arrangement::portrait;

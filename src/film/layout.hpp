@@ -120,13 +120,8 @@ struct Layout {
 /// Whether the picture requires the bounds of the whole motion.
 bool depends_on_motion(const Scene& scene);
 
-/// A picture of the film, or a tile of the contact sheet with only pendulums and time.
-enum class PictureKind { film, tile };
-
-/// `bounds`: of the whole motion, if depends_on_motion(). A tile has no strips.
-Layout make_layout(const Scene& scene, const MotionBounds& bounds, PictureKind kind = PictureKind::film);
-
-Size tile_size(const Scene& scene, int width);
+/// `bounds`: of the whole motion, if depends_on_motion().
+Layout make_layout(const Scene& scene, const MotionBounds& bounds);
 
 /// The quantities that decide how a picture is divided; lengths in px.
 struct RegionNeeds {

@@ -34,21 +34,6 @@ Moment still_moment(const Scene& scene, const Rational& time) {
     return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 
-/// The scene of a tile: only its panels, side by side.
-Scene tile_scene(Scene scene) {
-    auto& video = scene.preset.video;
-    constexpr int sheet_width = 1920;  // approximate width, px
-    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
-    video.strips.clear();
-    video.pendulums = true;
-    video.transparent = false;
-    video.title_card_s = video.end_card_s = {0, 1};
-    if (video.layout == Arrangement::portrait) video.layout = Arrangement::side_by_side;
-    if (video.layout == Arrangement::phase) video.layout = Arrangement::overlay;
-    video.size = tile_size(scene, width);
-    return scene;
-}
-
 DisplayList title_of(const Scene& scene, Size size, float unit) {
     const auto style = make_style(scene.preset.video, unit, unit);
     const auto& font = style.font;
@@ -117,6 +102,29 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     return result;
 }
 
+Scene tile_scene(Scene scene) {
+    auto& video = scene.preset.video;
+    constexpr int sheet_width = 1920;  // approximate width, px
+    const int width = std::min(video.size.width, std::max(sheet_width / (*video.contact_sheet)[0], 16));
+    video.strips.clear();
+    video.pendulums = true;
+    video.transparent = false;
+    video.title_card_s = video.end_card_s = {0, 1};
+    if (video.layout == Arrangement::portrait) video.layout = Arrangement::side_by_side;
+    if (video.layout == Arrangement::phase) video.layout = Arrangement::overlay;
+    for (const char* text : {"title", "subtitle", "clock", "labels"}) std::erase(video.show, text);
+    video.size = {width, has_panel_for_each(video) ? width * 9 / 16 : width};
+    return scene;
+}
+
+DisplayList tile_of(const Scene& scene, const Composer& composer, double time) {
+    auto list = composer.frame();
+    const auto em = 0.05f * static_cast<float>(scene.preset.video.size.width);
+    list.push_back(
+        label(clock_text(scene, time), {0.3f * em, 1.2f * em}, em, make_style(scene.preset.video, 1, 1).theme.text));
+    return list;
+}
+
 Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, long last, Gl gl,
                          const std::atomic<bool>& stop) {
     const auto [across, down] = *scene.preset.video.contact_sheet;
@@ -128,14 +136,14 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
                                                                            static_cast<double>(count - 1))));
     const auto tile = tile_scene(scene);
     const auto& style = tile.preset.video;
-    Composer composer(tile, recording.bounds(), PictureKind::tile);
+    Composer composer(tile, recording.bounds());
     Renderer tiles(style.size, composer.backdrop(), gl, stop, style.typeface);
     std::vector<Picture> pictures;
     recording.play([&](const Snapshot& snapshot) {
         throw_if_set(stop);
         composer.add(snapshot);
         if (std::ranges::find(moments, snapshot.pair.moment()) != moments.end())
-            pictures.push_back(tiles.draw(composer.frame(), stop));
+            pictures.push_back(tiles.draw(tile_of(tile, composer, tile.time(snapshot.pair.moment())), stop));
     });
     const auto below = contact_sheet(pictures, across, 8, composer.page_color());
     const float unit = static_cast<float>(below.size.width) / 1920;

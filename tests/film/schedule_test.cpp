@@ -82,25 +82,25 @@ TEST(Schedule, TheContactSheetHasPendulumsAndTimeAndOneTitle) {
     const auto scene = small_scene({"video.trail_s=0", "b.angle_deg=[-90, -90]", "video.contact_sheet=[3, 2]"});
     render(scene, {.out = out});
     const auto sheet = read_png(out / "butterfly/butterfly.contact.png");
-    auto tile = scene;
-    tile.preset.video.size = tile_size(scene, 320);
-    tile.preset.video.strips.clear();
+    const auto tile = tile_scene(scene);
+    EXPECT_EQ(tile.preset.video.size, (Size{320, 180}));
     const int title = sheet.size.height - 2 * tile.preset.video.size.height - 3 * 8;
     EXPECT_EQ(sheet.size.width, 3 * 320 + 4 * 8);
     EXPECT_GT(title, 30);
     EXPECT_LT(title, 100);
     // the only text of a tile is its time
-    const auto composer = composed(tile, 60, PictureKind::tile);
-    EXPECT_EQ(words_of({composer->backdrop(), composer->frame()}), std::vector<std::string>{"0.50 s"});
+    const auto composer = composed(tile, 60);
+    const auto list = tile_of(tile, *composer, 0.5);
+    EXPECT_EQ(words_of({composer->backdrop(), list}), std::vector<std::string>{"0.50 s"});
     // the last tile is the end of the motion
     Renderer renderer(tile.preset.video.size, composer->backdrop());
-    const auto last = renderer.draw(composer->frame());
+    const auto last = renderer.draw(list);
     const int left = 2 * 328 + 8, top = title + tile.preset.video.size.height + 2 * 8;
     for (int y = 0; y < last.size.height; ++y)
         for (int x = 0; x < last.size.width; ++x)
             ASSERT_TRUE(std::equal(last.at(x, y), last.at(x, y) + 4, sheet.at(left + x, top + y))) << x << ' ' << y;
     // both pendulums fill their halves: a circle covers most of a tile's width
-    const auto layout = make_layout(tile, bounds_of(scene), PictureKind::tile);
+    const auto layout = make_layout(tile, bounds_of(scene));
     EXPECT_GT(4 * layout.reach, 0.85f * 320);
     // no frame is shown twice: three fill one row
     render(scene, {.out = out, .last = 3});

@@ -48,10 +48,10 @@ inline std::vector<std::string> one_link_at(const std::string& a, const std::str
 }
 
 /// A composer that has processed the samples 0 … last.
-std::unique_ptr<Composer> composed(const Scene&&, long, PictureKind = PictureKind::film) = delete;
-inline std::unique_ptr<Composer> composed(const Scene& scene, long last, PictureKind dress = PictureKind::film) {
+std::unique_ptr<Composer> composed(const Scene&&, long) = delete;
+inline std::unique_ptr<Composer> composed(const Scene& scene, long last) {
     Recording recording(scene, {last + 1}, true, never_stopped);
-    auto composer = std::make_unique<Composer>(scene, recording.bounds(), dress);
+    auto composer = std::make_unique<Composer>(scene, recording.bounds());
     recording.play([&](const Snapshot& snapshot) {
         if (snapshot.pair.share == 0) composer->add(snapshot);
     });
