@@ -31,7 +31,7 @@ std::string side_name(const Scene& scene, bool is_a) {
     return scene.members.empty() ? is_a ? "a" : "b" : is_a ? "first" : "last";
 }
 
-/// A part of a caption. With `room` > 0 it is not broken, and has that width in px whatever its text.
+/// A part of a caption in one line; with `room` > 0 it has that width in px whatever its text.
 struct Piece {
     std::string text;
     Color color;
@@ -43,11 +43,12 @@ std::string distance_text(double value) {
     return value >= 0.1 && value < 9.95 ? fmt::format("{:#.2g}", value) : scientific(value);
 }
 
+/// What follows the caption's title.
 std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& layout,
                              const std::vector<StripCurve>& curves, bool starts_equal) {
     const auto& theme = layout.style.theme;
     const auto width = [&](const char* text) { return layout.style.type.width(text, px(layout.style.font.strip)); };
-    std::vector<Piece> pieces{{title_of(kind, scene), theme.text}};
+    std::vector<Piece> pieces;
     if (kind == StripKind::distance)
         pieces.push_back({distance_text(*curves[0].value), curves[0].color, width("8.8 × 10⁻⁸⁸")});
     else if (kind == StripKind::exponent && starts_equal)
@@ -69,40 +70,22 @@ std::vector<Piece> pieces_of(StripKind kind, const Scene& scene, const Layout& l
     return pieces;
 }
 
-/// The words of a text, each with the following space.
-std::vector<std::string> words_of(const std::string& text) {
-    std::vector<std::string> words;
-    for (std::size_t from = 0; from < text.size();) {
-        const auto space = std::min(text.find(' ', from), text.size() - 1);
-        words.push_back(text.substr(from, space + 1 - from));
-        from = space + 1;
-    }
-    return words;
-}
-
 /// A caption of this size in lines no wider than `width`, px. The first line begins at (0, 0).
 std::vector<Label> strip_caption(StripKind kind, const Scene& scene, const Layout& layout,
                                  const std::vector<StripCurve>& curves, bool starts_equal, float width, float size) {
-    const float line = caption_line(layout), gap = 0.66f * size;
-    const auto width_of = [&](const std::string& text) { return layout.style.type.width(text, size); };
+    const auto& type = layout.style.type;
     std::vector<Label> labels;
     Point pen;
-    for (const auto& piece : pieces_of(kind, scene, layout, curves, starts_equal)) {
-        if (pen.x > 0) pen.x += gap;
-        const auto parts = piece.room > 0 ? std::vector{piece.text} : words_of(piece.text);
-        bool continues = false;  // continues the previous label
-        for (const auto& part : parts) {
-            const float room = std::max(piece.room, width_of(part.substr(0, part.find_last_not_of(' ') + 1)));
-            if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + line}, continues = false;
-            if (continues)
-                labels.back().text += part;
-            else
-                labels.push_back(label(part, pen, size, piece.color));
-            continues = true;
-            pen.x += std::max(piece.room, width_of(part));
-        }
-    }
-    for (auto& words : labels) words.text.erase(words.text.find_last_not_of(' ') + 1);
+    const auto add = [&](const Piece& piece) {
+        const float room = std::max(piece.room, type.width(piece.text, size));
+        if (pen.x > 0) pen.x += 0.66f * size;
+        if (pen.x > 0 && pen.x + room > width) pen = {0, pen.y + caption_line(layout)};
+        labels.push_back(label(piece.text, pen, size, piece.color));
+        pen.x += room;
+    };
+    for (auto& row : wrapped(title_of(kind, scene), size, Weight::regular, width, type))
+        add({std::move(row), layout.style.theme.text});
+    for (const auto& piece : pieces_of(kind, scene, layout, curves, starts_equal)) add(piece);
     return labels;
 }
 
