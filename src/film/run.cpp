@@ -12,31 +12,27 @@
 namespace doppel {
 namespace {
 
-/// Whether the side reaches the sample at which `failure` occurred, and the effort.
-std::pair<bool, Effort> retried(const Scene& scene, const Side& side, const RunFailure& failure,
-                                const std::atomic<bool>& stop) {
+/// Whether the side reaches the sample at which `failure` occurred.
+bool is_sufficient(const Scene& scene, const Side& side, const RunFailure& failure, const std::atomic<bool>& stop) {
     SideRun run(scene, side, failure.side);
-    Effort effort;
     try {
-        for (long sample = 0; sample <= failure.sample; ++sample) {
-            run.next(stop);
-            effort = run.effort();
-        }
+        for (long sample = 0; sample <= failure.sample; ++sample) run.next(stop);
     } catch (const Error& error) {
         if (error.code() != ExitCode::method_failed && error.code() != ExitCode::interrupted) throw;
-        return {false, effort};
+        return false;
     }
-    return {true, effort};
+    return true;
 }
 
 /// In words: of a fixed step, the first half, quarter … that reaches the sample of `failure`; of an adaptive method,
-/// its smallest step.
-std::string sufficient_step(const Scene& scene, const RunFailure& failure, const std::atomic<bool>& stop) {
+/// its smallest step before.
+std::string sufficient_step(const Scene& scene, const RunFailure& failure, const MotionRecord& before,
+                            const std::atomic<bool>& stop) {
     auto side = failure.side == 'a' ? scene.a : scene.b;
     if (side.method.adaptive) {
-        const double smallest = retried(scene, side, failure, stop).second.smallest_step;
+        const double smallest = (failure.side == 'a' ? before.a : before.b).effort.smallest_step;
         if (smallest == 0) return "the first step failed";
-        return fmt::format("the smallest successful step was {:.3g} s; a smaller tolerance may work", smallest);
+        return fmt::format("the smallest step before was {:.3g} s; a smaller tolerance may work", smallest);
     }
     auto finest = side.step;                // tried
     constexpr long max_steps = 20'000'000;  // a few seconds for a double pendulum
@@ -46,7 +42,7 @@ std::string sufficient_step(const Scene& scene, const RunFailure& failure, const
         side.motion.steps_per_sample *= 2;
         if (!half || side.motion.steps_per_sample > max_steps / samples) break;
         side.step = *half;
-        if (retried(scene, side, failure, stop).first)
+        if (is_sufficient(scene, side, failure, stop))
             return fmt::format("step_s = \"{}\" gets further", side.step.text());
         finest = side.step;
     }
@@ -61,7 +57,7 @@ std::string failed_name(const std::string& name, const std::string& ending) {
 [[noreturn]] void keep_failed(const Scene& scene, const RunFailure& failure, RunRecord& record, Transaction& parts,
                               const std::atomic<bool>& stop) {
     const auto& name = scene.preset.name;
-    const auto advice = sufficient_step(scene, failure, stop);
+    const auto advice = sufficient_step(scene, failure, record.motion, stop);
     throw_if_set(stop);
     record.failure = fmt::format("{}; {}", failure.what(), advice);
     if (parts.is_temporary()) throw method_failed("{}", record.failure);

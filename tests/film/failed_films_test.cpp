@@ -34,9 +34,9 @@ TEST(FailedFilms, KeepsTheSamplesBeforeTheMethodFailedUnderANameThatSaysSo) {
     EXPECT_TRUE(fs::exists(out / "butterfly" / "butterfly.csv"));
 }
 
-TEST(FailedFilms, OfAnAdaptiveMethodNamesTheSmallestSuccessfulStep) {
+TEST(FailedFilms, OfAnAdaptiveMethodNamesTheSmallestStepBefore) {
     for (const auto& [integrator, other, words] :
-         {std::tuple("taylor", "system.tolerance=1000", "the smallest successful step was 0.9"),
+         {std::tuple("taylor", "system.tolerance=1000", "the smallest step before was 0.9"),
           {"dop853", "system.length_m=[1e-200, 1]", "the first step failed"}}) {
         const auto scene =
             scene_of("butterfly", {"scene.duration_s=2", std::string("system.integrator=") + integrator, other});
