@@ -72,7 +72,7 @@ DisplayList Composer::backdrop(std::optional<Color> page) const {
 void Composer::add(const Snapshot& snapshot) {
     state_.snapshot = snapshot;
     if (state_.is_between()) return;
-    state_.outcome.add(state_.time(), snapshot.pair);
+    state_.outcome.add(state_.scene, snapshot.pair);
     for (const auto& layer : layers_) layer->add();
     if (still_) still_->add();
 }

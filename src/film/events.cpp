@@ -7,28 +7,15 @@
 
 namespace doppel {
 
-void FlipFinder::add(const PairState& state) {
-    constexpr std::size_t most_links = 3;
-    std::size_t at = 0;
-    for (const char letter : scene_.letters()) {
-        const auto& bobs = (letter == 'a' ? state.a : state.b).bobs;
-        if (!scene_.side(letter).has_angles || bobs.size() > most_links) continue;
-        for (std::size_t link = 0; link < bobs.size(); ++link, ++at) {
-            const double turns = std::round(bobs[link].theta / (2 * pi));
-            if (at == turns_.size()) turns_.push_back(turns);
-            if (turns != std::exchange(turns_[at], turns))
-                flips_.push_back({scene_.time(state.sample),
-                                  "flip",
-                                  fmt::format("{}link {} flips",
-                                              scene_.is_single() ? "" : (letter == 'a' ? "A: " : "B: "), link + 1),
-                                  {{"side", std::string(1, letter)}, {"link", link + 1}}});
-        }
+std::vector<FilmEvent> film_events(const Scene& scene, const Outcome& outcome) {
+    std::vector<FilmEvent> events{{0, "release", "Release"}};
+    for (const auto& [time_s, side, link] : outcome.flips) {
+        const auto of = scene.is_single() ? "" : side == 'a' ? "A: " : "B: ";
+        events.push_back({time_s,
+                          "flip",
+                          fmt::format("{}link {} flips", of, link),
+                          {{"side", std::string(1, side)}, {"link", link}}});
     }
-}
-
-std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome) {
-    auto events = std::move(flips);
-    events.insert(events.begin(), {0, "release", "Release"});
     if (const auto since = outcome.divergence.since()) events.push_back({*since, "divergence", "Divergence"});
     for (const auto& [at_s, speed] : scene.preset.video.speed.changes)
         if (at_s.numerator > 0)

@@ -20,22 +20,8 @@ struct FilmEvent {
     long frame = 0;                 // of the whole film, the first that shows it
 };
 
-/// Finds where a link passes the upright position, in chains of one to three links.
-class FlipFinder {
-public:
-    explicit FlipFinder(const Scene& scene) : scene_(scene) {}
-    /// All samples are required in order.
-    void add(const PairState& state);
-    const std::vector<FilmEvent>& flips() const { return flips_; }
-
-private:
-    const Scene& scene_;
-    std::vector<double> turns_;  // of each link at the last sample, whole turns
-    std::vector<FilmEvent> flips_;
-};
-
 /// Release, flips, divergence and changes of speed, in order of time, with their frames.
-std::vector<FilmEvent> film_events(const Scene& scene, std::vector<FilmEvent> flips, const Outcome& outcome);
+std::vector<FilmEvent> film_events(const Scene& scene, const Outcome& outcome);
 
 /// For the manifest. `shown` = the frames of the film, counted in the whole film: then only the events in them, with
 /// their times in this film, s; nothing: there is no film.

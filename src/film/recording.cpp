@@ -42,9 +42,9 @@ std::string header_of(const Scene& scene) {
 }
 
 /// Writes or reads all numbers.
-void pass_all(BlockFile& all, Snapshot& snapshot, MotionRecord& record) {
+void pass_all(BlockFile& all, Snapshot& snapshot, Effort& a, Effort& b) {
     auto& pair = snapshot.pair;
-    all(pair.sample, pair.share, pair.distance, record.a.effort, record.b.effort, snapshot.members);
+    all(pair.sample, pair.share, pair.distance, a, b, snapshot.members);
     for (auto* seen : {&pair.a, &pair.b}) {
         all(seen->bobs, seen->exact, seen->pivot, seen->tension, seen->energy, seen->kinetic_energy);
         all(seen->work, seen->energy_change, seen->length_error, seen->energy_error, seen->mean_energy);
@@ -86,6 +86,24 @@ void MotionBounds::add(const Scene& scene, const PairState& state, double start_
             continue;
         for (const auto& curve : strip_curves(kind, scene, state, start_distance))
             if (curve.value) strips[static_cast<std::size_t>(kind)].add(*curve.value);
+    }
+}
+
+void Outcome::add(const Scene& scene, const PairState& state) {
+    const double time = scene.time(state.sample);
+    if (state.sample == 0) start_distance = state.distance;
+    largest_distance = std::max(largest_distance, state.distance);
+    divergence.add(time, state.distance);
+    constexpr std::size_t most_links = 3;
+    std::size_t at = 0;
+    for (const char letter : scene.letters()) {
+        const auto& bobs = (letter == 'a' ? state.a : state.b).bobs;
+        if (!scene.side(letter).has_angles || bobs.size() > most_links) continue;
+        for (std::size_t link = 0; link < bobs.size(); ++link, ++at) {
+            const double now = std::round(bobs[link].theta / (2 * pi));
+            if (at == turns.size()) turns.push_back(now);
+            if (now != std::exchange(turns[at], now)) flips.push_back({time, letter, link + 1});
+        }
     }
 }
 
@@ -178,7 +196,7 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
         if (state.share == 0) {
             add(record_.a, state.a);
             add(record_.b, state.b);
-            record_.outcome.add(scene_.time(state.sample), state);
+            record_.outcome.add(scene_, state);
             add_sample(state);
         }
         cpu_s_ += spent_s() - begun;
@@ -206,8 +224,8 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Scene& scene)
     : BlockFile(path, header_of(scene)) {}
 
-void RecordingWriter::add(Snapshot snapshot, MotionRecord record) {
-    pass_all(*this, snapshot, record);
+void RecordingWriter::add(Snapshot snapshot, Effort a, Effort b) {
+    pass_all(*this, snapshot, a, b);
     end_block();
 }
 
@@ -223,7 +241,7 @@ RecordingReader::RecordingReader(const std::filesystem::path& path, const Scene&
 Snapshot RecordingReader::at(const Moment& moment, MotionRecord& record) {
     Snapshot snapshot;
     while (next()) {
-        pass_all(*this, snapshot, record);
+        pass_all(*this, snapshot, record.a.effort, record.b.effort);
         if (snapshot.pair.moment() == moment) return snapshot;
         if (moment < snapshot.pair.moment()) break;
     }

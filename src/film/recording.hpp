@@ -52,16 +52,21 @@ struct MotionBounds {
     void add(const Scene& scene, const PairState& state, double start_distance);
 };
 
-/// Distances of a pair, updated sample by sample.
+/// A link passes the upright position.
+struct Flip {
+    double time_s;
+    char side;
+    std::size_t link;
+};
+
+/// Distances of a pair, and flips of chains of one to three links, updated sample by sample.
 struct Outcome {
     double start_distance = 0, largest_distance = 0;  // in state space
     Divergence divergence{};
+    std::vector<Flip> flips{};
+    std::vector<double> turns{};  // of each link at the last sample, whole turns
 
-    void add(double time, const PairState& state) {
-        if (state.sample == 0) start_distance = state.distance;
-        largest_distance = std::max(largest_distance, state.distance);
-        divergence.add(time, state.distance);
-    }
+    void add(const Scene& scene, const PairState& state);
 };
 
 /// Largest errors of a side, and its computing effort.
@@ -140,8 +145,8 @@ inline constexpr BlockKind recording_file{R"({"file":"doppel recording")", "is n
 class RecordingWriter : BlockFile {
 public:
     RecordingWriter(const std::filesystem::path& path, const Scene& scene);
-    /// `record` = the effort up to this snapshot.
-    void add(Snapshot snapshot, MotionRecord record);
+    /// The effort of both sides is that up to this snapshot.
+    void add(Snapshot snapshot, Effort a, Effort b);
     using BlockFile::finish;
 };
 

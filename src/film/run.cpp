@@ -180,7 +180,6 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         record.samples = record.last_sample - record.first_sample + 1;
         table.emplace(parts.file(csv_name), columns_of(scene), columns_of(scene, options.columns));
     }
-    FlipFinder flips(scene);
     long done = 0;
     const long total = !table    ? drawn_frames(scene, options, 0).count()
                        : is_film ? part.last - part.first
@@ -188,9 +187,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const auto add = [&](const Snapshot& snapshot) {
         const auto& state = snapshot.pair;
         throw_if_set(stop);
-        if (recorder) recorder->add(snapshot, recording.record());
+        if (recorder) recorder->add(snapshot, recording.record().a.effort, recording.record().b.effort);
         if (page) page->add(snapshot);
-        if (state.share == 0) flips.add(state);
         if (table && state.share == 0 && state.sample >= record.first_sample) {
             add_row(*table, scene, snapshot, recording.record().outcome.start_distance);
             if (!is_film) report({++done, total});
@@ -208,7 +206,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     }
     const auto finish = [&] {
         record.motion = recording.record();
-        record.events = film_events(scene, flips.flips(), record.motion.outcome);
+        record.events = film_events(scene, record.motion.outcome);
         if (recorder) recorder->finish();
         if (film) film->finish(record.events);
         if (page) page->finish();

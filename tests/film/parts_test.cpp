@@ -187,11 +187,11 @@ TEST(Events, FlipsAreWhereALinkIsUpright) {
         scene_of("butterfly", {"system.links=1", "system.mass_kg=[1]", "system.length_m=[1]", "system.angle_deg=[0]",
                                "b.angle_deg=[0.001]", "system.omega_deg_per_s=[360]", "system.gravity_m_per_s2=1e-9",
                                "system.integrator=rk4", "system.step_s=\"1/1200\"", "scene.duration_s=3"});
-    FlipFinder flips(scene);
-    for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) { flips.add(snapshot.pair); });
+    Outcome outcome;
+    for_each_snapshot(scene, scene.samples, [&](const Snapshot& snapshot) { outcome.add(scene, snapshot.pair); });
     std::vector<double> times;
-    for (const auto& flip : flips.flips())
-        if (flip.details["side"] == "a") times.push_back(flip.time_s);
+    for (const auto& flip : outcome.flips)
+        if (flip.side == 'a') times.push_back(flip.time_s);
     ASSERT_EQ(times.size(), 3U);
     // a sample is 1/120 s
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(times[static_cast<std::size_t>(k)], 0.5 + k, 1.0 / 120) << k;
@@ -212,9 +212,8 @@ TEST(Events, AreInTheManifestAndChaptersOfTheFilm) {
     EXPECT_EQ(events[2]["link"], 2);
     EXPECT_NEAR(events[2]["time_s"], 10.73, 0.01);
     std::vector<std::string> titles;
-    for (const auto& [frame, title] :
-         chapters_of(scene, film_events(scene, {{10.73, "flip", "A: link 2 flips"}, {11, "flip", "near"}}, {}),
-                     {0, schedule_of(scene).frames()}))
+    for (const auto& [frame, title] : chapters_of(scene, film_events(scene, {.flips = {{10.73, 'a', 2}, {11, 'a', 1}}}),
+                                                  {0, schedule_of(scene).frames()}))
         titles.push_back(title);
     EXPECT_EQ(titles, (std::vector<std::string>{scene.preset.title, "Release", "Speed 2", "A: link 2 flips"}));
     const auto video = read_video(folder / "butterfly/butterfly.mp4");
@@ -241,8 +240,7 @@ TEST(Events, OfAPartOfAFilmAreThoseThatItShows) {
     }
     // 0.23 s after the start of a part, a flip has no chapter
     const auto scene = film();
-    for (const auto& [frame, title] :
-         chapters_of(scene, film_events(scene, {{10.73, "flip", "A: link 2 flips"}}, {}), {126, 144}))
+    for (const auto& [frame, title] : chapters_of(scene, film_events(scene, {.flips = {{10.73, 'a', 2}}}), {126, 144}))
         EXPECT_EQ(std::pair(frame, title), std::pair(0L, scene.preset.title));
 }
 

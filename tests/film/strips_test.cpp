@@ -105,8 +105,7 @@ TEST(Strips, WhenTheyDivergedStandsAtItsLine) {
         const auto words = label_of(labels_of(scene, sample), "diverged");
         ASSERT_TRUE(words) << film;
         Outcome outcome;
-        for_each_snapshot(scene, sample,
-                          [&](const Snapshot& seen) { outcome.add(scene.time(seen.pair.sample), seen.pair); });
+        for_each_snapshot(scene, sample, [&](const Snapshot& seen) { outcome.add(scene, seen.pair); });
         const double since = outcome.divergence.since().value_or(0);
         const auto& strip = layout.strips[0];
         const auto box = box_of(*words);
