@@ -127,11 +127,8 @@ std::pair<std::string, std::vector<std::string>> legend_words(const Scene& scene
             const auto number = list.symbol == "θ"   ? chain.angle[j] * 180 / pi_of<Quad>()
                                 : list.symbol == "m" ? chain.mass[j]
                                                      : chain.length[j];
-            const auto& given = members[k].*list.member;
-            constexpr std::size_t longest = 12;  // letters of what was written by hand
-            auto text = given.empty() ? "" : text_of(given[j]);
-            if (text.empty() || text.size() > longest) text = fmt::format("{:.6g}", static_cast<double>(number));
-            words[k] += fmt::format("{}{}{}", words[k].empty() ? "" : ", ", text, list.unit);
+            words[k] +=
+                fmt::format("{}{:.12g}{}", words[k].empty() ? "" : ", ", static_cast<double>(number), list.unit);
         }
     };
     for (const auto& list : Release::lists)

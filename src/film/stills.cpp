@@ -20,12 +20,9 @@
 namespace doppel {
 namespace {
 
-/// For example "14", "6.8": at most microseconds, without trailing zeros.
+/// For example "14", "6.8": at most microseconds.
 std::string seconds_text(double seconds) {
-    auto text = fmt::format("{:.6f}", seconds);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
+    return fmt::format("{}", std::round(1e6 * seconds) / 1e6);
 }
 
 Moment still_moment(const Scene& scene, const Rational& time) {
