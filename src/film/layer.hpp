@@ -106,6 +106,8 @@ protected:
 std::unique_ptr<Layer> make_pendulum_layer(const FilmState& state, const PendulumPanel& panel);
 /// A strip, with its curves and marks.
 std::unique_ptr<Layer> make_strip_layer(const FilmState& state, const StripLayout& strip);
+/// The texts of a strip's marks with this outcome.
+DisplayList placed_marks(const FilmState& state, const Outcome& outcome, const StripLayout& strip);
 /// Of the panels of pendulums, the phase portrait and the strips, from back to front.
 std::vector<std::unique_ptr<Layer>> layers_of(const FilmState& state);
 

@@ -51,9 +51,10 @@ struct PictureJson {
     }
 };
 
-/// A strip: its axes, the position of its value if it has one, and colours and widths of curves. Adds its other words
-/// to `backdrop`.
-Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJson& json_of, DisplayList& backdrop) {
+/// A strip: its axes, the position of its value if it has one, the texts of its marks before and after the divergence,
+/// and colours and widths of curves. Adds its other words to `backdrop`.
+Json strip_json(const FilmState& state, const Outcome& outcome, const StripLayout& strip, const PictureJson& json_of,
+                DisplayList& backdrop) {
     const double start_distance = state.snapshot.pair.distance;
     const auto curves = strip_curves(strip.kind, state.scene, state.snapshot.pair, start_distance, state.layout.style);
     auto words = placed_caption(strip, state.scene, state.layout, curves, start_distance == 0);
@@ -69,13 +70,15 @@ Json strip_json(const FilmState& state, const StripLayout& strip, const PictureJ
         words.pop_back();
     }
     backdrop.insert(backdrop.end(), words.begin(), words.end());
+    for (const auto& of : {state.outcome, outcome})
+        json["marks"].push_back(json_of.all(placed_marks(state, of, strip)));
     for (const auto& curve : curves) json["pens"].push_back(json_of.list(curve.color, curve.width));
     return json;
 }
 
 /// A picture of the film's layout: pixels of `scene`'s size. `first`: the snapshot at the start. "marks": the numbers
 /// of the backdrop's items that mark limits.
-Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first) {
+Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first, const Outcome& outcome) {
     const FilmState state{scene, make_layout(scene, bounds), first};
     const auto& layout = state.layout;
     const auto& style = layout.style;
@@ -84,7 +87,6 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     Json json{{"size", {video.size.width, video.size.height}},
               {"unit", layout.unit},
               {"text", layout.text},
-              {"min_text", layout.min_text},
               {"reach", layout.reach},
               {"bob", layout.bob_radius},
               {"last_bob", layout.last_bob_radius},
@@ -114,7 +116,8 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     if (const auto& phase = layout.phase)
         json["phase"] = {
             {"area", json_of(phase->area)}, {"angle", axis_json(phase->angle)}, {"rate", axis_json(phase->rate)}};
-    for (const auto& strip : layout.strips) json["strips"].push_back(strip_json(state, strip, json_of, backdrop));
+    for (const auto& strip : layout.strips)
+        json["strips"].push_back(strip_json(state, outcome, strip, json_of, backdrop));
     for (const auto& [key, label] : {std::pair("clock", &layout.clock), {"speed", &layout.speed}})
         if (*label) json[key] = json_of(**label);
     json["backdrop"] = json_of.all(backdrop);
@@ -218,7 +221,8 @@ Numbers page_numbers(const Scene& scene, const Snapshot& snapshot, double start_
 }
 
 /// The page's data except its motion of samples 0 … `samples`, for src/film/page/player.js. `first`: the first of them.
-Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first, long samples) {
+Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first, const Outcome& outcome,
+               long samples) {
     const auto& video = scene.preset.video;
     const auto style = make_style(video, 1, 1);
     const auto clock = clock_text(scene, 0);
@@ -227,11 +231,11 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
     Json bodies = Json::array(), pictures = Json::array();
     for (const auto& pendulum : shown_pendulums(scene, style, !has_panel_for_each(video)))
         bodies.push_back(body_json(pendulum, video.position_bits));
-    pictures.push_back(picture_json(scene, bounds, first));
+    pictures.push_back(picture_json(scene, bounds, first, outcome));
     if (!is_tall(video)) {
         auto upright = scene;
         upright.preset.video.size = {1080, 1920};
-        pictures.push_back(picture_json(upright, bounds, first));
+        pictures.push_back(picture_json(upright, bounds, first, outcome));
     }
     Json json{{"title", preset.title},
               {"preset", resolved_toml(preset)},
@@ -250,11 +254,8 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
               {"fps", scene.fps.value()},
               {"decimals", clock == "0 s" ? 0 : clock.size() - 4},
               {"speed", speed_json(scene)},
-              {"limits", Json::array()},
-              {"true_divergence", true_divergence_words(scene)},
               {"bodies", bodies},
               {"pictures", pictures}};
-    for (const auto& [time, text] : limits_of(scene)) json["limits"].push_back({time, text});
     for (const auto& color : color_names)
         json["theme"][std::string(color.key)] = hexadecimal(style.theme.*color.member);
     if (video.layout == Arrangement::phase)
@@ -346,8 +347,8 @@ Json FilmPage::motion_json() const {
             {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
 }
 
-void FilmPage::finish() {
-    auto film = page_json(scene_, bounds_, first_, samples_ - 1);
+void FilmPage::finish(const Outcome& outcome) {
+    auto film = page_json(scene_, bounds_, first_, outcome, samples_ - 1);
     if (!places_.empty()) film["motion"] = motion_json();
     std::vector<std::uint32_t> bits;
     for (const auto& curve : curves_)
@@ -368,7 +369,7 @@ std::optional<HtmlPage> film_player(Scene scene) {
     }
     PairRun pair(scene);
     return player(scene, page_json(scene, Recording(scene, {1}, true, never_stopped).bounds(),
-                                   {pair.next(never_stopped), {}}, scene.samples));
+                                   {pair.next(never_stopped), {}}, {}, scene.samples));
 }
 
 }  // namespace doppel

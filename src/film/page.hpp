@@ -23,7 +23,8 @@ public:
 
     /// Takes every sample from 0 on; ignores moments between samples.
     void add(const Snapshot& snapshot);
-    void finish();
+    /// `outcome`: of the whole motion.
+    void finish(const Outcome& outcome);
 
 private:
     using Channels = std::vector<std::vector<float>>;  // each number of a sample, over time

@@ -209,7 +209,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
         record.events = film_events(scene, record.motion.outcome);
         if (recorder) recorder->finish();
         if (film) film->finish(record.events);
-        if (page) page->finish();
+        if (page) page->finish(record.motion.outcome);
         if (film && table && scene.preset.video.contact_sheet)
             film->write(".contact.png", contact_sheet_of(scene, recording, part.first, part.last, options.gl, stop));
         record.wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;

@@ -49,7 +49,7 @@ public:
         const auto& area = strip_.area;
         for (auto& words : placed_caption(strip_, state_.scene, layout_, now, state_.outcome.start_distance == 0))
             list.push_back(std::move(words));
-        const auto marks = texts();
+        const auto marks = texts(state_.outcome);
         if (marks.size() > limits_.size()) draw_line(marks.back(), list);
         const float x = strip_.time.at(state_.time());
         if (style_.width.mark > 0)
@@ -73,17 +73,19 @@ public:
     }
 
     std::vector<std::string> left_out() const override {
-        auto words = rows_of(texts()).second;
+        auto words = rows_of(texts(state_.outcome)).second;
         if (strip_.lines == 0) words.push_back(fmt::format("\"{}\"", title_of(strip_.kind, state_.scene)));
         return words;
     }
 
+    std::vector<Label> rows(const Outcome& outcome) const { return rows_of(texts(outcome)).first; }
+
 private:
     /// The marks with texts: limits and the divergence.
-    std::vector<TimeMark> texts() const {
+    std::vector<TimeMark> texts(const Outcome& outcome) const {
         if (!is_of_pair()) return {};
         auto marks = limits_;
-        if (const auto since = state_.outcome.divergence.since())
+        if (const auto since = outcome.divergence.since())
             marks.push_back(
                 {*since, fmt::format("diverged at {:.1f} s{}", *since, true_divergence_words(state_.scene))});
         return marks;
@@ -216,6 +218,11 @@ private:
 };
 
 }  // namespace
+
+DisplayList placed_marks(const FilmState& state, const Outcome& outcome, const StripLayout& strip) {
+    const auto rows = StripLayer(state, strip).rows(outcome);
+    return {rows.begin(), rows.end()};
+}
 
 std::unique_ptr<Layer> make_strip_layer(const FilmState& state, const StripLayout& strip) {
     return std::make_unique<StripLayer>(state, strip);

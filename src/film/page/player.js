@@ -194,51 +194,12 @@ function dashedLine({ area: [, top, , bottom], time }, at) {
   for (let y = top; y < bottom; y += 10 * picture.text)
     verticalLine(along(time, at), y, Math.min(y + 5 * picture.text, bottom), theme.quiet_text);
 }
-// The texts of marks beside their lines, in rows that cross no other line, each text as low as it covers least of the curve, and
-// smaller if need be: draws what is behind them, returns what draws them. A text for which there is no space is left out.
-function placeMarks({ area: [left, top, right, bottom], time }, marks, axis, curve) {
-  const t = picture.text, size = picture.font, style = ["left", 400, theme.text], rows = [];
-  const widthOf = words => g.measureText(words).width;
-  const boxOf = ({ from, foot, width, em }) => [from - 4 * t, foot - 0.9 * em, from + width + 4 * t, foot + 0.28 * em];
-  const overlap = ([a, b, c, d], [e, f, g, h]) => a < g && e < c && b < h && f < d;
-  const covered = row => curve.filter((v, k) => isIn([along(time, k * film.sample_s), along(axis, v)], boxOf(row))).length;
-  for (const [at, words] of [...marks].reverse())
-    for (const share of [1, 0.85, 0.7, 0.6]) {
-      const x = along(time, at), others = marks.map(([other]) => along(time, other));
-      const first = Math.max(left, ...others.filter(other => other < x)), end = Math.min(right, ...others.filter(other => other > x));
-      const after = end - x - 20 * t, before = x - first - 20 * t;
-      const em = Math.max(share * size, Math.min(picture.min_text, size)), lines = [];
-      text("", [0, 0], em, ...style);  // sets the font that is measured
-      const isRight = after >= Math.min(widthOf(words), before), room = Math.max(isRight ? after : before, 5 * em);
-      for (const word of words.split(/ (?!s\b)/)) {  // a number keeps its unit
-        const longer = `${lines.at(-1)} ${word}`, fits = lines.length && widthOf(longer) <= room;
-        lines.splice(fits ? -1 : lines.length, 1, fits ? longer : word);
-      }
-      const own = lines.map(line => {
-        const width = widthOf(line), from = isRight ? x + 10 * t : x - 10 * t - width;
-        return { line, width, em, from: Math.max(Math.min(from, end - width - 2 * t), first + 2 * t) };
-      });
-      const place = foot => own.forEach((row, i) => row.foot = foot + 1.2 * i * em);
-      const lowest = bottom - (0.45 + 1.2 * (lines.length - 1)) * em, highest = top + em;
-      if (lowest < highest - 0.3 * em || own.some(({ width }) => width > end - first - 4 * t)) continue;
-      let best = null, least = Infinity;
-      for (let foot = lowest; ; foot = Math.max(foot - 0.6 * em, highest)) {
-        place(foot);
-        const count = own.reduce((sum, row) => sum + covered(row), 0);
-        const isFree = !own.some(row => rows.some(other => overlap(boxOf(row), boxOf(other))));
-        if (isFree && count < least) [best, least] = [foot, count];
-        if (foot <= highest || least === 0) break;
-      }
-      if (best === null) continue;
-      place(best);
-      rows.push(...own);
-      break;
-    }
-  for (const row of film.transparent ? [] : rows) {
-    const [x, y, end, foot] = boxOf(row);
-    box(x, y, end - x, foot - y, 0, faded(theme.background, 0.85));
-  }
-  return () => rows.forEach(({ line, from, foot, em }) => text(line, [from, foot], em, ...style));
+// Of a release by hand, the text of the divergence beside its line.
+function divergenceMark({ area: [left, , right, bottom], time }, since) {
+  const words = `diverged at ${since.toFixed(1)} s`, size = picture.font, x = along(time, since), gap = 10 * picture.text;
+  text("", [0, 0], size, "left", 400, theme.text);  // sets the font that is measured
+  const { width } = g.measureText(words), from = x + gap + width < right ? x + gap : x - gap - width;
+  return ["text", words, [Math.max(from, left), bottom - 0.45 * size], size, "left", 400, theme.text, width];
 }
 const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color);
 
@@ -251,13 +212,13 @@ function drawStrip(strip) {
   const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   if (strip.value && !isStill && !Number.isNaN(now))
     drawLabel(strip.value, kind === "distance" ? scientific(now) : written(now.toFixed(2)));
-  const marks = motion === original ? [...film.limits] : [];
-  if (kind === kindOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6)) {
-    marks.push([since, `diverged at ${since.toFixed(1)} s${motion === original ? film.true_divergence : ""}`]);
-    dashedLine(strip, since);
-  }
+  const hasDiverged = kind === kindOfPair && (isStill ? since >= 0 : time >= since + 1 - 1e-6);
+  if (hasDiverged) dashedLine(strip, since);
   verticalLine(x, area[1], area[3], theme.cursor);
-  const drawMarks = kind === kindOfPair ? placeMarks(strip, marks, axis, kind === "distance" ? curves[0] : []) : null;
+  const released = hasDiverged ? [divergenceMark(strip, since)] : [];
+  const marks = motion === original ? strip.marks[Number(hasDiverged)] : released, room = 4 * picture.text;
+  for (const [, , [from, foot], size, , , , width] of film.transparent ? [] : marks)
+    box(from - room, foot - 0.9 * size, width + 2 * room, 1.18 * size, 0, faded(theme.background, 0.85));
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
     const [color, width] = pens[c], pieces = [];  // cut where the curve leaves its axis; the first begins in it
     const isInside = v => Math.abs(axisShare(axis, v) - 0.5) <= 0.500001;
@@ -273,7 +234,7 @@ function drawStrip(strip) {
     stroke(color, width, () => pieces.forEach(polyline));
     if (curves.length === 1 && wasInside && !isStill) drawHead(before, color);
   }
-  drawMarks?.();
+  drawAll(marks);
 }
 
 // Rates over angles: paths, or the points at which θ1 passes a whole number of turns upwards.
