@@ -7,11 +7,42 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 namespace doppel {
 namespace {
+
+/// A time on the axis, with its text.
+struct TimeMark {
+    double time_s;
+    std::string text;
+};
+
+/// The predictability limits, and the time until which the run is proved.
+std::vector<TimeMark> limits_of(const Scene& scene) {
+    std::vector<TimeMark> marks;
+    if (const auto limit = scene.horizon())
+        marks.push_back({*limit, fmt::format("numerical predictability limit {:.1f} s", *limit)});
+    if (const auto& proof = scene.certificate) {
+        const double until = proof->run_until_s();
+        marks.push_back({until, fmt::format("proved until {:.1f} s", std::floor(10 * until) / 10)});  // not later
+    }
+    if (const auto limit = scene.preset.video.model_limit_s)
+        marks.push_back({*limit, fmt::format("predictability limit of the model {:.1f} s", *limit)});
+    std::erase_if(marks, [&](const TimeMark& mark) { return mark.time_s > scene.time(scene.samples); });
+    return marks;
+}
+
+/// ", the true motions at 15.4 s", if that is proved.
+std::string true_divergence_words(const Scene& scene) {
+    const auto& proof = scene.certificate;
+    if (!proof || !proof->diverged_s) return {};
+    const auto from = fmt::format("{:.1f}", proof->diverged_s->low),
+               to = fmt::format("{:.1f}", proof->diverged_s->high);
+    return fmt::format(", the true motions at {}{} s", from, from == to ? "" : " to " + to);
+}
 
 class StripLayer final : public Layer {
 public:

@@ -4,7 +4,6 @@
 #include "numeric/state.hpp"
 #include "plot/labels.hpp"
 #include "scene/captions.hpp"
-#include "scene/certificate.hpp"
 
 #include <fmt/format.h>
 
@@ -171,28 +170,6 @@ std::optional<double> growth_rate(const Scene& scene, const PairState& state, do
     if (state.sample == 0 || 20 * state.sample < scene.samples) return std::nullopt;
     if (!(state.distance > 0 && start_distance > 0)) return std::nullopt;
     return std::log(state.distance / start_distance) / scene.time(state.moment());
-}
-
-std::vector<TimeMark> limits_of(const Scene& scene) {
-    std::vector<TimeMark> marks;
-    if (const auto limit = scene.horizon())
-        marks.push_back({*limit, fmt::format("numerical predictability limit {:.1f} s", *limit)});
-    if (const auto& proof = scene.certificate) {
-        const double until = proof->run_until_s();
-        marks.push_back({until, fmt::format("proved until {:.1f} s", std::floor(10 * until) / 10)});  // not later
-    }
-    if (const auto limit = scene.preset.video.model_limit_s)
-        marks.push_back({*limit, fmt::format("predictability limit of the model {:.1f} s", *limit)});
-    std::erase_if(marks, [&](const TimeMark& mark) { return mark.time_s > scene.time(scene.samples); });
-    return marks;
-}
-
-std::string true_divergence_words(const Scene& scene) {
-    const auto& proof = scene.certificate;
-    if (!proof || !proof->diverged_s) return {};
-    const auto from = fmt::format("{:.1f}", proof->diverged_s->low),
-               to = fmt::format("{:.1f}", proof->diverged_s->high);
-    return fmt::format(", the true motions at {}{} s", from, from == to ? "" : " to " + to);
 }
 
 float caption_line(const Layout& layout) {

@@ -30,16 +30,6 @@ std::string title_of(StripKind kind, const Scene& scene);
 /// 0.
 std::optional<double> growth_rate(const Scene& scene, const PairState& state, double start_distance);
 
-/// A time on the axis of all strips, with its text.
-struct TimeMark {
-    double time_s;
-    std::string text;
-};
-/// The predictability limits, and the time until which the run is proved.
-std::vector<TimeMark> limits_of(const Scene& scene);
-/// ", the true motions at 15.4 s", if that is proved.
-std::string true_divergence_words(const Scene& scene);
-
 /// Line spacing of captions, px; also the distance from the last line to the curves.
 float caption_line(const Layout& layout);
 float above_curves(const Layout& layout);
