@@ -67,8 +67,6 @@ public:
     /// Adds a sample; all are required in order, from time 0 on. s.
     void add(double time, double distance) {
         if (time == 0) starts_together_ = distance < max_start_distance;
-        ++samples_;
-        apart_ += distance >= diverged_distance;
         if (!starts_together_ || since_) return;
         if (!(distance >= diverged_distance)) return candidate_.reset();
         if (!candidate_) candidate_ = time;
@@ -79,14 +77,9 @@ public:
     /// The time of divergence, s; known one second later. Nothing if the pair does not diverge, comes back within a
     /// second, or starts apart.
     std::optional<double> since() const { return since_; }
-    /// The share of samples at which the distance is above the limit.
-    double share_apart() const {
-        return samples_ > 0 ? static_cast<double>(apart_) / static_cast<double>(samples_) : 0;
-    }
 
 private:
     bool starts_together_ = false;
-    long samples_ = 0, apart_ = 0;
     std::optional<double> candidate_{}, since_{};
 };
 

@@ -156,8 +156,7 @@ std::string Composer::outcome() const {
     const auto& divergence = state_.outcome.divergence;
     if (!divergence.starts_together()) return "apart from the start";
     if (divergence.since()) return fmt::format("diverged after {:.1f} s", *divergence.since());
-    if (divergence.share_apart() > 0)
-        return fmt::format("apart for {} % of the time", two_digits(100 * divergence.share_apart()));
+    if (state_.outcome.largest_distance >= Divergence::diverged_distance) return "apart at times";
     return fmt::format("together to the end, {:g} s", state_.scene.time(state_.scene.samples));
 }
 
