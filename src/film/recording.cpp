@@ -118,13 +118,8 @@ Snapshot blank_snapshot(const Scene& scene) {
 }
 
 Recording::Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-                     std::filesystem::path file, Report report, double max_bytes)
-    : scene_(scene),
-      end_(end),
-      with_pictures_(with_pictures),
-      stop_(stop),
-      report_(std::move(report)),
-      file_(std::move(file)) {
+                     std::filesystem::path file, double max_bytes)
+    : scene_(scene), end_(end), with_pictures_(with_pictures), stop_(stop), file_(std::move(file)) {
     const bool is_bounded = with_pictures && depends_on_motion(scene);
     is_kept_ =
         with_pictures && (is_bounded || scene.preset.video.contact_sheet) && recorded_bytes(scene, end) <= max_bytes;
@@ -185,9 +180,8 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
     // CPU time of this thread and of those of the simulation
     const auto spent_s = [&] { return seconds_of(CLOCK_THREAD_CPUTIME_ID) + (pair ? pair->other_cpu_s() : 0); };
     double begun = spent_s();
-    const auto add_sample = [&](const PairState& state) {
+    const auto add_bounds = [&](const PairState& state) {
         if (is_bounded) bounds_.add(scene_, state, record_.outcome.start_distance);
-        if (report_) report_({state.sample + 1, is_bounded ? scene_.samples + 1 : end_.sample});
     };
     const auto take = [&](const Moment& moment) {
         const auto snapshot = snapshot_at(moment, record_);
@@ -197,7 +191,7 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
             add(record_.a, state.a);
             add(record_.b, state.b);
             record_.outcome.add(scene_, state);
-            add_sample(state);
+            add_bounds(state);
         }
         cpu_s_ += spent_s() - begun;
         visit(snapshot);
@@ -215,7 +209,7 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
     MotionRecord beyond;
     try {
         for (; is_bounded && sample.sample <= scene_.samples; ++sample.sample)
-            add_sample(snapshot_at(sample, beyond).pair);
+            add_bounds(snapshot_at(sample, beyond).pair);
     } catch (const RunFailure&) {  // the required part is complete
     }
     cpu_s_ += spent_s() - begun;

@@ -101,11 +101,10 @@ class Recording {
 public:
     static constexpr double usual_bytes = 256e6;
 
-    /// Records the snapshots before `end`. `report` is called for each simulated sample. `scene` and `stop` must
-    /// outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
+    /// Records the snapshots before `end`. `scene` and `stop` must outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
     /// play() throws the others. With a `file` (RecordingReader), its snapshots replace the simulation.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
-              std::filesystem::path file = {}, Report report = {}, double max_bytes = usual_bytes);
+              std::filesystem::path file = {}, double max_bytes = usual_bytes);
     Recording(const Recording&) = delete;
     Recording& operator=(const Recording&) = delete;
 
@@ -128,7 +127,6 @@ private:
     const Moment end_;
     const bool with_pictures_;
     const std::atomic<bool>& stop_;
-    const Report report_;
     const std::filesystem::path file_;
     std::deque<Snapshot> kept_;
     std::exception_ptr error_;

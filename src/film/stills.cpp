@@ -7,7 +7,6 @@
 #include "output/transaction.hpp"
 #include "plot/page.hpp"
 #include "render/typeface.hpp"
-#include "scene/captions.hpp"
 #include "scene/resolved.hpp"
 
 #include <fmt/format.h>
@@ -31,27 +30,6 @@ Moment still_moment(const Scene& scene, const Rational& time) {
     return moment_at(time.value() * scene.preset.sample_hz.value());
 }
 
-DisplayList title_of(const Scene& scene, Size size, float unit) {
-    const auto style = make_style(scene.preset.video, unit, unit);
-    const auto& font = style.font;
-    const auto& theme = style.theme;
-    const auto width = static_cast<float>(size.width);
-    const float edge = 14 * unit, left = 0.58f * width, right = 0.34f * width;
-    const auto said = side_captions(scene);
-    DisplayList list{filled(size, theme.background)};
-    const auto add = [&](const std::string& text, float y, double wanted, Weight weight, Color color, bool at_right) {
-        const float fits = style.type.fitting_size(text, px(wanted), weight, at_right ? right : left);
-        list.push_back(label(text, {at_right ? width - edge : edge, y}, fits, color,
-                             at_right ? Align::right : Align::left, weight));
-    };
-    add(scene.preset.title, 50 * unit, font.title, Weight::bold, theme.text, false);
-    add(scene_caption(scene), 86 * unit, font.subtitle, Weight::regular, theme.quiet_text, false);
-    for (std::size_t side = 0; side < scene.letters().size(); ++side)
-        add(said[side].heading, (side == 0 ? 48.0f : 86.0f) * unit, 0.9 * font.heading, Weight::bold,
-            scene.members.empty() ? theme.sides[side] : theme.text, true);
-    return list;
-}
-
 }  // namespace
 
 std::string still_name(const Scene& scene, const Rational& time, PictureFormat format) {
@@ -71,11 +49,14 @@ RunResult draw_still(const Scene& scene, const Rational& time, PictureFormat for
     alone.frames = {.last = moment, .count = 1};
     alone.preset.video.contact_sheet.reset();
     const long samples = moment.sample + 1;
-    Recording recording(alone, {samples}, true, stop, {}, report);
+    Recording recording(alone, {samples}, true, stop);
     Composer composer(scene, recording.bounds());
     std::optional<Canvas> canvas;  // made first, so that missing OpenGL is reported at once
     if (format == PictureFormat::png) canvas.emplace(scene, composer, options.gl, stop);
-    recording.play([&](const Snapshot& snapshot) { composer.add(snapshot); });
+    recording.play([&](const Snapshot& snapshot) {
+        composer.add(snapshot);
+        report({std::min(snapshot.pair.sample + 1, samples), samples});
+    });
     const auto& video = scene.preset.video;
     const auto metadata = metadata_of(scene.preset.title, scene.preset.name,
                                       fmt::format("at {} s of {}", text, scene.preset.duration_s.value()));
@@ -143,9 +124,14 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
             pictures.push_back(tiles.draw(tile_of(tile, composer, tile.time(snapshot.pair.moment())), stop));
     });
     const auto below = contact_sheet(pictures, across, 8, composer.page_color());
-    const float unit = static_cast<float>(below.size.width) / 1920;
-    const Size title{below.size.width, static_cast<int>(110 * unit) + 1};
-    Renderer renderer(title, title_of(tile, title, unit), gl, stop, style.typeface);
+    const auto width = static_cast<float>(below.size.width), unit = width / 1920;
+    const auto look = make_style(style, unit, unit);
+    const Size head{below.size.width, static_cast<int>(76 * unit) + 1};
+    const auto size = look.type.fitting_size(scene.preset.title, px(look.font.title), Weight::bold, 0.97f * width);
+    Renderer renderer(head,
+                      {filled(head, look.theme.background), label(scene.preset.title, {14 * unit, 50 * unit}, size,
+                                                                  look.theme.text, Align::left, Weight::bold)},
+                      gl, stop, style.typeface);
     Picture sheet = renderer.draw({}, stop);
     sheet.size.height += below.size.height;
     sheet.rgba.insert(sheet.rgba.end(), below.rgba.begin(), below.rgba.end());
