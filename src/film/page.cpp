@@ -76,8 +76,8 @@ Json strip_json(const FilmState& state, const Outcome& outcome, const StripLayou
     return json;
 }
 
-/// A picture of the film's layout: pixels of `scene`'s size. `first`: the snapshot at the start. "marks": the numbers
-/// of the backdrop's items that mark limits.
+/// A picture of the film's layout: pixels of `scene`'s size. `first`: the snapshot at the start. "marks": what
+/// marks limits, below the backdrop.
 Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& first, const Outcome& outcome) {
     const FilmState state{scene, make_layout(scene, bounds), first};
     const auto& layout = state.layout;
@@ -98,15 +98,12 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
               {"panels", Json::array()},
               {"strips", Json::array()}};
     for (const auto& width : width_names) json[std::string(width.key)] = style.width.*width.member;
-    DisplayList backdrop;
-    if (!video.transparent) backdrop.push_back(filled(video.size, style.theme.background));
-    json["marks"] = Json::array();
+    DisplayList marks, backdrop;
     for (const auto& layer : layers_of(state)) {
-        const auto first_mark = backdrop.size();
-        layer->marks(backdrop);
-        for (auto mark = first_mark; mark < backdrop.size(); ++mark) json["marks"].push_back(mark);
+        layer->marks(marks);
         layer->backdrop(backdrop);
     }
+    json["marks"] = json_of.all(marks);
     for (const auto& panel : layout.panels)
         json["panels"].push_back({{"area", json_of(panel.area)},
                                   {"shown", panel.shown},

@@ -265,11 +265,8 @@ TEST(Page, SaysTheLimitsThatTheFilmMarks) {
         for (const auto& row : texts(with)[0]) words += row[1].get<std::string>() + " ";
         EXPECT_EQ(words, "predictability limit of the model 0.5 s ");
         EXPECT_EQ(texts(with)[0], texts(with)[1]) << "they do not diverge";
-        auto backdrop = with.at("pictures")[k].at("backdrop");
-        const auto& marks = with.at("pictures")[k].at("marks");
-        EXPECT_GT(marks.size(), 3u) << "dashes";
-        for (auto mark = marks.rbegin(); mark != marks.rend(); ++mark) backdrop.erase(mark->get<std::size_t>());
-        EXPECT_EQ(backdrop, without.at("pictures")[k].at("backdrop")) << "what a release by hand shows";
+        EXPECT_GT(with.at("pictures")[k].at("marks").size(), 3u) << "dashes";
+        EXPECT_EQ(with.at("pictures")[k].at("backdrop"), without.at("pictures")[k].at("backdrop"));
         EXPECT_EQ(without.at("pictures")[k].at("marks"), Json::array());
     }
 }

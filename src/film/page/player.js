@@ -282,7 +282,9 @@ function draw() {
   const [width, height] = picture.size, scale = canvas.width / width;
   g.setTransform(scale, 0, 0, scale, 0, 0);
   g.clearRect(0, 0, width, height + 1);
-  drawAll(motion === original ? picture.backdrop : picture.backdrop.filter((_, i) => !picture.marks.includes(i)));
+  if (!film.transparent) box(0, 0, width, height, 0, theme.background);
+  if (motion === original) drawAll(picture.marks);
+  drawAll(picture.backdrop);
   if (!motion) return;
   const poses = posesNow();
   drawWords();
