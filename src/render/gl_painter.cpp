@@ -12,15 +12,6 @@ namespace {
 
 constexpr GLboolean on = GL_TRUE, off = GL_FALSE;
 
-template <class GetLog>
-std::string log(GetLog get, GLuint number) {
-    std::string text(1024, '\0');
-    GLsizei length = 0;
-    get(number, static_cast<GLsizei>(text.size()), &length, text.data());
-    text.resize(static_cast<std::size_t>(length));
-    return text;
-}
-
 void attach(GLuint program, GLenum type, const std::string& name) {
     const std::string_view source = embedded_file(render_files(), name);
     const char* text = source.data();
@@ -32,7 +23,9 @@ void attach(GLuint program, GLenum type, const std::string& name) {
     DeleteShader(shader);
     GLint compiled = GL_FALSE;
     GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-    if (!compiled) throw io_failed("shaders/{}: {}", name, log(GetShaderInfoLog, shader));
+    std::string log(1024, '\0');
+    GetShaderInfoLog(shader, 1024, nullptr, log.data());
+    if (!compiled) throw io_failed("shaders/{}: {}", name, log.c_str());
 }
 
 /// The corners of a rotated primitive, in order.
@@ -69,7 +62,7 @@ Program::Program(const std::string& fragment) : number_(CreateProgram()) {
     LinkProgram(number_);
     GLint linked = GL_FALSE;
     GetProgramiv(number_, GL_LINK_STATUS, &linked);
-    if (!linked) throw io_failed("shaders/quad.vert and {}: {}", fragment, log(GetProgramInfoLog, number_));
+    if (!linked) throw io_failed("shaders/quad.vert and {} cannot be linked", fragment);
 }
 
 Painter::Painter(Size size)
