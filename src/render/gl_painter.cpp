@@ -28,6 +28,28 @@ void attach(GLuint program, GLenum type, const std::string& name) {
     if (!compiled) throw io_failed("shaders/{}: {}", name, log.c_str());
 }
 
+/// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader.
+GLuint program_of(const std::string& fragment) {
+    const GLuint program = CreateProgram();
+    attach(program, GL_VERTEX_SHADER, "quad.vert");
+    attach(program, GL_FRAGMENT_SHADER, fragment);
+    GLuint location = 0;
+    for (const char* input :
+         {"vertex_position", "vertex_frame", "vertex_shape", "vertex_params", "vertex_parabola", "vertex_tint"})
+        BindAttribLocation(program, location++, input);
+    LinkProgram(program);
+    GLint linked = GL_FALSE;
+    GetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (!linked) throw io_failed("shaders/quad.vert and {} cannot be linked", fragment);
+    return program;
+}
+
+GLuint object_of(const auto& generate) {
+    GLuint number = 0;
+    generate(1, &number);
+    return number;
+}
+
 /// The corners of a rotated primitive, in order.
 std::array<Point, 4> outline(const Primitive& primitive) {
     const float room = 0.05f;  // px, so that rounding excludes no pixel
@@ -52,25 +74,18 @@ void check_errors(const std::string& what) {
     throw io_failed("OpenGL failed at {}: error {:#06x}", what, first);
 }
 
-Program::Program(const std::string& fragment) : number_(CreateProgram()) {
-    attach(number_, GL_VERTEX_SHADER, "quad.vert");
-    attach(number_, GL_FRAGMENT_SHADER, fragment);
-    GLuint location = 0;
-    for (const char* input :
-         {"vertex_position", "vertex_frame", "vertex_shape", "vertex_params", "vertex_parabola", "vertex_tint"})
-        BindAttribLocation(number_, location++, input);
-    LinkProgram(number_);
-    GLint linked = GL_FALSE;
-    GetProgramiv(number_, GL_LINK_STATUS, &linked);
-    if (!linked) throw io_failed("shaders/quad.vert and {} cannot be linked", fragment);
-}
-
 Painter::Painter(Size size)
-    : programs_{Program("shape.frag"), Program("glyph.frag"), Program("mask.frag")}, cover_("cover.frag") {
+    : pixels_(object_of(GenTextures)),
+      framebuffer_(object_of(GenFramebuffers)),
+      programs_{program_of("shape.frag"), program_of("glyph.frag"), program_of("mask.frag")},
+      cover_(program_of("cover.frag")),
+      vertex_array_(object_of(GenVertexArrays)),
+      vertex_buffer_(object_of(GenBuffers)),
+      atlas_(object_of(GenTextures)) {
     // constant state: pixel coordinates from the top left
-    for (const Program* program : {&programs_[0], &programs_[1], &programs_[2], &cover_}) {
-        UseProgram(*program);
-        Uniform2f(GetUniformLocation(*program, "picture"), static_cast<float>(size.width),
+    for (const GLuint program : {programs_[0], programs_[1], programs_[2], cover_}) {
+        UseProgram(program);
+        Uniform2f(GetUniformLocation(program, "picture"), static_cast<float>(size.width),
                   static_cast<float>(size.height));
     }
     Viewport(0, 0, size.width, size.height);
@@ -209,7 +224,7 @@ void Painter::upload(const GlyphAtlas& atlas) {
 }
 
 void Painter::draw(const Batch& batch) {
-    const auto draw_triangles = [&](const Program& program) {
+    const auto draw_triangles = [&](GLuint program) {
         UseProgram(program);
         DrawArrays(GL_TRIANGLES, static_cast<GLint>(batch.begin), static_cast<GLsizei>(batch.end - batch.begin));
     };

@@ -10,42 +10,10 @@ namespace doppel::gl {
 /// Throws Error (exit 4) if OpenGL has reported an error since the last call. `what`: the task.
 void check_errors(const std::string& what);
 
-/// Owns an OpenGL object. Its context must be current at construction and destruction.
-template <auto& generate, auto& destroy>
-class Object {
-public:
-    Object() { generate(1, &number_); }
-    ~Object() { destroy(1, &number_); }
-    Object(const Object&) = delete;
-    Object& operator=(const Object&) = delete;
-    operator GLuint() const { return number_; }
-
-private:
-    GLuint number_ = 0;
-};
-
-using Buffer = Object<GenBuffers, DeleteBuffers>;
-using Texture = Object<GenTextures, DeleteTextures>;
-using VertexArray = Object<GenVertexArrays, DeleteVertexArrays>;
-using Framebuffer = Object<GenFramebuffers, DeleteFramebuffers>;
-
-/// shaders/quad.vert, whose inputs have the locations 0 to 5 in their order there, and a fragment shader.
-class Program {
-public:
-    explicit Program(const std::string& fragment);
-    ~Program() { DeleteProgram(number_); }
-    Program(const Program&) = delete;
-    Program& operator=(const Program&) = delete;
-    operator GLuint() const { return number_; }
-
-private:
-    GLuint number_;
-};
-
 /// A canvas of RGBA pixels, all zero at first, and what draws render lists onto it. Row 0 is the top of the picture. A
 /// stroke takes two passes. The first writes 1 - opacity of each segment into the canvas's alpha, which is 1 otherwise.
 /// The minimum is kept, so that overlapping segments do not add up. The second blends the colour by alpha and restores
-/// alpha 1, so that drawing a pixel twice changes nothing.
+/// alpha 1, so that drawing a pixel twice changes nothing. Its OpenGL objects end with the context.
 class Painter {
 public:
     /// Binds the canvas. Throws Error if memory is exhausted.
@@ -75,14 +43,10 @@ private:
     void upload(const GlyphAtlas& atlas);
     void draw(const Batch& batch);
 
-    Texture pixels_;  // of the canvas
-    Framebuffer framebuffer_;
-    std::array<Program, 3> programs_;  // for each Kind
-    Program cover_;
-    VertexArray vertex_array_;
-    Buffer vertex_buffer_;
+    const GLuint pixels_, framebuffer_;     // of the canvas
+    const std::array<GLuint, 3> programs_;  // for each Kind
+    const GLuint cover_, vertex_array_, vertex_buffer_, atlas_;
     std::size_t vertex_room_ = 0;  // size of the buffer, bytes
-    Texture atlas_;
     std::size_t atlas_glyphs_ = 0;
     std::vector<Vertex> vertices_;
     std::vector<Point> outline_, clipped_;  // of the primitive being added

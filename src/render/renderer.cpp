@@ -54,9 +54,7 @@ Renderer::Renderer(Size size, const DisplayList& backdrop, Gl gl, const std::ato
     throw io_failed("there is no memory for a picture of {} × {} px", size.width, size.height);
 }
 
-Renderer::~Renderer() {
-    context_->make_current();
-}
+Renderer::~Renderer() = default;
 
 const Picture& Renderer::draw(const DisplayList& list, const std::atomic<bool>& stop) {
     context_->make_current();
