@@ -36,11 +36,6 @@ std::string key_of(const Scene& scene) {
     return sha256_of_text(resolved_toml(preset));
 }
 
-std::string header_of(const Scene& scene) {
-    return fmt::format(R"({},"preset":{},"version":"{}","revision":"{}","motion_sha256":"{}"}})", recording_file.start,
-                       Json(scene.preset.name).dump(), version(), revision(), key_of(scene));
-}
-
 /// Writes or reads all numbers.
 void pass_all(BlockFile& all, Snapshot& snapshot, Effort& a, Effort& b) {
     auto& pair = snapshot.pair;
@@ -49,6 +44,17 @@ void pass_all(BlockFile& all, Snapshot& snapshot, Effort& a, Effort& b) {
         all(seen->bobs, seen->exact, seen->pivot, seen->tension, seen->energy, seen->kinetic_energy);
         all(seen->work, seen->energy_change, seen->length_error, seen->energy_error, seen->mean_energy);
     }
+}
+
+/// The snapshot of this moment in a file; earlier ones are left out. Sets the effort in `record`.
+Snapshot read_snapshot(BlockFile& recording, const Moment& moment, MotionRecord& record) {
+    Snapshot snapshot;
+    while (recording.next()) {
+        pass_all(recording, snapshot, record.a.effort, record.b.effort);
+        if (snapshot.pair.moment() == moment) return snapshot;
+        if (moment < snapshot.pair.moment()) break;
+    }
+    throw recording.damaged();
 }
 
 }  // namespace
@@ -153,18 +159,21 @@ void Recording::play(const Visit& visit) {
 /// If the motion is bounded, goes on to its end after the required snapshots.
 void Recording::simulate(bool is_bounded, const Visit& visit) {
     record_ = {};
-    std::optional<RecordingReader> file;
+    std::optional<BlockFile> file;
     std::optional<PairRun> pair;
     std::optional<MotionBatch> members;
     if (file_.empty())
         pair.emplace(scene_);
-    else
-        file.emplace(file_, scene_);
+    else if (file.emplace(file_, recording_file).header() != recording_header(scene_))
+        throw bad_input(
+            "{} is a recording of another motion, frame rate or version of Doppel; make it again, with the same --set: "
+            "doppel simulate {} --recording {}",
+            file_.string(), scene_.preset.name, file_.string());
     const bool has_members = (with_pictures_ || scene_.preset.member_columns) && !scene_.members.empty();
     if (pair && has_members && (is_kept_ || !is_bounded)) members.emplace(scene_.members, 1);
     const auto snapshot_at = [&](const Moment& moment, MotionRecord& record) {
         throw_if_set(stop_);
-        if (file) return file->at(moment, record);
+        if (file) return read_snapshot(*file, moment, record);
         const bool is_sample = moment.share == 0;
         Snapshot snapshot{is_sample ? pair->next(stop_) : pair->advance_to(moment, stop_), {}};
         record.a.effort = pair->effort_a();
@@ -215,31 +224,14 @@ void Recording::simulate(bool is_bounded, const Visit& visit) {
     cpu_s_ += spent_s() - begun;
 }
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Scene& scene)
-    : BlockFile(path, header_of(scene)) {}
-
-void RecordingWriter::add(Snapshot snapshot, Effort a, Effort b) {
-    pass_all(*this, snapshot, a, b);
-    end_block();
+std::string recording_header(const Scene& scene) {
+    return fmt::format(R"({},"preset":{},"version":"{}","revision":"{}","motion_sha256":"{}"}})", recording_file.start,
+                       Json(scene.preset.name).dump(), version(), revision(), key_of(scene));
 }
 
-RecordingReader::RecordingReader(const std::filesystem::path& path, const Scene& scene)
-    : BlockFile(path, recording_file) {
-    if (header() != header_of(scene))
-        throw bad_input(
-            "{} is a recording of another motion, frame rate or version of Doppel; make it again, with the same --set: "
-            "doppel simulate {} --recording {}",
-            path.string(), scene.preset.name, path.string());
-}
-
-Snapshot RecordingReader::at(const Moment& moment, MotionRecord& record) {
-    Snapshot snapshot;
-    while (next()) {
-        pass_all(*this, snapshot, record.a.effort, record.b.effort);
-        if (snapshot.pair.moment() == moment) return snapshot;
-        if (moment < snapshot.pair.moment()) break;
-    }
-    throw damaged();
+void add_snapshot(BlockFile& recording, Snapshot snapshot, Effort a, Effort b) {
+    pass_all(recording, snapshot, a, b);
+    recording.end_block();
 }
 
 }  // namespace doppel

@@ -102,7 +102,8 @@ public:
     static constexpr double usual_bytes = 256e6;
 
     /// Records the snapshots before `end`. `scene` and `stop` must outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
-    /// play() throws the others. With a `file` (RecordingReader), its snapshots replace the simulation.
+    /// play() throws the others. The snapshots in a `file` replace the simulation: exit 2 if it belongs to another
+    /// motion or version, exit 4 if it cannot be read or is damaged.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
               std::filesystem::path file = {}, double max_bytes = usual_bytes);
     Recording(const Recording&) = delete;
@@ -136,24 +137,11 @@ private:
     bool is_kept_ = false;
 };
 
-/// The file of a recording: a block contains the numbers of a snapshot.
 inline constexpr BlockKind recording_file{R"({"file":"doppel recording")", "is no recording of Doppel",
                                           "is damaged or incomplete; make it again with simulate --recording"};
-
-class RecordingWriter : BlockFile {
-public:
-    RecordingWriter(const std::filesystem::path& path, const Scene& scene);
-    /// The effort of both sides is that up to this snapshot.
-    void add(Snapshot snapshot, Effort a, Effort b);
-    using BlockFile::finish;
-};
-
-/// Throws Error: exit 2 if it belongs to another motion or version, exit 4 if it cannot be read or is damaged.
-class RecordingReader : BlockFile {
-public:
-    RecordingReader(const std::filesystem::path& path, const Scene& scene);
-    /// The snapshot of this moment; earlier ones are left out. Sets the effort in `record`.
-    Snapshot at(const Moment& moment, MotionRecord& record);
-};
+/// The header of a recording's file, of which each block contains the numbers of a snapshot.
+std::string recording_header(const Scene& scene);
+/// Adds the next snapshot to such a file; the effort of both sides is that up to it.
+void add_snapshot(BlockFile& recording, Snapshot snapshot, Effort a, Effort b);
 
 }  // namespace doppel

@@ -165,8 +165,8 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     if (options.merge) parts_in(scene, parts.folder());  // so that errors are reported before the simulation
     RunRecord record;
     Recording recording(scene, part.end, options.pictures || is_recorded, stop, options.recording);
-    std::optional<RecordingWriter> recorder;
-    if (is_recorded) recorder.emplace(options.record_to, scene);
+    std::optional<BlockFile> recorder;
+    if (is_recorded) recorder.emplace(options.record_to, recording_header(scene));
     std::optional<Film> film;
     std::optional<FilmPage> page;
     if (is_film && !recording.fails())
@@ -187,7 +187,7 @@ RunResult run(const Scene& scene, const RunOptions& options, const std::atomic<b
     const auto add = [&](const Snapshot& snapshot) {
         const auto& state = snapshot.pair;
         throw_if_set(stop);
-        if (recorder) recorder->add(snapshot, recording.record().a.effort, recording.record().b.effort);
+        if (recorder) add_snapshot(*recorder, snapshot, recording.record().a.effort, recording.record().b.effort);
         if (page) page->add(snapshot);
         if (table && state.share == 0 && state.sample >= record.first_sample) {
             add_row(*table, scene, snapshot, recording.record().outcome.start_distance);
