@@ -97,10 +97,16 @@ std::string name_of(const std::vector<Force<Scalar>>& forces, std::size_t index)
 /// nearest droplet, or 1 without droplets.
 double size_of(const Assembly<double>& assembly);
 
+/// An error in a constraint, numbered from 0.
+struct ConstraintError : Error {
+    ConstraintError(const Error& error, std::size_t of) : Error(error), constraint(of) {}
+    std::size_t constraint;
+};
+
 /// Checks that an assembly can be built and released. Throws Error (exit 2) with the part, the value and what would be
 /// right: a mass not > 0; a particle that does not exist, or is connected to itself; a rod or circle of length zero, a
 /// slot without direction; a spring of zero stiffness; initial positions or velocities that violate a constraint by
-/// more than 1e-9 of the size or speed; a constraint that depends on earlier ones.
+/// more than 1e-9 of the size or speed; as ConstraintError, a constraint that depends on earlier ones.
 void check(const Assembly<double>& assembly);
 
 }  // namespace doppel

@@ -215,8 +215,10 @@ void check(const Assembly<double>& assembly) {
     check_places(assembly, q);
     check_velocities(assembly, q);
     if (const auto found = Mechanism<double>(assembly).dependence(q))
-        throw bad_input("{} is redundant: it follows from {}; leave it out, or start elsewhere",
-                        name_of(found->constraint, constraints[found->constraint]), listed(found->others));
+        throw ConstraintError(
+            bad_input("{} is redundant: it follows from {}; leave it out, or start elsewhere",
+                      name_of(found->constraint, constraints[found->constraint]), listed(found->others)),
+            found->constraint);
 }
 
 Error singular_configuration(const std::string& name, const Dependence& dependence, const std::vector<double>& places,

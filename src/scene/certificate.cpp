@@ -12,9 +12,11 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 namespace doppel {
 namespace {
@@ -30,21 +32,26 @@ std::vector<Ball<Wide>> decimals(const std::vector<Quad>& numbers, const Ball<Wi
 
 /// Throws if a key or an entry excludes a proof.
 void require_ideal(SideSpec spec) {
-    const auto fail = [](const std::string& found) {
-        throw bad_input(
-            "a proof needs two ideal links: no friction, drive, track or further constraint, and no force but gravity "
-            "and droplets; the side has {}",
-            found);
+    const auto fail = [](std::string_view key, const std::string& found, std::optional<std::size_t> entry = {}) {
+        throw PlacedError(
+            bad_input("a proof needs two ideal links: no friction, drive, track or further constraint, and no force "
+                      "but gravity and droplets; the side has {}",
+                      found),
+            std::string(key), entry);
     };
-    if (!spec.track.is_none()) fail(fmt::format("track.file = {}", toml_text(spec.track.file)));
+    if (!spec.track.is_none()) fail("track", fmt::format("track.file = {}", toml_text(spec.track.file)));
+    std::map<std::string_view, std::size_t> counts;  // entries of each table
     for (const auto& entry : entries_of(spec))
-        if (entry.kind != "droplet")
-            fail(fmt::format("a {}{}", entry.kind, entry.name.empty() ? "" : " " + toml_text(entry.name)));
-    if (spec.links() != 2) fail(fmt::format("links = {}", spec.links()));
+        if (const auto number = counts[entry.table]++; entry.kind != "droplet")
+            fail(entry.table, fmt::format("a {}{}", entry.kind, entry.name.empty() ? "" : " " + toml_text(entry.name)),
+                 number);
+    if (spec.links() != 2) fail("links", fmt::format("links = {}", spec.links()));
     const auto& physical = spec.physical;
     for (const auto& property : PhysicalSpec::properties)
-        if (physical.has(property)) fail(fmt::format("{} = {}", property.key, toml_value(physical.*property.member)));
-    if (!physical.is_none()) fail(fmt::format("pivot.amplitude_m = {}", toml_value(physical.pivot.amplitude_m)));
+        if (physical.has(property))
+            fail(property.key, fmt::format("{} = {}", property.key, toml_value(physical.*property.member)));
+    if (!physical.is_none())
+        fail("pivot", fmt::format("pivot.amplitude_m = {}", toml_value(physical.pivot.amplitude_m)));
 }
 
 EnclosedSystem system_of(const SideSpec& spec) {

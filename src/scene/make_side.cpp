@@ -64,7 +64,13 @@ void measure(const SideSpec& spec, Side& side) {
     if (side.has_angles) side.lowest_potential -= side.energy_unit / 2;
     if (!side.motion.parts) return;
     const auto parts = side.motion.parts->cast<double>();
-    check(parts);
+    try {
+        check(parts);
+    } catch (const ConstraintError& error) {  // the constraints of a chain come first
+        const auto first = spec.particles.empty() ? spec.links() : 0;
+        if (error.constraint < first) throw;
+        throw PlacedError(error, "constraint", error.constraint - first);
+    }
     side.lines = lines_of(parts);
     side.has_energy_error = parts.conserves_energy();
     if (side.has_angles) return;

@@ -427,6 +427,8 @@ inline constexpr std::array<Release::List, 3> Release::lists{
      {"mass_kg", &Release::mass_kg, &SideSpec::mass_kg, "m", " kg"},
      {"length_m", &Release::length_m, &SideSpec::length_m, "l", " m"}}};
 
+struct TomlDocument;
+
 /// A scene described by a preset file: read, completed and checked, not yet computed.
 struct Preset {
     std::string name;                     // of the file, without folder and extension
@@ -439,6 +441,16 @@ struct Preset {
     bool certify = false;         // proves how long the run follows the true motion (scene/certificate.hpp)
     SideSpec a, b;
     VideoSpec video;
+    std::shared_ptr<const TomlDocument> document = {};  // of a film: for the places of errors
+};
+
+/// An error in a key of a side, or in an entry of this table, numbered from 0.
+struct PlacedError : Error {
+    PlacedError(const Error& error, std::string in_key, std::optional<std::size_t> in_entry = {})
+        : Error(error), key(std::move(in_key)), entry(in_entry) {}
+
+    std::string key;
+    std::optional<std::size_t> entry;
 };
 
 /// Whether the sides are of different types: chains of different length, or a chain and a mechanism. Then only their

@@ -5,6 +5,7 @@
 #include "scene/toml_reader.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
 
 namespace doppel {
@@ -203,7 +204,8 @@ void check_clock(const Preset& preset, const TomlReader& scene) {
 
 Preset read_preset(const PresetText& source, const std::vector<Override>& overrides) {
     Preset preset;
-    const auto document = parse_document(source, overrides);
+    preset.document = std::make_shared<const TomlDocument>(parse_document(source, overrides));
+    const auto& document = *preset.document;
     KeyErrors errors;
     preset.name = preset.title = source.name;
     auto first = document.top(&errors);

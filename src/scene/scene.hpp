@@ -119,14 +119,17 @@ Assembly<Quad> assembly_of(const SideSpec& spec);
 /// A side with the smallest suitable model, all numbers exact. Throws Error (exit 2) if the system is invalid.
 Side make_side(const SideSpec& spec, const Rational& sample_hz);
 
-/// Calls make(); its errors get the prefix "PRESET: side a: ".
+/// Where the preset of a film has the key or entry; the preset's name if that is unknown, or for other errors.
+std::string place_of(const Preset& preset, char side, const Error& error);
+
+/// Calls make(); its errors get the prefix "PLACE: side a: ".
 template <class Make>
 auto for_side(const Preset& preset, char name, const Make& make) {
     try {
         return make();
     } catch (const Error& error) {
         if (error.code() == ExitCode::interrupted) throw;
-        throw Error(error.code(), fmt::format("{}: side {}: {}", preset.name, name, error.what()));
+        throw Error(error.code(), fmt::format("{}: side {}: {}", place_of(preset, name, error), name, error.what()));
     }
 }
 

@@ -281,7 +281,36 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text) {
     table.check_together([&] { check_choices(table, side); });
 }
 
+/// The entries of [system] and, on top, of a side, as read_entries() joins them.
+std::vector<TomlReader> joined_entries(TomlReader& system, TomlReader& side, const std::string& key) {
+    std::vector<TomlReader> all;
+    std::map<std::string, std::size_t> indices;  // of named entries
+    for (auto* table : {&system, &side})
+        for (auto& entry : table->entries(key)) {
+            std::string name;
+            entry({.key = "name"}, name);
+            const auto [at, is_new] = indices.emplace(name, all.size());
+            if (is_new || name.empty())
+                all.push_back(entry);
+            else
+                all[at->second] = entry;
+        }
+    return all;
+}
+
 }  // namespace
+
+std::string place_of(const Preset& preset, char letter, const Error& error) {
+    const auto* placed = dynamic_cast<const PlacedError*>(&error);
+    if (!placed || !preset.document) return preset.name;
+    auto top = preset.document->top();
+    auto system = top.inner("system"), side = top.inner(std::string_view(&letter, 1));
+    if (placed->entry) {
+        auto entry = joined_entries(system, side, placed->key).at(*placed->entry);
+        return entry.place_of(entry.has("kind") ? "kind" : "name").first;
+    }
+    return (side.has(placed->key) ? side : system).place_of(placed->key).first;
+}
 
 std::vector<std::string_view> models_of(const MethodEntry& method) {
     std::vector<std::string_view> models;

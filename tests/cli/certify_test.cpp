@@ -104,7 +104,7 @@ TEST_F(Certify, RefusesWhatItCannotProve) {
                                       {"measured", "track.file = \""}}) {
         const auto result =
             expect_refused(with({"certify", name}, "--progress none"), 2, ": a proof needs two ideal links: ");
-        EXPECT_TRUE(begins(result.err, fmt::format("doppel: {}: side a: ", name)));
+        EXPECT_TRUE(begins(result.err, fmt::format("doppel: presets/{}.toml:", name)));
         EXPECT_TRUE(has(result.err, std::string("; the side has ") + found));
         EXPECT_FALSE(fs::exists(folder / "out" / name)) << name;
     }

@@ -72,10 +72,14 @@ TEST(Overrides, GoOnTopOfThePreset) {
     EXPECT_EQ(scene.samples, 240);
 }
 
-TEST(PresetErrors, OfAConstraintNameItsSide) {
-    const std::string anchor = "[[b.constraint]]\nkind = \"anchor\"\nparticle = \"bob2\"\n";
-    const auto words = refusal([&] { scene_from("[system]\nangle_deg = [90, 0]\n" + anchor + anchor); });
-    EXPECT_TRUE(words.starts_with("x: side b: constraint 4 (anchor of particle 2) is redundant: ")) << words;
+TEST(PresetErrors, OfASideHaveThePlaceOfTheirEntry) {
+    const std::string
+        chain = "[system]\nangle_deg = [90, 0]\n[[system.constraint]]\nkind = \"anchor\"\nparticle = \"bob2\"\n",
+        again = "[[a.constraint]]\nkind = \"anchor\"\nparticle = \"bob2\"\n";
+    const auto words = refusal([&] { scene_from(chain + again); });
+    EXPECT_TRUE(words.starts_with("x.toml:7:1: side a: constraint 4 (anchor of particle 2) is redundant: ")) << words;
+    const auto on_b = refusal([&] { scene_from(chain, {"b.constraint=[{kind=\"anchor\", particle=\"bob2\"}]"}); });
+    EXPECT_TRUE(on_b.starts_with("--set b.constraint: side b: constraint 4 ")) << on_b;
 }
 
 TEST(FindPreset, AdvisesTheCommandForFiguresAndFilms) {
