@@ -99,7 +99,7 @@ DisplayList tile_of(const Scene& scene, const Composer& composer, double time) {
     auto list = composer.frame();
     const auto em = 0.05f * static_cast<float>(scene.preset.video.size.width);
     list.push_back(
-        label(clock_text(scene, time), {0.3f * em, 1.2f * em}, em, make_style(scene.preset.video, 1, 1).theme.text));
+        label(clock_text(scene, time), {1.2f * em, 1.6f * em}, em, make_style(scene.preset.video, 1, 1).theme.text));
     return list;
 }
 
@@ -129,7 +129,7 @@ Picture contact_sheet_of(const Scene& scene, Recording& recording, long first, l
     const Size head{below.size.width, static_cast<int>(76 * unit) + 1};
     const auto size = look.type.fitting_size(scene.preset.title, px(look.font.title), Weight::bold, 0.97f * width);
     Renderer renderer(head,
-                      {filled(head, look.theme.background), label(scene.preset.title, {14 * unit, 50 * unit}, size,
+                      {filled(head, look.theme.background), label(scene.preset.title, {22 * unit, 50 * unit}, size,
                                                                   look.theme.text, Align::left, Weight::bold)},
                       gl, stop, style.typeface);
     Picture sheet = renderer.draw({}, stop);
