@@ -101,9 +101,10 @@ class Recording {
 public:
     static constexpr double usual_bytes = 256e6;
 
-    /// Records the snapshots before `end`. `scene` and `stop` must outlive the recording. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
-    /// play() throws the others. The snapshots in a `file` replace the simulation: exit 2 if it belongs to another
-    /// motion or version, exit 4 if it cannot be read or is damaged.
+    /// Records the snapshots before `end`. `scene` and `stop` must outlive the recording. The snapshots in a `file`
+    /// replace the simulation. Throws Error: exit 130 soon after `stop` is set, and errors that occur after `end`;
+    /// play() throws the others: also exit 2 if the file belongs to another motion or version, exit 4 if it cannot be
+    /// read or is damaged.
     Recording(const Scene& scene, const Moment& end, bool with_pictures, const std::atomic<bool>& stop,
               std::filesystem::path file = {}, double max_bytes = usual_bytes);
     Recording(const Recording&) = delete;
