@@ -180,8 +180,7 @@ std::string clock_text(const Scene& scene, double time) {
 }
 
 std::string speed_text(const Scene& scene, double time) {
-    const bool changes = scene.preset.video.speed.changes_over_time();
-    const auto speed = changes ? speed_at(scene.preset.video, time) : scene.preset.video.speed.constant;
+    const auto speed = speed_at(scene.preset.video, time);
     if (speed == Rational{1, 1}) return "real time";
     return fmt::format("{} ×{:.3g}", speed.value() < 1 ? "slow motion" : "time lapse", speed.value());
 }

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 namespace doppel {
 namespace {
@@ -121,17 +122,24 @@ Json picture_json(const Scene& scene, const MotionBounds& bounds, const Snapshot
     return json;
 }
 
-/// The step of its angles in the file, rad; 0 if the file contains the positions of its bobs, because they do not
-/// follow from angles and lengths of links. The errors of a chain of N links add up randomly.
-double angle_step(const ShownPendulum& pendulum, int bits) {
+/// The lengths of its links, m, if the positions of its bobs follow from them and angles, which the file then contains.
+std::vector<double> lengths_of(const ShownPendulum& pendulum) {
     const auto& side = pendulum.side;
     const bool is_by_angles = side.has_angles && side.motion.model == Model::angles && !side.replay;
-    return is_by_angles ? std::ldexp(2 * pi, -bits) * std::sqrt(static_cast<double>(pendulum.mass.size())) : 0;
+    return is_by_angles ? side.motion.chain->cast<double>().length : std::vector<double>();
+}
+
+/// The range of its angles in the file, rad: whole turns, so that a bob moves by a step of the range about as much as
+/// the last one of a single link of the chain's length.
+double angle_range(const std::vector<double>& lengths) {
+    const double longest = lengths.empty() ? 1 : std::ranges::max(lengths);
+    return 2 * pi * std::ceil(std::accumulate(lengths.begin(), lengths.end(), 0.0) / longest);
 }
 
 /// A pendulum's masses, lines and chain, and what the file contains of its motion.
-Json body_json(const ShownPendulum& pendulum, int bits) {
+Json body_json(const ShownPendulum& pendulum) {
     using Kind = MechanismLine::Kind;
+    const auto lengths = lengths_of(pendulum);
     Json lines = Json::array();
     const auto end_json = [](const auto& bob_or_place) { return Json(bob_or_place); };
     for (const auto& line : pendulum.side.lines)
@@ -139,7 +147,7 @@ Json body_json(const ShownPendulum& pendulum, int bits) {
             lines.push_back({line.kind == Kind::rod ? "rod" : "spring", std::visit(end_json, line.from),
                              std::visit(end_json, line.to), line.width});
     return {{"mass", pendulum.mass},
-            {"length", angle_step(pendulum, bits) > 0 ? Json(pendulum.motion.chain->cast<double>().length) : Json()},
+            {"length", lengths.empty() ? Json() : Json(lengths)},
             {"moves", pendulum.side.pivot_reach > 0},
             {"color", hexadecimal(pendulum.color)},
             {"rod", hexadecimal(pendulum.rod)},
@@ -165,23 +173,23 @@ Json speed_json(const Scene& scene) {
     return table;
 }
 
-/// Channels of `count` words of `word_bytes` bytes: differences in time, `order` times; first the lowest byte of all,
-/// then the next one …; compressed by zlib, as base64.
-std::string packed(std::vector<std::uint32_t> words, std::size_t count, int order, std::size_t word_bytes) {
-    for (; order > 0; --order)
+/// Channels of `count` words of `word_bytes` bytes: second differences in time, plus 128, so that those about zero differ
+/// in their lowest byte alone; first the lowest byte of all, then the next one …; compressed by zlib, as base64.
+std::string packed(std::vector<std::uint32_t> words, std::size_t count, std::size_t word_bytes) {
+    for (int order = 0; order < 2; ++order)
         for (std::size_t i = words.size(); i-- > 0;)
             if (i % count > 0) words[i] -= words[i - 1];
     std::string bytes(words.size() * word_bytes, '\0');
     for (std::size_t i = 0; i < words.size(); ++i)
         for (std::size_t k = 0; k < word_bytes; ++k)
-            bytes[k * words.size() + i] = static_cast<char>((words[i] >> (8 * k)) & 0xff);
+            bytes[k * words.size() + i] = static_cast<char>(((words[i] + 128) >> (8 * k)) & 0xff);
     return deflated(bytes);
 }
 
 /// What the file contains of one sample.
 struct Numbers {
     std::vector<double> places;  // of all pendulums: angles or coordinates of bobs, then of the pivot if it moves
-    std::vector<double> steps;   // of each of them, if it is an angle, rad; otherwise 0
+    std::vector<double> ranges;  // of each of them, if it is an angle, rad; otherwise 0
     std::vector<double> curves;  // of all strips, then of a phase panel
 };
 
@@ -190,20 +198,27 @@ Numbers page_numbers(const Scene& scene, const Snapshot& snapshot, double start_
     const auto& pair = snapshot.pair;
     const auto& video = scene.preset.video;
     Numbers numbers;
-    auto& [places, steps, curves] = numbers;
+    auto& [places, ranges, curves] = numbers;
     const auto pendulums = computes ? std::vector<ShownPendulum>() : shown_pendulums(scene);
     for (std::size_t k = 0; k < pendulums.size(); ++k) {
         const auto& side = pendulums[k].side;
         const auto& seen = &side == &scene.a ? pair.a : pair.b;
-        const double step = angle_step(pendulums[k], video.position_bits);
-        for (const auto& bob : snapshot.members.empty() ? seen.bobs : snapshot.members[k])
-            if (step > 0)
-                places.push_back(std::remainder(bob.theta, 2 * pi));
-            else
-                places.insert(places.end(), {bob.x, bob.y});
-        steps.resize(places.size(), step);
+        const auto& bobs = snapshot.members.empty() ? seen.bobs : snapshot.members[k];
+        const auto lengths = lengths_of(pendulums[k]);
+        const double range = angle_range(lengths), step = std::ldexp(range, -video.position_bits);
+        double x = seen.pivot.x, y = seen.pivot.y;  // where the page has the joint; the next link makes up for rounding
+        for (std::size_t i = 0; i < lengths.size(); ++i) {
+            const double correction = std::atan2(bobs[i].x - x, y - bobs[i].y) - bobs[i].theta;
+            const double angle = step * std::round((bobs[i].theta + std::remainder(correction, 2 * pi)) / step);
+            x += lengths[i] * std::sin(angle);
+            y -= lengths[i] * std::cos(angle);
+            places.push_back(std::remainder(angle, range));
+        }
+        ranges.resize(places.size(), range);
+        if (lengths.empty())
+            for (const auto& bob : bobs) places.insert(places.end(), {bob.x, bob.y});
         if (side.pivot_reach > 0) places.insert(places.end(), {seen.pivot.x, seen.pivot.y});
-        steps.resize(places.size(), 0);
+        ranges.resize(places.size(), 0);
     }
     for (const auto kind : video.strips)
         if (!computes || kind == StripKind::rod_error || kind == StripKind::rod_force)
@@ -227,12 +242,12 @@ Json page_json(const Scene& scene, const MotionBounds& bounds, const Snapshot& f
     if (!video.transparent) preset.video.format = {};
     Json bodies = Json::array(), pictures = Json::array();
     for (const auto& pendulum : shown_pendulums(scene, style, !has_panel_for_each(video)))
-        bodies.push_back(body_json(pendulum, video.position_bits));
+        bodies.push_back(body_json(pendulum));
     pictures.push_back(picture_json(scene, bounds, first, outcome));
-    if (!is_tall(video)) {
-        auto upright = scene;
-        upright.preset.video.size = {1080, 1920};
-        pictures.push_back(picture_json(upright, bounds, first, outcome));
+    for (const Size size : {Size{1080, 1920}, {400, 200}}) {  // for upright and for small windows
+        auto other = scene;
+        other.preset.video.size = size;
+        if (!is_tall(video)) pictures.push_back(picture_json(other, bounds, first, outcome));
     }
     Json json{{"title", preset.title},
               {"preset", resolved_toml(preset)},
@@ -322,26 +337,24 @@ void FilmPage::add(const Snapshot& snapshot) {
     ++samples_;
 }
 
-/// Each channel from `low` on in steps: an angle from half a turn below zero, a coordinate in steps of 2^−bits of its
-/// range. The words are second differences in time.
+/// Each channel from `low` on in steps of 2^−bits of its range; the range of an angle is about zero.
 Json FilmPage::motion_json() const {
     const int bits = scene_.preset.video.position_bits;
-    const auto steps = page_numbers(scene_, first_, first_.pair.distance, computes_).steps;
+    const auto ranges = page_numbers(scene_, first_, first_.pair.distance, computes_).ranges;
     Json channels = Json::array();
     std::vector<std::uint32_t> words;
     for (std::size_t c = 0; c < places_.size(); ++c) {
         const auto [least, most] = std::ranges::minmax(places_[c]);
-        const bool is_angle = steps[c] > 0;
-        const double range = most > least ? static_cast<double>(most) - least : 1;
-        const double step = is_angle ? steps[c] : range / (std::ldexp(1, bits) - 1);
-        const double low = is_angle ? -std::ldexp(step, bits - 1) : least;
+        const double found = most > least ? static_cast<double>(most) - least : 1;
+        const double step = ranges[c] > 0 ? std::ldexp(ranges[c], -bits) : found / (std::ldexp(1, bits) - 1);
+        const double low = ranges[c] > 0 ? -0.5 * ranges[c] : least;
         channels.push_back({low, step});
         for (const float number : places_[c])
             words.push_back(static_cast<std::uint32_t>(std::lround((number - low) / step)));
     }
     return {{"bits", bits},
             {"channels", channels},
-            {"words", packed(std::move(words), places_[0].size(), 2, bits > 16 ? 3 : 2)}};
+            {"words", packed(std::move(words), places_[0].size(), bits > 16 ? 3 : 2)}};
 }
 
 void FilmPage::finish(const Outcome& outcome) {
@@ -350,7 +363,7 @@ void FilmPage::finish(const Outcome& outcome) {
     std::vector<std::uint32_t> bits;
     for (const auto& curve : curves_)
         for (const float number : curve) bits.push_back(std::bit_cast<std::uint32_t>(number));
-    if (!bits.empty()) film["curves"] = packed(std::move(bits), curves_[0].size(), 1, sizeof(float));
+    if (!bits.empty()) film["curves"] = packed(std::move(bits), curves_[0].size(), sizeof(float));
     write_file(place_, page_text(player(scene_, std::move(film))));
     parts_.finished(scene_.preset.name + ".html");
 }

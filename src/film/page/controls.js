@@ -49,19 +49,20 @@ const quantities = [["angle", "angle_deg", "°", degrees], ["rate", "omega_deg_p
   ["mass", "mass_kg", "kg", 1], ["length", "length_m", "m", 1], ["gravity", "gravity_m_per_s2", "m/s²", 1]];
 const steps = Math.ceil(4000 * film.sample_s);  // in a sample
 let isFilmInForm = true;                        // whether its pendulums differ as the form says
-const numbersOf = ({ chain }) => quantities.map(([name, , , per]) => [chain[name]].flat().map(v => v * per));
+const numbersOf = chain => quantities.map(([name, , , per]) => [chain[name]].flat().map(v => v * per));
 const inputsOf = name => [...form.querySelectorAll(`[name^=${name}]`)];
 // The difference of two numbers that were rounded: the shortest decimal that gives the second one, of at most 6 digits.
 const decimalBetween = (a, b) => [1, 2, 3, 4, 5, 6].map(digits => shortened(b - a, digits))
   .find((by, i) => i === 5 || Math.abs(a + by - b) <= 4e-16 * Math.abs(b));
 // With the film's numbers, also after form.reset().
 function makeForm() {
-  const [first, last] = [bodies[0], bodies.at(-1)].map(numbersOf);
+  const all = bodies.map(body => numbersOf(body.chain)), first = all[0], last = all.at(-1);
   quantities.forEach(([name, , unit], q) => {
     const row = element("p", {}, `${name}, ${unit}`);
     first[q].forEach((number, i) => {
       const label = `${name}${first[q].length > 1 ? ` ${i + 1}` : ""}, ${unit}`, value = shortened(number);
-      row.append(element("input", { name: name + i, type: "number", step: "any", "aria-label": label, value }));
+      const attributes = { name: name + i, type: "number", step: "any", required: "", "aria-label": label, value };
+      row.append(element("input", attributes));
       form.key.append(new Option(label, name + i, number !== last[q][i]));
       if (number !== last[q][i]) form.by.defaultValue = decimalBetween(number, last[q][i]);
     });
@@ -69,9 +70,9 @@ function makeForm() {
   });
   form.by.parentElement.hidden = layout === "single";
   form.reset();
-  isFilmInForm = bodies.every((body, k) => {
+  isFilmInForm = all.every((lists, k) => {
     const found = numbersOfForm(k).flat(), near = v => 1e-12 * Math.max(1, v) + 1e-6 * Math.abs(form.by.value);
-    return numbersOf(body).flat().every((v, i) => Math.abs(v - found[i]) <= near(Math.abs(v)));
+    return lists.flat().every((v, i) => Math.abs(v - found[i]) <= near(Math.abs(v)));
   });
 }
 const differenceIn = (name, k) =>
@@ -84,8 +85,8 @@ function chainOfForm(k) {
 }
 // Why there is no such motion; empty if there is one.
 function faultOfForm() {
-  const all = bodies.map((_, k) => numbersOfForm(k));
-  if (all.flat(2).some(Number.isNaN)) return "every field needs a number";
+  const all = bodies.map((_, k) => numbersOfForm(k)), empty = form.querySelector("input:invalid");
+  if (empty) return `${empty.ariaLabel} needs a number`;
   if (all.some(([, , ...positive]) => positive.flat().some(v => v <= 0)))
     return "masses, lengths and gravity must be greater than 0";
   if (layout !== "single" && String(all[0]) === String(all.at(-1))) return "the pendulums must differ";

@@ -8,18 +8,19 @@ const sumOf = list => list.reduce((a, b) => a + b, 0), mostOf = list => list.red
 const numbers = of => Float64Array.from({ length: count }, (_, i) => of(i));  // one of each sample
 const still = [numbers(() => 0), numbers(() => 0)];
 
-// Words as src/film/page.cpp packs them: the lowest byte of all, then the next one …, of differences in time.
-async function unpacked(base64, wordBytes, order) {
-  const bytes = new Uint8Array(await inflated(base64).arrayBuffer()), words = new Uint32Array(bytes.length / wordBytes);
-  bytes.forEach((byte, i) => { words[i % words.length] |= byte << 8 * Math.floor(i / words.length); });
-  for (; order > 0; --order)
+// Words as src/film/page.cpp packs them: the lowest byte of all, then the next one …, of second differences plus 128.
+async function unpacked(base64, wordBytes) {
+  const bytes = new Uint8Array(await inflated(base64).arrayBuffer());
+  const words = new Uint32Array(bytes.length / wordBytes).fill(-128);
+  bytes.forEach((byte, i) => { words[i % words.length] += byte << 8 * Math.floor(i / words.length); });
+  for (let order = 0; order < 2; ++order)
     words.forEach((_, i) => { if (i % count > 0) words[i] += words[i - 1]; });
   return words;
 }
 
 // The motion that the page holds: for each pendulum places [xs, ys] of its pivot and its bobs.
 async function embeddedMotion({ bits, channels, words }) {
-  const steps = await unpacked(words, bits / 8, 2), most = 2 ** bits - 1;
+  const steps = await unpacked(words, bits > 16 ? 3 : 2), most = 2 ** bits - 1;
   const lists = channels.map(([low, step], c) => numbers(i => low + step * (steps[c * count + i] & most)));
   const next = () => lists.shift(), place = () => [next(), next()];
   return { curves: {}, pendulums: bodies.map(({ mass, length, moves }) => {
@@ -66,7 +67,7 @@ function motionOf(of, states) {
 
 // With the curves of the film's charts: computed ones, of the film also those that the page holds as floats.
 async function withCurves(motion, isOriginal) {
-  const held = film.curves && isOriginal ? new Float32Array((await unpacked(film.curves, 4, 1)).buffer) : [];
+  const held = film.curves && isOriginal ? new Float32Array((await unpacked(film.curves, 4)).buffer) : [];
   let at = 0;
   const next = () => isOriginal ? held.subarray(at, at += count) : numbers(() => NaN);
   const shown = strips.map(({ kind, pens }) => [kind, motion.curves[kind] ?? pens.map(next)]);

@@ -19,7 +19,8 @@ function paint(style, trace) {
 const fill = (fillStyle, trace) => paint({ fillStyle }, trace);
 const stroke = (strokeStyle, lineWidth, trace) =>
   paint({ strokeStyle, lineWidth, lineCap: "round", lineJoin: "round" }, trace);
-const polyline = points => points.forEach(([x, y], i) => i ? g.lineTo(x, y) : g.moveTo(x, y));
+const polyline = points =>  // with gaps where there is no number
+  points.forEach(([x, y], i) => i && isFinite(points[i - 1][1]) ? g.lineTo(x, y) : g.moveTo(x, y));
 const box = (left, top, width, height, corner, color) =>
   fill(color, () => g.roundRect(left, top, width, height, corner));
 const line = (from, [x, y], radius, color) =>  // a canvas draws none of length 0
@@ -36,6 +37,14 @@ const fonts = '"DejaVu Sans", Verdana, system-ui, sans-serif';
 function text(words, [x, y], size, align, weight, color, width = 1e5) {
   Object.assign(g, { fillStyle: color, textAlign: align, font: `${weight} ${size}px ${fonts}` });
   g.fillText(words, x, y, width + 1);
+}
+function clipped([left, top, right, bottom], margin, draws) {
+  g.save();
+  g.beginPath();
+  g.rect(left - margin, top - margin, right - left + 2 * margin, bottom - top + 2 * margin);
+  g.clip();
+  draws();
+  g.restore();
 }
 const isIn = ([x, y], [left, top, right, bottom]) => x >= left && x <= right && y >= top && y <= bottom;
 const drawAll = items => items.forEach(([kind, ...item]) => ({ box, line, ring, text }[kind](...item)));
@@ -130,10 +139,6 @@ function drawBobs(k, poses, at, [left, top, right, bottom], ghost) {
 function drawPanel(panel, poses) {
   const at = viewOf(panel, poses), { area, shown } = panel, fromBehind = [...shown].reverse(), { rod } = picture;
   const isAlone = !isEnsemble && shown.length === 1, other = 1 - shown[0];
-  g.save();
-  g.beginPath();
-  g.rect(area[0], area[1], area[2] - area[0], area[3] - area[1]);
-  g.clip();
   if (film.follow && picture.reach > 0 && shows("circle")) ring(at([0, 0]), picture.reach, picture.grid, theme.grid);
   if (isAlone && poses.length > 1 && shows("twin")) {
     const { ghost } = bodies[other];
@@ -147,12 +152,11 @@ function drawPanel(panel, poses) {
     if (!isMany) drawBobs(k, poses, at, area);
   }
   for (const k of isMany ? fromBehind : []) drawBobs(k, poses, at, area);
-  g.restore();
 }
 
 // Strips and phase panels
 
-const along = (axis, v) => pixelAt(axis, clamp(axisShare(axis, v), 0, 1));
+const along = (axis, v) => pixelAt(axis, clamp(axisShare(axis, v), -1, 2));
 const powerOfTen = e => ["1", "10"][e] ?? "10" + [...String(e)].map(c => "⁰¹²³⁴⁵⁶⁷⁸⁹"[c] ?? "⁻").join("");
 function scientific(v) {
   if (!(v > 0)) return "0";
@@ -163,11 +167,10 @@ function scientific(v) {
 
 // Of a release by hand: where an axis does not hold the curves, one that does, with ticks at decades or round numbers.
 function axisOf({ axis, area: [, top, , bottom] }, curves) {
-  const { logarithmic } = axis, isDrawn = v => Number.isFinite(v) && (!logarithmic || v > 0);
-  const drawn = curves.reduce((all, curve) => all.concat([...curve.filter(isDrawn)]), logarithmic ? [] : [0]);
-  if (drawn.every(v => v >= axis.from && v <= axis.to)) return axis;
-  const exponents = drawn.map(v => logarithmic ? Math.log10(v) : v);
-  const high = mostOf(exponents), low = -mostOf(exponents.map(v => -v));
+  const { logarithmic } = axis, scaled = v => logarithmic ? Math.log10(v) : v;
+  const drawn = [0, ...curves.flatMap(curve => [...curve])].map(scaled).filter(Number.isFinite);
+  if (drawn.every(v => v >= scaled(axis.from) && v <= scaled(axis.to))) return axis;
+  const high = mostOf(drawn), low = -mostOf(drawn.map(v => -v));
   const rough = Math.max((high - low) * 2.2 * picture.em / (bottom - top), 1e-12);
   const step = logarithmic ? Math.ceil(rough) : roundStep(rough), first = Math.floor(low / step);
   const ticks = Array.from({ length: Math.max(Math.ceil(high / step) - first, 1) + 1 }, (_, i) => (first + i) * step)
@@ -206,8 +209,9 @@ const drawHead = (at, color) => disc(at, Math.max(2.3 * picture.trace, 2), color
 const kindOfPair = (strips.find(strip => strip.kind === "distance") ?? strips[0])?.kind;
 function drawStrip(strip) {
   const { isStill, since } = motion, { kind, pens, area } = strip, curves = motion.curves[kind];
-  const axis = motion === original ? strip.axis : (motion.axes ??= {})[kind] ??= axisOf(strip, curves);
-  const at = t => along(strip.time, t);
+  if (strip.drawn?.motion !== motion)
+    strip.drawn = { motion, axis: motion === original ? strip.axis : axisOf(strip, curves) };
+  const { axis } = strip.drawn, at = t => along(strip.time, t);
   if (axis.ticks) drawAxis(strip, axis);
   const now = value(curves[0]), last = isStill ? film.samples : sampleNow(), x = at(time);
   if (strip.value && !isStill && !Number.isNaN(now))
@@ -220,19 +224,11 @@ function drawStrip(strip) {
   for (const [, , [from, foot], size, , , , width] of film.transparent ? [] : marks)
     box(from - room, foot - 0.9 * size, width + 2 * room, 1.18 * size, 0, faded(theme.background, 0.85));
   for (const [c, list] of picture.trace > 0 ? curves.entries() : []) {
-    const [color, width] = pens[c], pieces = [];  // cut where the curve leaves its axis; the first begins in it
-    const isInside = v => Math.abs(axisShare(axis, v) - 0.5) <= 0.500001;
-    let before = null, wasInside = false;
-    const add = (t, v) => {
-      const point = [at(t), along(axis, v)], inside = isInside(v);
-      if (inside && !wasInside) pieces.push(pieces.length ? [before] : []);
-      if (inside || wasInside) pieces.at(-1).push(point);
-      [before, wasInside] = [point, inside];
-    };
-    list.subarray(0, last + 1).forEach((v, i) => add(i * film.sample_s, v));
-    if (!isStill) add(time, value(list));
-    stroke(color, width, () => pieces.forEach(polyline));
-    if (curves.length === 1 && wasInside && !isStill) drawHead(before, color);
+    const [color, width] = pens[c];
+    const points = Array.from(list.subarray(0, last + 1), (v, i) => [at(i * film.sample_s), along(axis, v)]);
+    if (!isStill) points.push([x, along(axis, value(list))]);
+    clipped(area, width, () => stroke(color, width, () => polyline(points)));
+    if (curves.length === 1 && !isStill && isIn(points.at(-1), area)) drawHead(points.at(-1), color);
   }
   drawAll(marks);
 }
@@ -255,27 +251,23 @@ function drawPhase({ area, angle, rate }) {
 }
 
 // Of a release by hand the angles above the pendulums, and another number in which they differ, in place of the film's
-// words; of an ensemble those of the first and the last one, and the colours between them.
+// words; of an ensemble those of the first and the last one, beside its bar of colours.
 function drawWords() {
   if (motion === original) return drawAll(picture.words);
   if (shows("title") && picture.words.length) drawLabel(picture.words[0], "Released anew");
-  const [, name, nth] = /(\D+)(\d+)/.exec(form.key.value), [what, unit] = form.key.selectedOptions[0].text.split(", ");
-  const number = k => [motion.of[k][name]].flat()[nth] * quantities.find(([key]) => key === name)[3];
-  const apart = Math.abs(number(0) / (number(bodies.length - 1) - number(0) || 1));
+  const [what, unit] = form.key.selectedOptions[0].text.split(", "), isAngle = unit === "°";
+  const values = motion.of.map(numbersOf), differing = values.map(lists => lists.flat()[form.key.selectedIndex]);
+  const apart = Math.abs(differing[0] / (differing.at(-1) - differing[0] || 1));
   const digits = clamp(Math.ceil(Math.log10(apart)) + 1, 8, 16), rounded = v => written(shortened(v, digits));
-  for (const { area: [left, top, right], shown } of picture.panels) {
-    const at = share => left + share * (right - left), base = top - 12 * picture.text, size = picture.font;
+  const bar = picture.words.filter(([kind]) => isEnsemble && kind === "box"), size = picture.font;
+  drawAll(bar);
+  for (const { area: [left, top, right], shown } of picture.panels)
     (isEnsemble ? [0, bodies.length - 1] : shown).forEach((k, i, all) => {
-      const words = name === "angle" || !isEnsemble ? motion.of[k].angle.map(a => `${rounded(a * degrees)}°`) : [];
-      if (name !== "angle") words.push(`${what} = ${rounded(number(k))} ${unit}`);
-      text(words.join("   "), [at(i), base], size, i ? "right" : "left", 700,
-        isEnsemble ? theme.text : bodies[k].color, (isEnsemble ? at(0.4) : at(1 / all.length)) - left - size);
+      const words = isAngle || !isEnsemble ? values[k][0].map(angle => `${rounded(angle)}°`) : [];
+      if (!isAngle) words.push(`${what} = ${rounded(differing[k])} ${unit}`);
+      text(words.join("   "), [i ? right : left, top - 12 * picture.text], size, i ? "right" : "left", 700,
+        bodies[k].color, (bar.length ? bar[0][1] - left : (right - left) / all.length) - size);
     });
-    if (!isEnsemble) continue;
-    const colors = g.createLinearGradient(at(0.4), 0, at(0.6), 0);
-    bodies.forEach(({ color }, k, { length }) => colors.addColorStop(k / (length - 1), color));
-    fill(colors, () => g.rect(at(0.4), base - 0.6 * size, at(0.2) - left, 0.6 * size));
-  }
 }
 
 function draw() {
@@ -288,19 +280,24 @@ function draw() {
   if (!motion) return;
   const poses = posesNow();
   drawWords();
-  for (const panel of picture.panels) drawPanel(panel, poses);
-  if (picture.phase && !motion.isStill) drawPhase(picture.phase);
+  for (const panel of picture.panels) clipped(panel.area, 0, () => drawPanel(panel, poses));
+  if (picture.phase && !motion.isStill) clipped(picture.phase.area, 0, () => drawPhase(picture.phase));
   if (motion.curves) picture.strips.forEach(drawStrip);
   if (picture.clock) drawLabel(picture.clock, `${time.toFixed(film.decimals)} s`);
   if (picture.speed) drawLabel(picture.speed, speedAt(time)[2]);
 }
 
-// The picture that fits the page, upright ones into upright pages; it scrolls where letters would have less than 9 px.
+// The picture that fits the page: the upright one into upright pages, the small one where letters of the film's own
+// would have less than 9 px. Where those of the small or the upright one would, it scrolls.
 function resize() {
-  const { width, height } = canvas.parentElement.getBoundingClientRect();
-  picture = film.pictures[Math.max(height / width, innerHeight / innerWidth) > 1.2 ? 1 : 0] ?? film.pictures[0];
-  const sizes = picture.words.concat(picture.backdrop).map(([kind, , , size]) => kind === "text" ? size : picture.em);
-  const [w, h] = picture.size, scale = Math.max(Math.min(width / w, height / h), 9 / Math.min(...sizes));
+  const { width, height } = canvas.parentElement.getBoundingClientRect(), [own, upright, small] = film.pictures;
+  const isUpright = Math.max(height / width, innerHeight / innerWidth) > 1.2;
+  const fits = of => {
+    const sizes = of.words.concat(of.backdrop).map(([kind, , , size]) => kind === "text" ? size : of.em);
+    return Math.min(width / of.size[0], height / of.size[1]) * Math.min(...sizes) / 9;
+  };
+  picture = (isUpright ? upright : fits(own) < 1 ? small : own) ?? own;
+  const [w, h] = picture.size, scale = Math.min(width / w, height / h) / Math.min(fits(picture), 1);
   Object.assign(canvas.style, { width: `${scale * w}px`, height: `${scale * h}px` });
   setSize(canvas, scale * w, scale * h);
   draw();
