@@ -43,9 +43,9 @@ function drawLevel(z) {
     }
 }
 
-// At most `most` round numbers from low to high; powers of ten for several decades.
-function ticks(axis, low, high, most) {
-  low = Math.max(low, axis.from), high = Math.min(high, axis.to);
+// At most `most` round numbers between two shares of an axis; powers of ten for several decades.
+function ticks(axis, shares, most) {
+  const [low, high] = shares.map(share => axisValue(axis, clamp(share, 0, 1)));
   const raw = (high - low) / Math.max(most, 1), found = [];
   const step = axis.label.endsWith("°") && raw > 10 && [15, 30, 45, 90].find(n => n >= raw) || roundStep(raw);
   if (axis.logarithmic && high / low > 20)
@@ -61,8 +61,7 @@ function drawAxes(style) {
   g.fillStyle = style.getPropertyValue("--text");
   g.font = "13px system-ui, 'DejaVu Sans', sans-serif";
   g.textAlign = "center";
-  const shares = [margin.left, width].map(px => cellX(px) / map.columns);
-  for (const value of ticks(map.x, ...shares.map(share => axisValue(map.x, share)), plotWidth() / 110)) {
+  for (const value of ticks(map.x, [margin.left, width].map(px => cellX(px) / map.columns), plotWidth() / 110)) {
     const px = screenX(axisShare(map.x, value) * map.columns);
     g.fillRect(px - .5, plotHeight(), 1, 5);
     g.fillText(written(value), Math.min(px, width - 16), plotHeight() + 18);
@@ -73,8 +72,7 @@ function drawAxes(style) {
   g.fillText(map.y.label, -plotHeight() / 2, 13);
   g.restore();
   g.textAlign = "right";
-  const heights = [plotHeight(), 0].map(py => 1 - cellY(py) / map.rows);
-  for (const value of ticks(map.y, ...heights.map(share => axisValue(map.y, share)), plotHeight() / 70)) {
+  for (const value of ticks(map.y, [plotHeight(), 0].map(py => 1 - cellY(py) / map.rows), plotHeight() / 70)) {
     const py = screenY((1 - axisShare(map.y, value)) * map.rows);
     g.fillRect(margin.left - 5, py - .5, 5, 1);
     g.fillText(written(value), margin.left - 8, py + 4);

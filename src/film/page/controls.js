@@ -198,8 +198,7 @@ const clicks = {
     draw();
   },
   copy: () => {
-    const fault = motion === original ? "" : faultOfForm();
-    if (fault) return say(fault);
+    if (motion !== original && faultOfForm()) return say(faultOfForm());
     const value = motion === original ? film.preset : presetOfForm();
     const area = Object.assign($("#preset"), { value, hidden: false });
     area.select();

@@ -251,7 +251,7 @@ function drawPhase({ area, angle, rate }) {
 }
 
 // Of a release by hand the angles above the pendulums, and another number in which they differ, in place of the film's
-// words; of an ensemble those of the first and the last one, beside its bar of colours.
+// words; of an ensemble those of the first and the last one, and the colours between them.
 function drawWords() {
   if (motion === original) return drawAll(picture.words);
   if (shows("title") && picture.words.length) drawLabel(picture.words[0], "Released anew");
@@ -259,15 +259,19 @@ function drawWords() {
   const values = motion.of.map(numbersOf), differing = values.map(lists => lists.flat()[form.key.selectedIndex]);
   const apart = Math.abs(differing[0] / (differing.at(-1) - differing[0] || 1));
   const digits = clamp(Math.ceil(Math.log10(apart)) + 1, 8, 16), rounded = v => written(shortened(v, digits));
-  const bar = picture.words.filter(([kind]) => isEnsemble && kind === "box"), size = picture.font;
-  drawAll(bar);
-  for (const { area: [left, top, right], shown } of picture.panels)
+  for (const { area: [left, top, right], shown } of picture.panels) {
+    const at = share => left + share * (right - left), base = top - 12 * picture.text, size = picture.font;
     (isEnsemble ? [0, bodies.length - 1] : shown).forEach((k, i, all) => {
       const words = isAngle || !isEnsemble ? values[k][0].map(angle => `${rounded(angle)}°`) : [];
       if (!isAngle) words.push(`${what} = ${rounded(differing[k])} ${unit}`);
-      text(words.join("   "), [i ? right : left, top - 12 * picture.text], size, i ? "right" : "left", 700,
-        bodies[k].color, (bar.length ? bar[0][1] - left : (right - left) / all.length) - size);
+      text(words.join("   "), [at(i), base], size, i ? "right" : "left", 700, bodies[k].color,
+        (isEnsemble ? at(0.4) : at(1 / all.length)) - left - size);
     });
+    if (!isEnsemble) continue;
+    const colors = g.createLinearGradient(at(0.4), 0, at(0.6), 0);
+    bodies.forEach(({ color }, k, { length }) => colors.addColorStop(k / (length - 1), color));
+    fill(colors, () => g.rect(at(0.4), base - 0.6 * size, at(0.2) - left, 0.6 * size));
+  }
 }
 
 function draw() {
