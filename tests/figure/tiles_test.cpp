@@ -140,17 +140,13 @@ TEST(Map, OfMoreCellsThanMemoryHoldsIsRefusedBeforeItStarts) {
     EXPECT_FALSE(fs::exists(out));
 }
 
-TEST(TilePage, HasItsTextsEscaped) {
+TEST(TilePage, AsksNothingOfTheNetwork) {
     const auto out = fresh_folder();
     make(out, small());
-    const auto page = test::bytes_of(out / "x/x.html");
+    const auto page = test::bytes_of(out / "x/x.html"), data = test::data_of(page).dump();
     EXPECT_LT(page.size(), 100'000u);
-    EXPECT_NE(page.find("<title>&lt;b&gt; &amp; more&lt;/script&gt;</title>"), std::string::npos);
-    EXPECT_EQ(test::data_of(page)["columns"], 600);
     EXPECT_NE(page.find("no flip within 0.6 s"), std::string::npos);
-    const auto data = test::data_of(page).dump();
-    for (const char* scheme : {"http:", "https:"})
-        for (const auto* text : {&page, &data}) EXPECT_EQ(text->find(scheme), std::string::npos) << scheme;
+    for (const char* scheme : {"http:", "https:"}) EXPECT_EQ((page + data).find(scheme), std::string::npos) << scheme;
 }
 
 TEST(TilePage, TakesAnyNames) {
@@ -173,6 +169,7 @@ TEST(TilePage, TakesAnyNames) {
         const auto map = test::data_of(page);
         EXPECT_EQ(map["folder"], address);
         EXPECT_EQ(map["x"]["label"], label);
+        EXPECT_EQ(map["columns"], 2);
         // its data and three scripts, one title, one comment
         for (const auto& [tag, times] : {std::pair("<script", 4), {"</script", 4}, {"</title", 1}, {"<!--", 1}}) {
             int found = 0;

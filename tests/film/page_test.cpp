@@ -227,29 +227,27 @@ TEST(Page, DoesNoHarmWithAnyWords) {
     EXPECT_NE(data_of(page).at("title").get<std::string>().find("</script><script>harm()"), std::string::npos);
 }
 
+const std::string pair = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
+
 TEST(Page, HasTheFilmsOwnPreset) {
-    const auto text = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
-    auto preset = scene_of_text(text).preset;
+    auto preset = scene_of_text(pair).preset;
     preset.video.format = FilmFormat::mp4;
-    const std::string own = data_of(page_of(text)).at("preset");
+    const std::string own = data_of(page_of(pair)).at("preset");
     EXPECT_EQ(own, resolved_toml(preset));
     EXPECT_EQ(resolved_toml(scene_of_text(own).preset), own);
 }
 
 TEST(Page, IsAWholeFilm) {
-    const auto text = html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]");
-    test::expect_error(ExitCode::bad_input, {"must begin at 0"}, [&] { page_of(text, {.from_s = Rational{1, 1}}); });
-    const auto part = data_of(page_of(text, {.to_s = Rational{1, 1}}));
+    test::expect_error(ExitCode::bad_input, {"must begin at 0"}, [&] { page_of(pair, {.from_s = Rational{1, 1}}); });
+    const auto part = data_of(page_of(pair, {.to_s = Rational{1, 1}}));
     EXPECT_EQ(part.at("samples"), 119);
     EXPECT_EQ(part.at("duration_s"), 119.0 / 120);
-    EXPECT_EQ(part.at("preset"), data_of(page_of(text)).at("preset")) << "what it is copied as";
-    EXPECT_EQ(run_files(scene_of_text(text), {}), (std::vector<std::string>{"x.html", "x.csv", "x.json"}));
+    EXPECT_EQ(part.at("preset"), data_of(page_of(pair)).at("preset")) << "what it is copied as";
+    EXPECT_EQ(run_files(scene_of_text(pair), {}), (std::vector<std::string>{"x.html", "x.csv", "x.json"}));
 }
 
 TEST(Page, IsAloneWithPosterAndContactSheetLeftOut) {
-    const auto text =
-        html("[scene]\nduration_s = 2\n[b]\nangle_deg = [91, 90]") + "poster_s = 1\ncontact_sheet = [2, 2]\n";
-    EXPECT_EQ(data_of(page_of(text)).at("poster_s"), 1);
+    EXPECT_EQ(data_of(page_of(pair + "poster_s = 1\ncontact_sheet = [2, 2]\n")).at("poster_s"), 1);
 }
 
 /// docs/update-gallery writes the example.
@@ -267,8 +265,7 @@ TEST(Page, ExampleOfTheDocsHasTheScriptsOfNow) {
 }
 
 TEST(Page, SaysTheLimitsThatTheFilmMarks) {
-    const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
-    const auto without = data_of(page_of(text)), with = data_of(page_of(text + "model_limit_s = 0.5\n"));
+    const auto without = data_of(page_of(pair)), with = data_of(page_of(pair + "model_limit_s = 0.5\n"));
     for (const std::size_t k : {0u, 1u}) {
         const auto texts = [&](const Json& film) -> const Json& {
             return film.at("pictures")[k].at("strips")[0].at("marks");
@@ -286,14 +283,13 @@ TEST(Page, SaysTheLimitsThatTheFilmMarks) {
 
 /// A wide film also has an upright and a small picture; the pictures equal those of the film.
 TEST(Page, HasThePicturesOfTheFilm) {
-    const auto text = html("[scene]\nduration_s = 1\n[b]\nangle_deg = [91, 90]");
-    const auto data = data_of(page_of(text));
+    const auto data = data_of(page_of(pair));
     Json sizes;
     for (const auto& picture : data.at("pictures")) sizes.push_back(picture.at("size"));
     EXPECT_EQ(sizes, Json({{1920, 1080}, {1080, 1920}, {400, 200}}));
-    const auto layout = make_layout(scene_of_text(text));
+    const auto layout = make_layout(scene_of_text(pair));
     EXPECT_NEAR(data.at("pictures")[0].at("panels")[0].at("center")[0], layout.panels[0].center.x, 0.01);
-    EXPECT_EQ(data_of(page_of(text + "size = [720, 1280]\n")).at("pictures").size(), 1u);
+    EXPECT_EQ(data_of(page_of(pair + "size = [720, 1280]\n")).at("pictures").size(), 1u);
 }
 
 TEST(Page, CutsNoHeadingThatJustFits) {
