@@ -27,12 +27,11 @@ void Grid::fields(KeyVisitor& visit) {
         of_flips{has(Quantity::flip_time), "is only for flip_time"},
         strobed{quantity_ == Quantity::stroboscopic, "is only for stroboscopic", is_changed},
         of_convergence{quantity_ == Quantity::convergence, "is only for convergence", is_changed};
-    constexpr Bounds of_series{.low = 1e-15, .is_positive = true};
     visit({"exponent_duration_s", "duration of the motion from which an exponent is computed", "s", positive, "",
            of_exponents},
           options_.exponent_duration_s);
     visit({"flip_tolerance", "tolerance of the Taylor series for flips of two links: size of the last terms of a step",
-           "rad/s", of_series, "1e-8 up to 20 s, for longer times less", of_flips},
+           "rad/s", from_to(1e-15, 1), "1e-8 up to 20 s, for longer times less", of_flips},
           options_.flip_tolerance);
     auto& strobe = options_.stroboscope;
     visit({"link", "link whose rate is shown", "", from_to(1, 10'000), "", strobed}, strobe.link);

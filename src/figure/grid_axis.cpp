@@ -84,7 +84,7 @@ void GridAxis::fields(KeyVisitor& visit) {
                      even.drops || visit.from_command_line("points") || visit.from_command_line("spacing")}},
           step);
     const Condition of_setting{is_setting(), "is only for key = \"setting\""};
-    constexpr Bounds tolerances{.low = 1e-32, .is_positive = true};
+    constexpr Bounds tolerances{.low = 1e-32};
     visit({"tolerance_from", "of adaptive methods, in place of `from`", "", tolerances, "", of_setting},
           tolerance_from);
     visit({"tolerance_to", "of adaptive methods, in place of `to`", "", tolerances, "", of_setting}, tolerance_to);

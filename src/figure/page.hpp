@@ -17,7 +17,7 @@ std::string figure_page(const FigurePreset& figure, Figure drawn);
 /// and keys without network. Returns its manifest entry. Throws Error: exit 4; 130 soon after `stop` is set.
 Json write_tiles(const FigurePreset& figure, const Figure& page, Transaction& files, int jobs,
                  const std::atomic<bool>& stop);
-/// Throws Error (exit 2) if the figure is not a single map, or if its own format writes a page.
+/// Throws Error (exit 2) if the figure is not a single map.
 void require_map(const FigurePreset& figure);
 
 }  // namespace doppel

@@ -41,9 +41,8 @@ struct SeriesKeys {
               film_column);
         const Condition of_exponents{quantity == SeriesQuantity::exponents, "is only for exponents"};
         const Condition of_errors{quantity == SeriesQuantity::errors, "is only for errors"};
-        const Bounds of_motions = of_errors.applies ? Bounds{.low = 10, .high = 1e8, .is_positive = true} : positive;
-        constexpr Bounds tolerances{.low = 1e-14, .high = 1e-2, .is_positive = true},
-            costs{.low = 10, .high = 1e6, .is_positive = true};
+        const Bounds of_motions = of_errors.applies ? from_to(10, 1e8) : positive;
+        constexpr Bounds tolerances = from_to(1e-14, 1e-2), costs = from_to(10, 1e6);
         visit({"logarithmic", "the axis", "", {}, "", of_pairs}, logarithmic);
         visit({"check_tolerance", "runs every pair again at this tolerance, to see how long both agree", "", positive,
                "", of_pairs},

@@ -17,7 +17,6 @@ struct Bounds {
     double low = -infinity, high = infinity;
     bool is_open = false;                  // excludes `low`
     std::string_view zero = {}, why = {};  // meaning of 0; reason for the bounds
-    bool is_positive = false;              // values ≤ 0 are refused with that message, whatever `low` is
 
     bool has_low() const { return low > -infinity; }
     bool has_high() const { return high < infinity; }

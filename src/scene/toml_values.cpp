@@ -330,13 +330,12 @@ bool is_typed(const toml::node& node) {
 }
 
 std::optional<std::string> missed_range(const Bounds& bounds, const Quad& number, std::string_view unit) {
-    const auto& [low, high, is_open, zero, why, is_positive] = bounds;
+    const auto& [low, high, is_open, zero, why] = bounds;
     if ((is_open ? number > low : number >= low) && number <= high) return std::nullopt;
-    if (is_positive && !(number > 0)) return "> 0";
     if (is_open && !(number > low)) return fmt::format("> {}", low);
     const auto highest = fmt::format("{}{}{}", high, unit.empty() ? "" : " ", unit);
     if (is_open) return "at most " + highest;
-    if (!bounds.has_high()) return fmt::format("{} {}", is_positive ? "at least" : "≥", low);
+    if (!bounds.has_high()) return fmt::format("≥ {}", low);
     return fmt::format("from {}{} to {}{}", low, zero.empty() ? "" : fmt::format(" ({})", zero), highest,
                        why.empty() ? "" : fmt::format(": {}", why));
 }

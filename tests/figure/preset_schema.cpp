@@ -29,8 +29,8 @@ Json json_number(double number) {
 
 Json within(const Bounds& bounds) {
     Json schema{{"type", "number"}};
-    if (bounds.has_low() || bounds.is_positive) {
-        schema["minimum"] = json_number(std::max(bounds.low, bounds.is_positive ? 0.0 : -Bounds::infinity));
+    if (bounds.has_low()) {
+        schema["minimum"] = json_number(bounds.low);
         if (bounds.is_open) schema["exclusiveMinimum"] = true;
     }
     if (bounds.has_high()) schema["maximum"] = json_number(bounds.high);

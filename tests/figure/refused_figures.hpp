@@ -84,6 +84,8 @@ grid: [system] / links = 1 / angle_deg = 170 / joint_viscous_N_m_s = 2 / [grid] 
     … one link without friction and torque
 grid: [grid.x] / points = 1 => :4:1: [grid.x] points … from 2 to 1048576; it is 1
 grid: [grid] / flip_tolerance = 1e-9 => :4:1: [grid] flip_tolerance … is only for flip_time
+grid: [grid] / quantity = "flip_time" / flip_tolerance = 2
+    => :5:1: [grid] flip_tolerance … must be from 1e-15 to 1 rad/s; it is 2
 grid: [grid.x] / key = "system.mass_kg[3]" => :4:1: [grid.x] key … whose last element is [1]
 grid: [grid.x] / spacing = "logarithmic" => :4:1: [grid.x] spacing … takes points
 grid: [grid.x] / spacing = "logarithmic" / points = 9 => : [grid.x] from … must be > 0 for equal ratios; it is 0
