@@ -178,6 +178,9 @@ TEST(Computation, IsEstimatedFromAPartOfLongTrials) {
     EXPECT_FALSE(needs.at_least);
     EXPECT_GT(needs.cpu_s, spent_s / 2);
     EXPECT_LT(needs.cpu_s, spent_s * 2);
+    // its method is chosen when the figure is read, and not again for each part
+    const auto chosen = figure_from("[scene]\nkind = \"series\"\n[system]\naccuracy = 1e-3\n[b]\nmass_kg = 1.001\n");
+    EXPECT_LT(estimated_computation(chosen, 1, never).cpu_s, 5);  // measured 0.005; before 700
 }
 
 TEST(Computation, EstimatesTheSizeOfAllFormats) {
