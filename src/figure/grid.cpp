@@ -65,7 +65,11 @@ Grid::Grid(FigureReader& reader) : Grid() {
     check(table);
     for (std::size_t p = 0; p < panel_.count; ++p)
         for (std::size_t c = 0; c < color_.count; ++c) add_group(reader, table, p, c);
-    for (const auto* axis : {&x_, &y_, &color_, &panel_}) check_effect(*axis, table.inner(axis->role));
+    const bool has_b = is_of_distance(quantity_) || (right_ && is_of_distance(value_named<Quantity>(*right_)));
+    for (const auto* axis : {&x_, &y_, &color_, &panel_})
+        if (!has_b && axis->key.starts_with("b."))
+            throw table.inner(axis->role)
+                .error("key", "\"{}\" has no effect on \"{}\", which is of side a", axis->key, name_of(quantity_));
     for (const auto& measurement : measurements()) cell_numbers_ += measurement.numbers();
     bool is_any_drawn = is_map();
     if (!is_map()) for_each_cell([&](const Cell& cell) { is_any_drawn = is_any_drawn || !leaves_out(cell); });
@@ -141,17 +145,6 @@ void Grid::check(const TomlReader& table) const {
               "\"linear-limit\" is for a map of stability over the setting"},
          })
         if (fault.is_there) throw table.error(fault.key, "{}", fault.words);
-}
-
-/// Throws if the axis changes no pair. Another axis may sweep an amplitude from or to 0.
-void Grid::check_effect(const GridAxis& axis, const TomlReader& table) const {
-    const bool has_b = is_of_distance(quantity_) || (right_ && is_of_distance(value_named<Quantity>(*right_)));
-    if (!has_b && axis.key.starts_with("b."))
-        throw table.error("key", "\"{}\" has no effect on \"{}\", which is of side a", axis.key, name_of(quantity_));
-    for (std::size_t group = 0; group < groups_.size(); ++group)
-        for (const auto& cell : {Cell{group, 0, 0}, Cell{group, y_.count - 1, groups_[group].x.count - 1}})
-            if (axis.has_effect(pair_at(cell))) return;
-    throw table.error("key", "\"{}\" {}", axis.key, PivotSpec::no_effect);
 }
 
 void Grid::add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c) {

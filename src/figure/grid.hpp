@@ -50,7 +50,6 @@ private:
     };
 
     void check(const TomlReader& table) const;
-    void check_effect(const GridAxis& axis, const TomlReader& table) const;
     void add_group(FigureReader& reader, const TomlReader& table, std::size_t p, std::size_t c);
     void make_map();
     void make_subtitle();

@@ -48,8 +48,6 @@ struct GridAxis {
     bool exists() const { return !key.empty(); }
     /// The accuracy setting of the method: its step size, or the tolerance of an adaptive method.
     bool is_setting() const { return key == "setting"; }
-    /// Whether its key changes something in this pair.
-    bool has_effect(const Preset& pair) const { return !number_ || number_->has_effect(pair); }
     /// Whether the key takes whole numbers only, as `links` does.
     bool is_whole() const { return number_ && number_->is_whole; }
     /// Values of lower rank are set first: numbers of links, keys of both sides, and those of one side or ratios.

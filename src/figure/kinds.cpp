@@ -6,27 +6,13 @@
 
 namespace doppel {
 
-namespace {
-
-/// Whether an axis gives amplitudes of pivots: by its key, or in tables of [system].
-bool sweeps_amplitude(TomlReader top) {
-    auto grid = top.inner("grid");
-    return std::ranges::any_of(std::array{"x", "y", "color", "panel"}, [&](const char* role) {
-        std::string key;
-        if (grid.has(role)) grid.inner(role)({.key = "key"}, key);
-        return key == "system" || key.ends_with("pivot.amplitude_m");
-    });
-}
-
-}  // namespace
-
 Preset FigureReader::pair(const std::vector<TomlReader*>& more) {
     Preset preset;
     preset.name = preset.title = name;
     clock_fields(scene, preset);
     std::vector<TomlReader*> levels{&top};
     levels.insert(levels.end(), more.begin(), more.end());
-    read_sides(levels, preset, false, sweeps_amplitude(top));
+    read_sides(levels, preset);
     if (!only_keys) check_clock(preset, scene);
     return preset;
 }

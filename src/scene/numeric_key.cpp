@@ -200,12 +200,6 @@ void NumericKey::set(Preset& preset, const Quad& value, const Quad& difference) 
         put(preset.b, *this, sides == Sides::both ? Quad(value + difference) : value, preset.sample_hz);
 }
 
-bool NumericKey::has_effect(const Preset& preset) const {
-    if (!inside.starts_with("pivot.") || inside == "pivot.amplitude_m") return true;
-    const auto moves = [](const SideSpec& side) { return side.physical.pivot.amplitude_m != 0; };
-    return (sides != Sides::b && moves(preset.a)) || (sides != Sides::a && moves(preset.b));
-}
-
 SideSpec between(SideSpec from, SideSpec to, const Quad& share) {
     const auto numbers = all_numbers(from), ends = all_numbers(to);
     for (std::size_t i = 0; i < numbers.size(); ++i)

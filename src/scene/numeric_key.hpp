@@ -31,8 +31,6 @@ struct NumericKey {
     Quad taken(const Quad& value, const Preset& preset) const;
     /// Sets the value; if the key applies to both sides, side b gets `difference` more.
     void set(Preset& preset, const Quad& value, const Quad& difference) const;
-    /// False for keys of pivots that do not move: PivotSpec::no_effect.
-    bool has_effect(const Preset& preset) const;
 };
 
 /// Linear interpolation between chains that only differ in numbers.

@@ -16,6 +16,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -302,8 +303,6 @@ struct PartSpec {
 
 /// [system.pivot]: an oscillating pivot, amplitude · cos(2π · frequency · t + phase).
 struct PivotSpec {
-    static constexpr std::string_view no_effect = "has no effect without amplitude_m";  // error of the other keys
-
     Quad direction_deg = 90;  // from the x axis: 90 = upwards
     Quad amplitude_m = 0, frequency_hz = 1, phase_deg = 0;
 
@@ -404,7 +403,8 @@ struct SideSpec {
     TrackSpec track;
     std::vector<ParticleSpec> particles;  // instead of a chain
     std::vector<PartSpec> constraints, forces;
-    std::optional<std::string> label, note;  // replace the automatic texts of the side
+    std::optional<std::string> label, note;                             // replace the automatic texts of the side
+    std::map<std::pair<std::string, std::size_t>, std::string> places;  // of entries, by table and number, for errors
 
     Rational step() const { return step_s.value_or(default_step); }
     Quad allowed_error() const {
@@ -519,9 +519,8 @@ std::string read_kind(TomlReader& scene, const PresetText& source, bool is_film)
 void read_release(TomlReader& table, SideSpec& side, bool is_physical);
 
 /// Reads [system], then [a] and [b] on top, each level by level: later levels override earlier ones. Sides of a film
-/// have texts of their own. `sweeps_amplitude`: a figure's axis gives that of pivots.
-void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film = false,
-                bool sweeps_amplitude = false);
+/// have texts of their own.
+void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film = false);
 
 /// Checks that samples are at steps, that the end is at a sample, and that no sum of times overflows 64 bits.
 void check_clock(const Preset& preset, const TomlReader& scene);

@@ -48,10 +48,11 @@ bool read_accuracy(TomlReader& table, SideSpec& side) {
     return true;
 }
 
-/// Reads particles, constraints and forces. An entry with the name of an existing one changes it; others are added.
-/// read(entry, spec, is_new) returns whether the entry's kind is known, and so its allowed keys.
+/// Reads torques, particles, constraints and forces. An entry with the name of an existing one changes it; others are
+/// added. read(entry, spec, is_new) returns whether the entry's kind is known, and so its allowed keys.
 template <class Spec, class Read>
-void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& entries, const Read& read) {
+void read_entries(TomlReader& table, std::string_view key, SideSpec& side, std::vector<Spec>& entries,
+                  const Read& read) {
     std::set<std::string> given;
     std::map<std::string, std::size_t> indices;  // of named entries
     for (std::size_t i = 0; i < entries.size(); ++i)
@@ -63,8 +64,10 @@ void read_entries(TomlReader& table, std::string_view key, std::vector<Spec>& en
             entry.refuse(entry.error("name", "must be unique; \"{}\" is used already", name));
         const auto same = indices.find(name);
         const bool is_new = same == indices.end();
-        if (read(entry, is_new ? entries.emplace_back(Spec{.name = name}) : entries[same->second], is_new))
-            entry.finish();
+        const auto number = is_new ? entries.size() : same->second;
+        if (is_new) entries.push_back({.name = name});
+        side.places[{std::string(key), number}] = entry.place_of(entry.has("kind") ? "kind" : "name").first;
+        if (read(entry, entries[number], is_new)) entry.finish();
     }
 }
 
@@ -108,7 +111,7 @@ void read_physical_chain(TomlReader& table, SideSpec& side) {
     chain_fields(table, side, has_rods ? not_negative : positive);
     if (table.has("center_m")) side.physical.center_m.resize(side.links());
     physical_fields(table, side.physical);
-    read_entries(table, "torque", side.physical.torques, [&](TomlReader& entry, TorqueSpec& torque, bool is_new) {
+    read_entries(table, "torque", side, side.physical.torques, [&](TomlReader& entry, TorqueSpec& torque, bool is_new) {
         part_fields(entry, torque);
         entry.check_together([&] {
             for (const auto* key : {"frequency_hz", "phase_deg", "joint"})
@@ -123,13 +126,13 @@ void read_physical_chain(TomlReader& table, SideSpec& side) {
 }
 
 void read_mechanism(TomlReader& table, SideSpec& side) {
-    read_entries(table, "particle", side.particles, read_particle);
+    read_entries(table, "particle", side, side.particles, read_particle);
     const auto kinds = std::span(names_of<PartKind>);
     const auto read_of = [](std::span<const std::string_view> some) {
         return [=](TomlReader& entry, PartSpec& part, bool is_new) { return read_part(entry, part, is_new, some); };
     };
-    read_entries(table, "constraint", side.constraints, read_of(kinds.first(constraint_kinds)));
-    read_entries(table, "force", side.forces, read_of(kinds.subspan(constraint_kinds)));
+    read_entries(table, "constraint", side, side.constraints, read_of(kinds.first(constraint_kinds)));
+    read_entries(table, "force", side, side.forces, read_of(kinds.subspan(constraint_kinds)));
     if (side.particles.empty()) return;
     for (const auto& key : chain_keys)
         if (table.has(key))
@@ -239,18 +242,36 @@ void check_ends(const SideSpec& side, TomlReader& table) {
         }
 }
 
-/// A table [system.pivot], [a.pivot] or [b.pivot], with the sides it is about.
-using PivotTable = std::pair<TomlReader, std::string_view>;
+/// Where keys of pivots are given: a table [system.pivot], [a.pivot] or [b.pivot], or the axis of a grid that varies
+/// the key `varied`.
+struct PivotKeys {
+    TomlReader table;
+    std::string_view sides;  // that they are about
+    std::string varied = {};
 
-/// Refuses keys of pivots that have no effect, because no table gives their amplitude.
-void check_pivots(std::vector<PivotTable>& pivots) {
-    std::string moving;
-    for (auto& [pivot, sides] : pivots)
-        if (pivot.has("amplitude_m")) moving += sides;
-    for (auto& [pivot, sides] : pivots)
+    bool has(std::string_view key) {
+        return varied.empty() ? table.has(key) : varied.ends_with(fmt::format(".pivot.{}", key));
+    }
+};
+
+/// Refuses keys of pivots that have no effect, because no table and no axis gives their amplitude.
+void check_pivots(std::vector<PivotKeys> given, TomlReader top) {
+    auto grid = top.inner("grid");
+    for (const auto* role : {"x", "y", "color", "panel"}) {
+        PivotKeys axis{grid.inner(role), "ab"};
+        axis.table({.key = "key"}, axis.varied);
+        for (const auto* side : {"a", "b"})
+            if (axis.varied.starts_with(fmt::format("{}.", side))) axis.sides = side;
+        if (!axis.varied.empty()) given.push_back(axis);
+    }
+    std::string moving;  // sides
+    for (auto& at : given)
+        if (at.varied == "system" || at.has("amplitude_m")) moving += at.sides;
+    for (auto& at : given)
         for (const auto* key : {"direction_deg", "frequency_hz", "phase_deg"})
-            if (moving.find_first_of(sides) == std::string::npos && pivot.has(key))
-                throw pivot.error(key, "{}", PivotSpec::no_effect);
+            if (moving.find_first_of(at.sides) == std::string::npos && at.has(key))
+                throw at.varied.empty() ? at.table.error(key, "has no effect without amplitude_m")
+                                        : at.table.error("key", "\"{}\" has no effect without amplitude_m", at.varied);
 }
 
 /// Refuses particles of one side that would replace the chain of [system] without a word.
@@ -281,34 +302,14 @@ void read_side(TomlReader& table, SideSpec& side, bool has_text) {
     table.check_together([&] { check_choices(table, side); });
 }
 
-/// The entries of [system] and, on top, of a side, as read_entries() joins them.
-std::vector<TomlReader> joined_entries(TomlReader& system, TomlReader& side, const std::string& key) {
-    std::vector<TomlReader> all;
-    std::map<std::string, std::size_t> indices;  // of named entries
-    for (auto* table : {&system, &side})
-        for (auto& entry : table->entries(key)) {
-            std::string name;
-            entry({.key = "name"}, name);
-            const auto [at, is_new] = indices.emplace(name, all.size());
-            if (is_new || name.empty())
-                all.push_back(entry);
-            else
-                all[at->second] = entry;
-        }
-    return all;
-}
-
 }  // namespace
 
 std::string place_of(const Preset& preset, char letter, const Error& error) {
     const auto* placed = dynamic_cast<const PlacedError*>(&error);
     if (!placed || !preset.document) return preset.name;
+    if (placed->entry) return (letter == 'a' ? preset.a : preset.b).places.at({placed->key, *placed->entry});
     auto top = preset.document->top();
     auto system = top.inner("system"), side = top.inner(std::string_view(&letter, 1));
-    if (placed->entry) {
-        auto entry = joined_entries(system, side, placed->key).at(*placed->entry);
-        return entry.place_of(entry.has("kind") ? "kind" : "name").first;
-    }
     return (side.has(placed->key) ? side : system).place_of(placed->key).first;
 }
 
@@ -359,12 +360,12 @@ void read_release(TomlReader& table, SideSpec& side, bool is_physical) {
     if (is_physical) table.check_together([&] { check_masses(table, side); });
 }
 
-void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film, bool sweeps_amplitude) {
+void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_film) {
     std::vector<TomlReader> systems;
-    std::vector<PivotTable> pivots;
+    std::vector<PivotKeys> pivots;
     for (auto* level : levels) {
         read_side(systems.emplace_back(level->inner("system")), preset.a, false);
-        pivots.emplace_back(systems.back().inner("pivot"), "ab");
+        pivots.push_back({systems.back().inner("pivot"), "ab"});
     }
     preset.b = preset.a;
     for (auto* level : levels) {
@@ -377,14 +378,14 @@ void read_sides(const std::vector<TomlReader*>& levels, Preset& preset, bool is_
         read_side(b, preset.b, is_film);
         load_track(a, preset.a);
         load_track(b, preset.b);
-        pivots.emplace_back(a.inner("pivot"), "a");
-        pivots.emplace_back(b.inner("pivot"), "b");
+        pivots.push_back({a.inner("pivot"), "a"});
+        pivots.push_back({b.inner("pivot"), "b"});
         b.check_together([&] {
             for (auto& system : systems)
                 for (const auto* side : {&preset.a, &preset.b}) check_ends(*side, system);
             check_ends(preset.a, a);
             check_ends(preset.b, b);
-            if (level == levels.back() && !sweeps_amplitude) check_pivots(pivots);
+            if (level == levels.back()) check_pivots(pivots, *levels.front());
             if (!is_film && preset.a.links() != preset.b.links())
                 throw b.error("links",
                               "must be that of the other side, so that the two can be compared; they are {} and {}",
