@@ -78,12 +78,6 @@ void list_presets() {
     }
 }
 
-void list_as_json() {
-    auto list = Json::array();
-    for (const auto& [name, entry] : all_presets()) list.push_back(entry);
-    print_json(list);
-}
-
 /// A table of methods: value of `integrator`, order, step size or tolerance, models, properties.
 void list_methods() {
     print_line("{:<20} {:>5}  {:<10} {:<32} {}", "integrator", "order", "setting", "models", "properties");
@@ -136,6 +130,7 @@ std::string starting_preset(const fs::path& file, std::string_view kind) {
 void write_preset(const fs::path& path, std::string_view kind) {
     if (path.extension() != ".toml" || path.stem().empty())
         throw bad_input("{}: the name of a preset's file ends in .toml", path.string());
+    check_preset_name(path.string(), path.stem().string());
     const PresetText preset{path.stem().string(), path.string(), starting_preset(path, kind), path.string()};
     if (kind == pair_kind)
         read_preset(preset);  // the title must be drawable
@@ -184,8 +179,10 @@ void add_list(CLI::App& app) {
     command.callback([what, as_json] {
         if (*as_json && *what == "methods") throw bad_input("--json is only for presets, not for methods");
         if (*what == "methods") return list_methods();
-        if (*as_json) return list_as_json();
-        list_presets();
+        if (!*as_json) return list_presets();
+        auto list = Json::array();
+        for (const auto& [name, entry] : all_presets()) list.push_back(entry);
+        print_json(list);
     });
 }
 

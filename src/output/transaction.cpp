@@ -30,7 +30,8 @@ constexpr const char* lock_name = ".lock";
 constexpr const char* backup_name = ".old";
 
 Error not_ours(const fs::path& path) {
-    return io_failed("{} was not written by Doppel; move it, or give another folder with --out", path.string());
+    return io_failed("{} may not be Doppel's: no manifest lists it; move it, or give another folder with --out",
+                     path.string());
 }
 
 /// Throws if the name is used by something of another type; follows no link.

@@ -141,15 +141,28 @@ TEST_F(FailedRuns, AfterKill9TheNextRecordingLeavesNothingElse) {
     EXPECT_EQ(hidden(), 0);
 }
 
+/// Starts a command that simulates for minutes, and returns while it does.
+pid_t start_simulation(const std::string& command) {
+    const auto child = start(with(command, "butterfly --set scene.duration_s=3600 --progress none"));
+    EXPECT_TRUE(wait_until([&] { return fs::exists(test_folder() / "out/butterfly/.doppel-run"); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return child;
+}
+
 TEST_F(FailedRuns, StopsSoonAndCleanly) {
-    for (const auto& [signal, format] :
-         {std::pair(SIGINT, "mp4"), {SIGTERM, "png"}, {SIGHUP, "mp4"}, {SIGINT, "png"}}) {
+    for (const auto& [signal, what] : {std::pair(SIGINT, "mp4"),
+                                       {SIGTERM, "png"},
+                                       {SIGHUP, "mp4"},
+                                       {SIGINT, "png"},
+                                       {SIGINT, "render"},
+                                       {SIGINT, "simulate"}}) {
         fresh_folder();  // empties it
-        const auto child = start_endless(format);
+        const bool draws = what == std::string("mp4") || what == std::string("png");
+        const auto child = draws ? start_endless(what) : start_simulation(what);
         const auto requested = std::chrono::steady_clock::now();
         for (int times = 0; times < 2; ++times) kill(child, signal);  // as timeout does
         EXPECT_EQ(wait_for(child), signal == SIGTERM ? 143 : 130);
-        EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(2));  // measured 0.1 s
+        EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(draws ? 2 : 1));  // measured 0.1 s
         EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
         EXPECT_EQ(listing(folder / "out"), Names{});
     }
@@ -228,7 +241,8 @@ TEST_F(FailedRuns, WhatIsNotDoppelsIsLeftAloneBeforeWorkStarts) {
         {"ln -s ../elsewhere out/butterfly/frames", "out/butterfly/frames is a symbolic link", "png"},
         {"mkdir out/butterfly/frames; cp thesis out/butterfly/frames/notes.txt", "out/butterfly/frames/notes.txt",
          "png"},
-        {"cp thesis out/butterfly/butterfly.csv", "out/butterfly/butterfly.csv was not written by Doppel", "mp4"},
+        {"cp thesis out/butterfly/butterfly.csv",
+         "out/butterfly/butterfly.csv may not be Doppel's: no manifest lists it", "mp4"},
         {"rmdir out/butterfly; ln -s ../elsewhere out/butterfly", "out/butterfly is a symbolic link", "mp4"},
     };
     for (const auto& [made, named, format] : cases) {

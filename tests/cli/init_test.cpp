@@ -161,7 +161,10 @@ TEST_F(Init, NeverReplacesAFile) {
              {"mine.toml", "mine.toml: exists already; give a new name"},
              {"link.toml", "link.toml: exists already; give a new name"},
              {"mine.txt", "mine.txt: the name of a preset's file ends in .toml"},
-             {".toml", ".toml: the name of a preset's file ends in .toml"}}) {
+             {".toml", ".toml: the name of a preset's file ends in .toml"},
+             {"a\nb.toml",
+              "a b.toml: the name of the preset, \"a b\", is used for its folder and files, and contains the control "
+              "character U+000A; rename it"}}) {
         const auto result = ends({"init", name}, 2);
         EXPECT_EQ(result.err, "doppel: " + message + "\n");
     }

@@ -67,10 +67,8 @@ TEST_F(Program, NotesAGapOfTheTrackAtWhichARunEnds) {
         EXPECT_FALSE(has(done(with(words, more)).err, "gap"));
 }
 
-TEST_F(Program, ListsShowsAndChecks) {
+TEST_F(Program, ListsAndChecks) {
     EXPECT_TRUE(has(doppel("list").out, "butterfly          Three thousandths of a degree\n"));
-    const auto shown = doppel("show butterfly").out;
-    EXPECT_TRUE(bytes_of(fs::path(DOPPEL_SOURCE_DIR) / "presets/butterfly.toml").ends_with("\n" + shown));
     const auto check = done("check butterfly");
     EXPECT_TRUE(
         has(check.out, {"angles, explicit Euler, 1/30 000 s, 250 steps a sample", "the smallest model",
@@ -276,21 +274,6 @@ TEST_F(Program, ExitsWith4WhereOpenGLIsTooOld) {
     expect_refused(with("render butterfly", tiny), 4, "OpenGL 3.3",
                    [] { setenv("MESA_GL_VERSION_OVERRIDE", "2.1", 1); });
     EXPECT_TRUE(left_nothing());
-}
-
-TEST_F(Program, ExitsWith130WithinASecondOfCtrlC) {
-    for (const char* command : {"render", "simulate"}) {
-        fresh_folder();  // empties it
-        const auto child = start(with(command, "butterfly --set scene.duration_s=3600 --progress none"));
-        EXPECT_TRUE(wait_until([&] { return fs::exists(folder / "out/butterfly/.doppel-run"); }));
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // until it simulates
-        const auto requested = std::chrono::steady_clock::now();
-        kill(child, SIGINT);
-        EXPECT_EQ(wait_for(child), 130);
-        EXPECT_LT(std::chrono::steady_clock::now() - requested, std::chrono::seconds(1)) << command;  // measured 0.1 s
-        EXPECT_EQ(bytes_of(folder / "stderr"), "doppel: interrupted\n");
-        EXPECT_TRUE(left_nothing()) << command;
-    }
 }
 
 TEST_F(Program, WarningsAreNoProgress) {

@@ -191,8 +191,8 @@ TEST_F(Transactions, WhatIsNotDoppelsIsNeverReplaced) {
     write_bytes(folder / "frames/notes.txt", "mine");
     write_record(folder, {"frames/000000.png"});
     Transaction files(folder);
-    expect_io_failed({(folder / "x.csv").string(), "not written by Doppel"}, [&] { files.file("x.csv"); });
-    expect_io_failed({(folder / "frames/notes.txt").string(), "not written by Doppel"},
+    expect_io_failed({(folder / "x.csv").string(), "may not be Doppel's"}, [&] { files.file("x.csv"); });
+    expect_io_failed({(folder / "frames/notes.txt").string(), "may not be Doppel's"},
                      [&] { files.directory("frames"); });
     fs::remove(folder / "frames/notes.txt");
     fs::create_directory(folder / "frames/000001.png");
@@ -386,7 +386,8 @@ TEST_F(Transactions, KeepsWhatAUserPutsIntoTheHiddenFolder) {
                 raise(SIGKILL);
             }));
             const auto place = (folder / hidden / fs::path(mine).begin()->string()).string();
-            expect_io_failed({place + " was not written by Doppel; move it"}, [&] { Transaction files(folder); });
+            expect_io_failed({place + " may not be Doppel's: no manifest lists it; move it"},
+                             [&] { Transaction files(folder); });
             EXPECT_EQ(bytes_of(path), "mine") << is_killed;
             Names left{hidden, hidden + "/" + mine};
             if (mine != "thesis") left.insert(hidden + "/frames");
