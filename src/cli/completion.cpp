@@ -73,12 +73,6 @@ std::vector<std::string> kinds_of(const std::string& command, const std::vector<
     return {scene_kinds.begin() + 1, scene_kinds.end()};
 }
 
-/// Whether the text begins with the word, which has lost its quotes.
-bool begins_with(std::string text, const std::string& word) {
-    std::erase(text, '"');
-    return text.starts_with(word);
-}
-
 /// "table.key=", or the values of the key if it is complete. The list is made by tests/figure/starting_presets.cpp.
 void add_settings(const std::string& command, const std::vector<std::string>& words, const std::string& word,
                   Candidates& all) {
@@ -204,9 +198,12 @@ complete -c doppel -f -a '(__doppel_complete)'
 std::string completions(CLI::App& app, const std::vector<std::string>& words) {
     if (words.empty()) return "";
     std::vector<std::string> lines;
-    for (const auto& [text, help] : candidates(app, words))
-        if (begins_with(text, words.back()))
+    for (const auto& [text, help] : candidates(app, words)) {
+        auto unquoted = text;  // as the words are
+        std::erase(unquoted, '"');
+        if (unquoted.starts_with(words.back()))
             lines.push_back(fmt::format("{}\t{}\n", text, help.substr(0, help.find('\n'))));
+    }
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
     return fmt::format("{}", fmt::join(lines, ""));

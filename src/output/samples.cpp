@@ -20,10 +20,6 @@ extern "C" {
 namespace doppel {
 namespace {
 
-bool has_halved_chroma(AVPixelFormat format) {
-    return av_pix_fmt_desc_get(format)->log2_chroma_w > 0;
-}
-
 /// Planes that are filled row by row.
 struct Target {
     std::array<std::uint8_t*, 4> plane{};
@@ -169,7 +165,7 @@ std::size_t byte_count(AVPixelFormat format, const std::vector<Rect>& areas) {
 
 Rect aligned(AVPixelFormat format, const Rect& area, Size picture) {
     const Rect inside = intersection(area, {0, 0, picture.width, picture.height});
-    if (!has_halved_chroma(format) || inside.empty()) return inside;
+    if (av_pix_fmt_desc_get(format)->log2_chroma_w == 0 || inside.empty()) return inside;
     return {inside.left & ~1, inside.top & ~1, (inside.right + 1) & ~1, (inside.bottom + 1) & ~1};
 }
 

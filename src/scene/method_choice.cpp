@@ -66,11 +66,6 @@ int level_of_steps(double minimum) {
     return level;
 }
 
-/// Whether two sides get the same choice: they differ only in the system.
-bool choose_together(const SideSpec& a, const SideSpec& b) {
-    return std::ranges::none_of(differing_keys(a, b), [](const KeyPair& pair) { return pair.any().is_setting; });
-}
-
 /// The loosest level that passes, searched level by level from the start. Finer levels are only tried while the work is
 /// worthwhile.
 template <class Does, class IsWorth>
@@ -143,9 +138,13 @@ MethodChooser::MethodChooser(const Preset& preset, const std::atomic<bool>& stop
     for (const char name : {'a', 'b'}) {
         const auto& spec = name == 'a' ? preset_.a : preset_.b;
         if (!spec.is_chosen()) continue;
-        if (groups_.empty() || !choose_together(groups_.front().sides.front().spec, spec)) groups_.emplace_back();
+        const auto differences =
+            groups_.empty() ? std::vector<KeyPair>() : differing_keys(groups_.front().sides.front().spec, spec);
+        // sides that differ only in the system get the same choice
+        const bool is_other = std::ranges::any_of(differences, [](const auto& pair) { return pair.any().is_setting; });
+        if (groups_.empty() || is_other) groups_.emplace_back();
         auto& group = groups_.back();
-        if (!group.sides.empty() && differing_keys(group.sides.front().spec, spec).empty())
+        if (!group.sides.empty() && differences.empty())
             group.sides.front().names += name;
         else
             group.sides.push_back(

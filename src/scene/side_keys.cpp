@@ -49,18 +49,14 @@ void check_droplets(const Scene& scene, const Side& side) {
     }
 }
 
-/// The factor applied before computing: angles become radians, frequencies rad/s.
-Quad factor_of(std::string_view unit) {
-    if (unit.starts_with("deg")) return pi_of<Quad>() / 180;
-    return unit == "Hz" ? 2 * pi_of<Quad>() : Quad(1);
-}
-
 /// Throws if a number differs between the sides and is rounded to the same value in this precision.
 void check_numbers(const Scene& scene, const std::vector<KeyPair>& differences, Precision precision) {
     const bool in_quad = precision == Precision::in_quad;
     for (const auto& [a, b] : differences) {
         if (!a || !b || a->numbers.size() != b->numbers.size()) continue;
-        const auto factor = factor_of(a->unit);
+        // angles become radians, frequencies rad/s
+        const bool is_angle = a->unit.starts_with("deg"), is_frequency = a->unit == "Hz";
+        const Quad factor = is_angle ? Quad(pi_of<Quad>() / 180) : is_frequency ? Quad(2 * pi_of<Quad>()) : Quad(1);
         const auto computed = [&](const Quad& number) {
             const Quad value = number * factor;
             return in_quad ? value : Quad(static_cast<double>(value));
