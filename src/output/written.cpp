@@ -83,17 +83,6 @@ std::string comment_of_film(const fs::path& path, const char* format) {
     return comment;
 }
 
-/// The text of the comment before the end of a GIF, without the sizes of its blocks; see comment_and_end() in gif.cpp.
-std::string comment_of_gif(const fs::path& path) {
-    const auto end = end_of_file(path, 2048);
-    std::string comment;
-    auto block = end.rfind("\x21\xfe");
-    if (block == std::string::npos) return {};
-    for (block += 2; block < end.size() && end[block] != '\0'; block += 1 + static_cast<unsigned char>(end[block]))
-        comment += end.substr(block + 1, static_cast<unsigned char>(end[block]));
-    return comment;
-}
-
 }  // namespace
 
 WrittenFiles written_files(const fs::path& folder) {
@@ -134,7 +123,7 @@ bool made_by(const fs::path& path, std::string_view program) {
     if (head.starts_with("%PDF-"))
         return end_of_file(path, 128).find(fmt::format("%%EOF\n% {}", program)) != std::string::npos;
     if (head.starts_with("GIF89a"))
-        return comment_of_gif(path).find(fmt::format("encoder: {} ", program)) != std::string::npos;
+        return comment_of_film(path, "gif").find(fmt::format("encoder: {} ", program)) != std::string::npos;
     const bool is_mp4 = head.find("ftyp") == 4, is_webm = head.starts_with("\x1a\x45\xdf\xa3");
     if (is_mp4 || is_webm)
         return comment_of_film(path, is_mp4 ? "mov" : "matroska").starts_with(fmt::format("{} ", program));

@@ -11,60 +11,48 @@
 namespace doppel {
 namespace {
 
-void check_single(const Preset& preset, TomlReader& top, const TomlReader& video) {
-    if (preset.video.layout != Arrangement::single) return;
-    if (top.has("b"))
+/// What layouts, strips and views require of the sides, and of each other.
+void check_layout(const Preset& preset, TomlReader& top, TomlReader& video, const TomlReader& scene) {
+    const auto &a = preset.a, &b = preset.b;
+    const auto& spec = preset.video;
+    const auto name = name_of(spec.layout);
+    const auto is = [&](Arrangement layout) { return spec.layout == layout; };
+    const bool is_ensemble = is(Arrangement::ensemble), is_phase = is(Arrangement::phase);
+    const bool are_chains = a.particles.empty() && b.particles.empty();
+    const auto masses = static_cast<int>(std::min(a.masses(), b.masses()));
+    const auto links = static_cast<int>(std::min(a.links(), b.links()));
+    if (is(Arrangement::single) && top.has("b"))
         throw video.error("layout",
                           "\"single\" shows side a alone, but the preset has a table [b]; leave [b] out, or take "
                           "\"side-by-side\"");
-    for (const auto strip : preset.video.strips)
-        if (strip == StripKind::distance || strip == StripKind::exponent || strip == StripKind::energies_b)
+    for (const auto strip : spec.strips) {
+        using enum StripKind;
+        if (is(Arrangement::single) && (strip == distance || strip == exponent || strip == energies_b))
             throw video.error("panels", "must be about side a for the layout \"single\"; \"{}\" is about a pair",
                               name_of(strip));
-}
-
-/// A view must follow an existing mass; only ensembles have columns of members.
-void check_view(const Preset& preset, TomlReader& video, const TomlReader& scene) {
-    const auto maximum = std::min(preset.a.masses(), preset.b.masses());
-    if (const auto follow = preset.video.view.follow; follow > static_cast<int>(maximum))
-        throw video.inner("view").error("follow", "must be from 0 to {}, as there are masses; it is {}", maximum,
-                                        follow);
-    const auto& view = preset.video.view;
-    if (!preset.video.pendulums && (view.follow > 0 || view.center_m || view.height_m))
+        if (!are_chains && (strip == angles || strip == rates))
+            throw video.error("panels", "\"{}\" is for chains; the sides are mechanisms", name_of(strip));
+    }
+    if (spec.view.follow > masses)
+        throw video.inner("view").error("follow", "must be from 0 to {}, as there are masses; it is {}", masses,
+                                        spec.view.follow);
+    if (!spec.pendulums && (spec.view.follow > 0 || spec.view.center_m || spec.view.height_m))
         throw video.error("view",
                           "is about the pendulums, but panels does not contain \"pendulums\"; leave [video.view] out");
-    if (preset.member_columns && preset.video.layout != Arrangement::ensemble)
-        throw scene.error("member_columns", "is for the layout \"ensemble\"; it is \"{}\"",
-                          name_of(preset.video.layout));
-}
-
-/// What layouts and strips require of the system.
-void check_layout(const Preset& preset, const TomlReader& video) {
-    const auto layout = preset.video.layout;
-    const auto name = name_of(layout);
-    const bool chains = preset.a.particles.empty() && preset.b.particles.empty();
-    if (!chains && (layout == Arrangement::ensemble || layout == Arrangement::phase))
+    if (preset.member_columns && !is_ensemble)
+        throw scene.error("member_columns", "is for the layout \"ensemble\"; it is \"{}\"", name);
+    if (!are_chains && (is_ensemble || is_phase))
         throw video.error("layout", "\"{}\" is for chains; the sides are mechanisms", name);
-    for (const auto strip : preset.video.strips)
-        if ((strip == StripKind::angles || strip == StripKind::rates) && !chains)
-            throw video.error("panels", "\"{}\" is for chains; the sides are mechanisms", name_of(strip));
-    if (layout == Arrangement::ensemble && differ_in_kind(preset.a, preset.b))
+    if (is_phase && spec.phase == PhaseKind::section && (links < 2 || spec.phase_link == 1))
+        throw video.error("phase", "\"section\" is where link 1 passes 0 upwards, so it needs phase_link from 2 on");
+    if (is_phase && spec.phase_link > links)
+        throw video.error("phase_link", "must be from 1 to {}, as there are links; it is {}", links, spec.phase_link);
+    if (!is_ensemble) return;
+    if (differ_in_kind(a, b))
         throw video.error(
             "layout",
             "\"ensemble\" interpolates between the sides, so both need the same number of links; they have {} and {}",
-            preset.a.links(), preset.b.links());
-    if (layout == Arrangement::phase) {
-        const long links = static_cast<long>(std::min(preset.a.links(), preset.b.links()));
-        const bool is_section = preset.video.phase == PhaseKind::section;
-        if (is_section && (links < 2 || preset.video.phase_link == 1))
-            throw video.error("phase",
-                              "\"section\" is where link 1 passes 0 upwards, so it needs phase_link from 2 on");
-        if (preset.video.phase_link > links)
-            throw video.error("phase_link", "must be from 1 to {}, as there are links; it is {}", links,
-                              preset.video.phase_link);
-    }
-    if (layout != Arrangement::ensemble) return;
-    const auto &a = preset.a, &b = preset.b;
+            a.links(), b.links());
     if (!a.track.is_none() || !b.track.is_none())
         throw video.error("layout", "\"{}\" needs two simulations; a side shows a track", name);
     if (a.is_mechanism() || b.is_mechanism())
@@ -229,9 +217,7 @@ Preset read_preset(const PresetText& source, const std::vector<Override>& overri
     place_members(top, video, preset);
     check_clock(preset, scene);
     check_frames(preset, video);
-    check_single(preset, top, video);
-    check_view(preset, video, scene);
-    check_layout(preset, video);
+    check_layout(preset, top, video, scene);
     return preset;
 }
 
