@@ -209,9 +209,17 @@ void read_file(TrackSpec& spec, const std::string& preset_path, bool from_comman
     spec.track = std::make_shared<const Track>(tracks_of_texts({spec.file}, {text}));
 }
 
-/// Reads the file of a side's track, if it has one. Throws Error or records it, as the reader of its table does.
+/// Reads the file of a side's track, if it has one. Throws Error or records it, as the reader of its table does. Keys of
+/// a simulation have no effect then; in a file they may be those of a resolved preset, which has them all.
 void load_track(TomlReader& side_table, SideSpec& side) {
     if (side.track.is_none()) return;
+    for (const auto* key : {"angle_deg", "omega_deg_per_s", "model", "integrator", "step_s", "tolerance", "accuracy",
+                            "precision", "stabilise"}) {
+        auto typed = side_table.elements_of(key);
+        if (side_table.from_command_line(key)) typed.emplace_back(key, 0);
+        for (const auto& [name, element] : typed)
+            side_table.refuse(side_table.error(name, "has no effect, because the side shows a measured track"));
+    }
     auto table = side_table.inner("track");
     const bool is_read = table.guarded("file", [&] {
         if (!side.particles.empty() || side.links() != 2)

@@ -151,6 +151,8 @@ grid: [grid] / quantity = "energy_error" / range = 5
 grid: [grid] / quantity = "energy_error" / [grid.x] / key = "system.pivot.frequency_hz" / from = 1
     => :6:1: [grid.x] key "system.pivot.frequency_hz" has no effect without amplitude_m
 grid: [system.pivot] / frequency_hz = 2 => :4:1: [system.pivot] frequency_hz has no effect without amplitude_m
+grid: [b.pivot] / frequency_hz = 2 / [grid] / quantity = "distance_at_end" / [grid.x] / key = "a.pivot.amplitude_m"
+    / to = 1 / points = 2 => :4:1: [b.pivot] frequency_hz has no effect without amplitude_m
 grid: [grid] / quantity = "distance_at_end" / [a.pivot] / amplitude_m = 1 / [grid.color] / key = "b.pivot.phase_deg"
     / values = [1, 2] => :8:1: [grid.color] key "b.pivot.phase_deg" has no effect without amplitude_m
 grid: [grid] / quantity = "energy_error" / [grid.x] / key = "b.mass_kg[1]" / from = 1

@@ -111,6 +111,9 @@ TEST(SideTrack, RefusalsSayWhatWouldBeRight) {
         {track + "[video]\nlayout = \"ensemble\"",
          "x.toml:6:1: [video] layout \"ensemble\" needs two simulations; a side shows a track"}};
     for (const auto& [text, message] : refused) expect_refused(text, message);
+    for (const std::string key : {"angle_deg[1]", "accuracy", "angle_deg"})
+        EXPECT_EQ(refusal([&] { scene_of("measured", {"a." + key + "=0.1"}); }),
+                  "--set a." + key + ": [a] " + key + " has no effect, because the side shows a measured track");
 }
 
 /// An ensemble interpolates the numbers of friction and drives from side a to side b, like those of the chain.
