@@ -68,7 +68,11 @@ std::optional<std::pair<long, long>> two_numbers(const std::string& text, char s
 std::filesystem::path folder_of(const std::filesystem::path& file) {
     if (!file.has_filename()) throw bad_input("{} names a folder; give the name of a file", file.string());
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    return type_of(folder) == std::filesystem::file_type::symlink ? std::filesystem::weakly_canonical(folder) : folder;
+    if (type_of(folder) != std::filesystem::file_type::symlink) return folder;
+    std::error_code error;
+    const auto target = std::filesystem::weakly_canonical(folder, error);
+    if (error) throw cannot(folder, "reached", error.value());
+    return target;
 }
 
 }  // namespace

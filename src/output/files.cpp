@@ -85,8 +85,10 @@ void write_file(const fs::path& path, std::string_view text) {
 }
 
 TemporaryFolder::TemporaryFolder() {
-    auto place = (fs::temp_directory_path() / "doppel-XXXXXX").string();
-    if (!mkdtemp(place.data())) throw cannot(place, "made");
+    const char* const given = std::getenv("TMPDIR");
+    const fs::path parent = given && *given ? given : "/tmp";
+    auto place = (parent / "doppel-XXXXXX").string();
+    if (!mkdtemp(place.data())) throw cannot(parent, "used for temporary files (TMPDIR)");
     path_ = place;
 }
 

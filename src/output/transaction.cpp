@@ -36,8 +36,10 @@ Error not_ours(const fs::path& path) {
 
 /// Throws if the name is used by something of another type; follows no link.
 void require_type(const fs::path& path, bool is_folder) {
-    const auto type = type_of(path);
+    std::error_code error;
+    const auto type = fs::symlink_status(path, error).type();
     if (type == Type::not_found || type == (is_folder ? Type::directory : Type::regular)) return;
+    if (type == Type::none) throw cannot(path, "reached", error.value());
     throw io_failed("{} is {}; Doppel would {} there", path.string(),
                     type == Type::symlink     ? "a symbolic link"
                     : type == Type::directory ? "a folder"

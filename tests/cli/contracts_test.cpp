@@ -179,6 +179,8 @@ TEST_F(Contracts, StandardOutputTakesOneFileAlone) {
     EXPECT_EQ(failed.out, "");
     EXPECT_FALSE(has(failed.err, "/doppel-"));
     const auto quick = std::string("\"$DOPPEL\" simulate calm -o - --progress none --set scene.duration_s=1 ");
+    EXPECT_EQ(shell("TMPDIR=/none " + quick).err,
+              "doppel: /none: cannot be used for temporary files (TMPDIR): No such file or directory\n");
     EXPECT_EQ(shell(quick + ">/dev/full").code, 75);
     EXPECT_EQ(shell(quick + ">&-").code, 4);
     EXPECT_EQ(shell("(" + quick + "--set scene.sample_hz=1000; echo $? >code) | head -n 1 >/dev/null").code, 0);

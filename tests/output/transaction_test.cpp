@@ -156,7 +156,9 @@ TEST_F(Transactions, WhatIsInTheWayIsNamed) {
                      [&] { Transaction(folder).directory("file"); });
     expect_io_failed({"file is a file; Doppel would make a folder there"}, [&] { Transaction(folder / "file/x"); });
     expect_io_failed({"/proc/doppel", "No such file"}, [] { Transaction("/proc/doppel/x"); });
-    EXPECT_EQ(listing(folder), (Names{"x", "x/x.csv", "file"}));
+    fs::create_symlink("loop", folder / "loop");
+    expect_io_failed({"loop/x: cannot be reached: Too many levels"}, [&] { Transaction(folder / "loop/x"); });
+    EXPECT_EQ(listing(folder), (Names{"x", "x/x.csv", "file", "loop"}));
 }
 
 TEST_F(Transactions, LinksAndPipesBelowTheFolderAreNeverFollowed) {
