@@ -28,14 +28,6 @@ std::vector<Override> overrides(const FigureCommandOptions& options) {
     return all;
 }
 
-/// Tiles have one pixel a cell: throws Error (exit 2) where the command line gives a picture its format or size.
-void refuse_picture_keys(const std::vector<Override>& given) {
-    constexpr std::array<std::string_view, 3> of_page{"chart.theme", "chart.title", "chart.captions"};
-    for (const auto& [key, value, origin] : given)
-        if (key.starts_with("chart.") && std::ranges::count(of_page, key) == 0)
-            throw bad_input("{}: is for a picture; --tiles writes PNGs of one pixel a cell", origin);
-}
-
 /// "all" means every built-in figure.
 std::vector<PresetText> chosen_presets(const FigureCommandOptions& options) {
     std::vector<PresetText> chosen;
@@ -62,7 +54,10 @@ void make_figures(const FigureCommandOptions& options) {
     }
     if (options.tiles) {
         for (const auto& figure : figures) require_map(figure);
-        refuse_picture_keys(overrides(options));
+        constexpr std::array<std::string_view, 3> of_page{"chart.theme", "chart.title", "chart.captions"};
+        for (const auto& [key, value, origin] : overrides(options))
+            if (key.starts_with("chart.") && std::ranges::count(of_page, key) == 0)
+                throw bad_input("{}: is for a picture; --tiles writes PNGs of one pixel a cell", origin);
     }
     if (options.out == "-" && (options.tiles || options.merge || !options.shard.empty()))
         throw bad_input("-o -: standard output takes one picture, and no {}", options.tiles ? "tiles"

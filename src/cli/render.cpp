@@ -126,11 +126,6 @@ std::string degrees_list(const std::array<double, 2>& radians) {
     return fmt::format("[{:.9g}, {:.9g}]", radians[0] / degree, radians[1] / degree);
 }
 
-std::string start_words(const FittedStart& start) {
-    if (start.seconds == 0) return "starts as the first samples do";
-    return fmt::format("start fitted to {:.2g} s, within {:.2g} mrad", start.seconds, 1000 * start.rms);
-}
-
 /// The overrides that --beside FILE puts on top of a preset and of the overrides `given`; these are included in the
 /// result. Side a shows the track. Side b starts from a fit to the track's first two seconds, and runs as long as the
 /// track. Throws Error as read_preset() does.
@@ -155,7 +150,10 @@ std::vector<Override> beside_overrides(const PresetText& text, const std::vector
     add("a.track.offset_deg", degrees_list(start.offset));
     add("b.angle_deg", degrees_list(start.angle));
     add("b.omega_deg_per_s", degrees_list(start.rate));
-    if (!preset.b.note) add("b.note", toml_text(start_words(start)));
+    const auto words = start.seconds == 0 ? "starts as the first samples do"
+                                          : fmt::format("start fitted to {:.2g} s, within {:.2g} mrad", start.seconds,
+                                                        1000 * start.rms);
+    if (!preset.b.note) add("b.note", toml_text(words));
     return all;
 }
 

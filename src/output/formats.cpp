@@ -22,36 +22,6 @@ std::string words_of(Size size) {
     return fmt::format("[{}, {}]", size.width, size.height);
 }
 
-/// The limit of libav: the padded bytes of a picture fit in 31 bits.
-bool libav_takes(Size size) {
-    capture_libav_log();
-    return av_image_check_size(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height), 0, nullptr) >= 0;
-}
-
-std::optional<FormatError> size_error(const VideoOptions& options, const FormatRow& row) {
-    const auto [width, height] = options.size;
-    const auto given = words_of(options.size);
-    if (row.container && !libav_takes(options.size))
-        return FormatError{
-            "size", fmt::format("exceeds what libav encodes as {}, some [16000, 16000]; it is {}", row.title, given)};
-    const bool halved = row.is_yuv() && options.pixel_format != PixelFormat::yuv444;
-    if (halved && (width % 2 != 0 || height % 2 != 0))
-        return FormatError{
-            "size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title, pixels_words(options),
-                                given, words_of({width + width % 2, height + height % 2}))};
-    return std::nullopt;
-}
-
-std::optional<FormatError> alpha_error(const VideoOptions& options, const FormatRow& row) {
-    const bool has_alpha = row.has_alpha && (!row.is_encoded() || options.pixel_format == PixelFormat::yuv420);
-    if (options.transparent && !has_alpha)
-        return FormatError{
-            "transparent",
-            fmt::format("needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); this is {}{}",
-                        row.title, row.is_yuv() ? fmt::format(" in {}", pixels_words(options)) : "")};
-    return std::nullopt;
-}
-
 }  // namespace
 
 const FormatRow& format_row(FilmFormat format, std::string_view codec) {
@@ -67,8 +37,25 @@ long VideoOptions::key_interval() const {
 
 std::optional<FormatError> format_error(const VideoOptions& options) {
     const auto& row = format_row(options.format, options.codec);
-    if (auto error = alpha_error(options, row)) return error;
-    return size_error(options, row);
+    const auto [width, height] = options.size;
+    const auto given = words_of(options.size);
+    const bool has_alpha = row.has_alpha && (!row.is_encoded() || options.pixel_format == PixelFormat::yuv420);
+    if (options.transparent && !has_alpha)
+        return FormatError{
+            "transparent",
+            fmt::format("needs a format with opacity: png, apng, html, rgb, or webm (VP9, yuv420p); this is {}{}",
+                        row.title, row.is_yuv() ? fmt::format(" in {}", pixels_words(options)) : "")};
+    capture_libav_log();
+    // the limit of libav: the padded bytes of a picture fit in 31 bits
+    if (row.container && av_image_check_size(unsigned(width), unsigned(height), 0, nullptr) < 0)
+        return FormatError{
+            "size", fmt::format("exceeds what libav encodes as {}, some [16000, 16000]; it is {}", row.title, given)};
+    const bool halved = row.is_yuv() && options.pixel_format != PixelFormat::yuv444;
+    if (halved && (width % 2 != 0 || height % 2 != 0))
+        return FormatError{
+            "size", fmt::format("must be even for {} in {}; it is {}; {} is possible", row.title, pixels_words(options),
+                                given, words_of({width + width % 2, height + height % 2}))};
+    return std::nullopt;
 }
 
 std::optional<FormatError> rate_error(const VideoOptions& options) {

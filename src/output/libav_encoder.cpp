@@ -72,13 +72,6 @@ Libav<AVFormatContext> open_format(std::FILE* file, const std::string& path, con
     return muxer;
 }
 
-Stream output_file(const std::filesystem::path& place) {
-    if (place != "-") return create_file(place);
-    Stream file(fdopen(dup(STDOUT_FILENO), "wb"));
-    if (!file) throw cannot("standard output", "written");
-    return file;
-}
-
 void set_side_data(AVPacket& packet, AVPacketSideDataType type, std::string_view bytes) {
     std::memcpy(checked(av_packet_new_side_data(&packet, type, bytes.size())), bytes.data(), bytes.size());
 }
@@ -113,14 +106,6 @@ void read_block(BlockFile& part, AVPacket& packet) {
         part(type, bytes);
         set_side_data(packet, type, bytes);
     }
-}
-
-void tag_bt709(AVCodecContext& codec) {
-    codec.color_primaries = AVCOL_PRI_BT709;
-    codec.color_trc = AVCOL_TRC_BT709;
-    codec.colorspace = AVCOL_SPC_BT709;
-    codec.color_range = AVCOL_RANGE_MPEG;
-    codec.chroma_sample_location = AVCHROMA_LOC_CENTER;
 }
 
 std::string version(const char* name, unsigned number) {
@@ -230,7 +215,13 @@ Libav<AVCodecContext> open_encoder(const Encoding& encoding, const std::string& 
                         static_cast<int>(encoding.options.fps_denominator)};
     codec->time_base = encoding.tick;
     codec->pix_fmt = encoding.pixels;
-    if (encoding.row.is_yuv()) tag_bt709(*codec);
+    if (encoding.row.is_yuv()) {
+        codec->color_primaries = AVCOL_PRI_BT709;
+        codec->color_trc = AVCOL_TRC_BT709;
+        codec->colorspace = AVCOL_SPC_BT709;
+        codec->color_range = AVCOL_RANGE_MPEG;
+        codec->chroma_sample_location = AVCHROMA_LOC_CENTER;
+    }
     codec->thread_count = static_cast<int>(encoding.threads);
     codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     for (const auto& [key, value] : encoding.encoder_options)
@@ -251,7 +242,8 @@ Encoder::Encoder(const std::filesystem::path& place, Encoding encoding, const st
         part_.emplace(place, encoding_.options.part_header);
         return;
     }
-    file_ = output_file(place);
+    file_ = place == "-" ? Stream(fdopen(dup(STDOUT_FILENO), "wb")) : create_file(place);
+    if (!file_) throw cannot(path_, "written");
     format_ = open_format(file_.get(), path_, encoding_);
     for (const auto& [key, value] : encoding_.container_options) set_option(key.c_str(), value);
 }

@@ -100,16 +100,6 @@ Buffer samples_of(const Picture& picture, const PngOptions& options, Buffer samp
     return samples;
 }
 
-/// The text chunks and, 11.3.5.3, the size of a pixel.
-std::string chunks_of(const PngOptions& options) {
-    auto chunks = png_text_chunks(options.metadata);
-    if (options.dpi > 0) {
-        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
-        chunks += chunk("pHYs", per_m + per_m + '\1');  // the unit is the metre
-    }
-    return chunks;
-}
-
 /// The bytes of the file.
 std::string encoded(Size size, const Buffer& samples, const PngOptions& options) {
     const int channels = options.with_alpha ? 4 : 3;
@@ -117,7 +107,12 @@ std::string encoded(Size size, const Buffer& samples, const PngOptions& options)
     const auto* const bytes =
         stbi_write_png_to_mem(samples.data(), channels * size.width, size.width, size.height, channels, &count);
     std::string png(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
-    return png.insert(header_bytes, chunks_of(options));
+    auto chunks = png_text_chunks(options.metadata);
+    if (options.dpi > 0) {  // 11.3.5.3, the size of a pixel
+        const auto per_m = big_endian(static_cast<std::uint32_t>(std::lround(options.dpi / 0.0254)));
+        chunks += chunk("pHYs", per_m + per_m + '\1');  // the unit is the metre
+    }
+    return png.insert(header_bytes, chunks);
 }
 
 class PngSink final : public Sink {
