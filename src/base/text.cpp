@@ -132,7 +132,8 @@ std::optional<std::string> nearest(std::string_view word, std::span<const std::s
     const auto start = [&](std::string_view one) { return std::ranges::min(edit_distances(word, one)); };
     const auto best = std::ranges::min_element(candidates, {}, whole);
     if (best == candidates.end()) return {};
-    if (whole(*best) <= std::max<std::size_t>(2, word.size() / 3)) return std::string(*best);
+    const auto errors = whole(*best);  // at least a letter is right
+    if (errors <= std::max<std::size_t>(2, word.size() / 3) && errors < word.size()) return std::string(*best);
     // for example "gravity" as the start of "gravity_m_per_s2"
     const auto longer = std::ranges::min_element(candidates, {}, start);
     const bool is_start = word.size() > 2 && start(*longer) <= word.size() / 6;

@@ -86,6 +86,8 @@ TEST(Text, TheNearestWordIsATypingErrorAwayOrBeginsSo) {
              {"colour", ""}})
         EXPECT_EQ(nearest(word, keys).value_or(""), meant);
     EXPECT_FALSE(nearest("x", {}));
+    const std::vector<std::string_view> sides{"a", "b"};
+    EXPECT_FALSE(nearest("x", sides));  // no letter is right
 }
 
 }  // namespace doppel::text_test
