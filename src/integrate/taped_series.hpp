@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory_resource>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -75,7 +76,7 @@ public:
         constexpr int range = std::numeric_limits<Scalar>::max_exponent10;
         const double just_beyond = std::max(1e-15, std::pow(10.0, 1.0 - range / (order_ + 2.0))) * h;
         double first = h;
-        std::vector<double> powers;  // in powers of t / first; negative at the start
+        std::pmr::vector<double> powers(&memory_);  // in powers of t / first; negative at the start
         const auto at = [&](double t) {
             struct {
                 double value = 0, rate = 0;
@@ -93,7 +94,7 @@ public:
             powers.clear();
             for (Scalar scale = *x < Scalar(0) ? Scalar(1) : Scalar(-1); x != end; ++x, scale *= Scalar(first))
                 powers.push_back(static_cast<double>(Scalar(*x * scale)));
-            const auto rises = Bernstein::of_powers(powers, 1).rises();
+            const auto rises = Bernstein::of_powers(powers, 1, &memory_).rises();
             if (rises.empty()) continue;
             const double t = root(rises.front(), at) * first;
             first = std::min(first, t + (event.may_jump ? just_beyond : beyond));
@@ -104,7 +105,8 @@ public:
 private:
     void record(const State& y) {
         tape_.clear();
-        rate_ = y_ = typename Model::State(y.size());
+        y_.setZero(y.size());
+        rate_ = y_;
         for (Eigen::Index i = 0; i < y.size(); ++i) y_[i] = Taped<Scalar>::argument(y[i], tape_);
         if constexpr (HasEvents<Model>) taped_.keep_modes(*modes_);
         taped_.rate(y_, rate_);
@@ -141,6 +143,7 @@ private:
     SeriesScale scale_;
     const std::vector<int>* modes_;
     typename Model::State y_, rate_;
+    mutable std::pmr::unsynchronized_pool_resource memory_;  // of first_event(), kept for the next step
 };
 
 template <class Scalar>

@@ -5,24 +5,26 @@
 namespace doppel {
 namespace {
 
+using Coefficients = std::pmr::vector<double>;
+
 /// Zero counts as positive, so that a rise ends where 0 is reached.
-int sign_changes(const std::vector<double>& b) {
+int sign_changes(const Coefficients& b) {
     int changes = 0;
     for (std::size_t i = 1; i < b.size(); ++i) changes += (b[i - 1] < 0) != (b[i] < 0);
     return changes;
 }
 
 /// The coefficients of both halves, by de Casteljau's algorithm.
-std::pair<std::vector<double>, std::vector<double>> halves(const std::vector<double>& whole) {
-    auto left = whole, right = whole;
+std::pair<Coefficients, Coefficients> halves(const Coefficients& whole) {
+    Coefficients left(whole, whole.get_allocator()), right(whole, whole.get_allocator());
     for (std::size_t i = 1; i < right.size(); ++i) {
         for (std::size_t j = 0; j + i < right.size(); ++j) right[j] = 0.5 * (right[j] + right[j + 1]);
         left[i] = right[0];
     }
-    return {left, right};
+    return {std::move(left), std::move(right)};
 }
 
-void add_rises(const std::vector<double>& b, const Bracket& part, int halved, std::vector<Bracket>& found) {
+void add_rises(const Coefficients& b, const Bracket& part, int halved, std::pmr::vector<Bracket>& found) {
     constexpr int max_halvings = 50;
     const int changes = sign_changes(b);
     if (changes == 0) return;
@@ -39,9 +41,9 @@ void add_rises(const std::vector<double>& b, const Bracket& part, int halved, st
 }  // namespace
 
 /// b_j = Σ_i C(j,i) a_i length^i / C(n,i), in n rounds of sums.
-Bernstein Bernstein::of_powers(std::span<const double> a, double length) {
+Bernstein Bernstein::of_powers(std::span<const double> a, double length, std::pmr::memory_resource* memory) {
     const auto n = a.size() - 1;
-    Bernstein polynomial{.b = std::vector<double>(a.begin(), a.end()), .length = length};
+    Bernstein polynomial{.b = Coefficients(a.begin(), a.end(), memory), .length = length};
     auto& b = polynomial.b;
     double factor = 1;  // length^i / C(n,i)
     for (std::size_t i = 1; i <= n; ++i) {
@@ -53,10 +55,10 @@ Bernstein Bernstein::of_powers(std::span<const double> a, double length) {
     return polynomial;
 }
 
-std::vector<Bracket> Bernstein::rises(double level) const {
-    auto above = b;
+std::pmr::vector<Bracket> Bernstein::rises(double level) const {
+    Coefficients above(b, b.get_allocator());
     for (double& value : above) value -= level;
-    std::vector<Bracket> found;
+    std::pmr::vector<Bracket> found(b.get_allocator());
     add_rises(above, {0, length}, 0, found);
     return found;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -17,15 +18,16 @@ struct Bracket {
 /// roots.
 /// Source  Farin, Curves and Surfaces for CAGD, §5–6; Lane & Riesenfeld 1981, BIT 21:112.
 struct Bernstein {
-    std::vector<double> b;
+    std::pmr::vector<double> b;
     double length = 1;
 
     /// From Σ a_i t^i.
-    static Bernstein of_powers(std::span<const double> a, double length);
+    static Bernstein of_powers(std::span<const double> a, double length,
+                               std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-    /// Where it rises through `level`, in order, each in a bracket of its own. Two roots closer than 1e-15 of the
+    /// Where it rises through `level`, in order, each in a bracket of its own; in the memory of b. Two roots closer than 1e-15 of the
     /// length may be missed.
-    std::vector<Bracket> rises(double level = 0) const;
+    std::pmr::vector<Bracket> rises(double level = 0) const;
 };
 
 /// The time in a bracket at which a function rises through 0: Newton's method, with bisection if it would leave the

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <memory_resource>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -243,7 +244,8 @@ private:
     std::vector<Node> nodes_;
     std::vector<Event> events_;
     std::vector<LinearSystem> systems_;
-    std::map<std::tuple<Operation, int, int, Scalar>, int> known_;  // during recording
+    std::pmr::unsynchronized_pool_resource memory_;  // of known_, kept for the next recording
+    std::pmr::map<std::tuple<Operation, int, int, Scalar>, int> known_{&memory_};  // during recording
     std::vector<Scalar> coefficients_, inverse_;
 };
 

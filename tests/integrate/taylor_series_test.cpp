@@ -124,6 +124,28 @@ TEST(MechanismSeries, AllocatesNothingOnceItIsRecorded) {
     EXPECT_EQ(allocated(of_everything().cast<Quad>()), 0);
 }
 
+/// Drag changes its direction.
+TEST(TapedSeries, AllocatesNothingAtEventsLikeEarlierOnes) {
+    auto bodies = driven_bodies<double>(2);
+    bodies.friction.link_quadratic = {0.1, 0.1};
+    PhysicalChain<double> model(bodies);
+    const auto series = series_of(model, 20);
+    auto y = model.start(bodies), change = y;
+    constexpr double longest = 0.03;
+    int events = 0;
+    long before = 0;
+    for (int steps = 0; steps < 180; ++steps) {
+        if (steps == 60) before = allocations(), events = 0;
+        series->expand(y);
+        const double h = series->first_event(longest);
+        series->move(h, change);
+        y += change;
+        events += h < longest;
+    }
+    EXPECT_EQ(allocations() - before, 0);  // there were some 50 a step
+    EXPECT_EQ(events, 9);
+}
+
 /// The error message of a series that runs from the start of a mechanism.
 std::string said_of(const Assembly<double>& parts, double h) {
     MechanismSeries<double> series(parts, 30);
