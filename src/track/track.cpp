@@ -198,14 +198,18 @@ std::vector<double> residuals_of(const TrackPiece& piece, std::size_t link, std:
 }
 
 /// Finds the noise, and outliers: samples far from the cubic through their neighbours, which deviate the other way. Between
-/// coarse samples the motion is no cubic; there a quintic leaves less.
+/// coarse samples the motion is no cubic; there a quintic leaves less. At a kink, as Coulomb friction makes it, it is
+/// neither, but nearer to them than to the chord of the neighbours.
 void find_noise(Track& track, const std::atomic<bool>& stop) {
-    constexpr double far = 12;
+    constexpr double far = 12, bent = 2;
+    const auto samples = static_cast<double>(track.samples());
     // the deviation from a polynomial through so many values with noise 1 on either side, in units of that noise
     constexpr std::pair<std::size_t, double> polynomials[]{{2, 1.39}, {3, 1.52}};
     for (std::size_t link = 0; link < 2; ++link) {
         auto& noise = track.noise[link] = std::numeric_limits<double>::infinity();
-        double size = 0;
+        double size = 0, chord = 0;  // chord: mean distance from it
+        for (const auto& piece : track.pieces)
+            for (const double r : residuals_of(piece, link, 1)) chord += std::abs(r) / samples;
         std::vector<std::vector<double>> of_pieces;
         for (const auto& [some, unit] : polynomials) {
             std::vector<double> all;
@@ -226,7 +230,8 @@ void find_noise(Track& track, const std::atomic<bool>& stop) {
             for (std::size_t i = 2; i + 2 < of_pieces[k].size(); ++i) {
                 const double before = of_pieces[k][i - 1], r = of_pieces[k][i], after = of_pieces[k][i + 1];
                 const bool is_peak = std::abs(r) > std::max(std::abs(before), std::abs(after));
-                if (std::abs(r) > far * size && size > 0 && is_peak && r * before <= 0 && r * after <= 0)
+                const double least = std::max(far * size, bent * chord);
+                if (std::abs(r) > least && size > 0 && is_peak && r * before <= 0 && r * after <= 0)
                     track.pieces[k].is_outlier[link][i] = 1;
             }
     }

@@ -180,4 +180,15 @@ TEST(FitTrack, LeavesOutliersOut) {
     EXPECT_NEAR(read_again.noise[0], 1e-3, 1e-4);  // measured 1.01e-3
 }
 
+/// Joints that stick again and again.
+TEST(FitTrack, TakesNoKinkOfFrictionForAnOutlier) {
+    auto truth = lab_arms();
+    for (const double coulomb : {0.1, 1.0, 5.0})
+        for (const double hz : {100, 500}) {
+            truth[coulomb_1] = truth[coulomb_2] = coulomb;
+            const auto track = simulated(truth, Drag::own, {.pieces = 1, .piece_s = 12, .hz = hz});
+            EXPECT_EQ(read({csv_of(track.pieces[0])}).outliers(), 0u) << coulomb << ' ' << hz;  // there were up to 200
+        }
+}
+
 }  // namespace doppel::track_test
