@@ -161,6 +161,7 @@ private:
         begin(tangent_, in_double_, around);
         length_ = std::min(next_length_, spec_.samples * parts_ - done_);
         while (length_ > 0) {
+            if (steps_++ == spec_.most_steps) return false;
             watch();
             const auto h = number(length_) * part_;
             middle_.expand(B(h));
@@ -227,6 +228,7 @@ private:
     Zonotope<Scalar> set_;
     Ball<Wide> part_;  // s
     bool is_divided_ = false;
+    long steps_ = 0;                                                       // also those that were too long
     long parts_ = 1, length_ = 0, next_length_ = first_length, done_ = 0;  // of a sample; of the step; since the start
 };
 

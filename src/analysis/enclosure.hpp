@@ -33,7 +33,8 @@ struct EnclosureSpec {
     double largest_radius = 0.5;  // of angles, rad, and rates, rad/s: it ends beyond
     double tolerance = 0.25;      // last terms of a series, in units of rounding
     EnclosureCount counted = {};
-    long most_edges = 20'000;  // four more a step; then the smaller half becomes a box
+    long most_edges = 20'000;   // four more a step; then the smaller half becomes a box
+    long most_steps = 300'000;  // it ends there
 };
 
 /// θ1, θ2 (rad), ω1, ω2 (rad/s)

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <memory>
 
 namespace doppel {
@@ -55,9 +56,7 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
     parts.require(files[1]);
     const auto place = parts.file(files[0]);
     const auto proved = certificate_of(scene, options.radius, options.jobs > 0 ? options.jobs : cores(), stop,
-                                       [&](long done, long total) {
-                                           report({done, total});
-                                       });
+                                       std::bind_front(&ProgressReport::of_proof, &report));
     write_rows(scene, proved, place);
     parts.finished(files[0]);
     RunResult result{.samples = proved.last() + 1, .wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start};
@@ -81,7 +80,7 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
 void certify_all(const CertifyOptions& options) {
     if (!(options.radius >= 1e-12 && options.radius <= 1e3))
         throw bad_input("--radius must be from 1e-12 to 1000 rad; it is {:g}", options.radius);
-    const auto scenes = read_scenes(options);
+    const auto scenes = read_scenes(options, options.progress, {{"scene.certify", "false"}});  // not twice
     const Destination to(options, scenes.size(), ".csv");
     if (options.list_outputs) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, certified_files(scene.preset.name));

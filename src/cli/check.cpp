@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -365,7 +366,10 @@ void check_presets(const CheckOptions& options) {
             const auto figure = read_figure(preset, overrides, stop);
             report(figure.title, check_figure, figure);
         } else {
-            const auto scene = make_scene(read_preset(preset, overrides), stop);
+            ProgressReport progress(ProgressStyle::automatic, preset.name, "samples");
+            const auto scene =
+                make_scene(read_preset(preset, overrides), stop, std::bind_front(&ProgressReport::of_proof, &progress));
+            progress.clear();
             report(scene.preset.title, check_film, scene);
         }
     }

@@ -85,8 +85,10 @@ std::vector<Override> picture_overrides(const std::string& table, const std::str
 /// Throws Error (exit 2) if the results of two presets, `paths`, would have the same names.
 void check_names(const std::vector<std::string>& names, const std::vector<std::string>& paths);
 
-/// Reads the scenes of all presets before the first one runs. `more` = overrides from other options.
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more = {});
+/// Reads the scenes of all presets before the first one runs, with the progress of their proofs. `more` = overrides from
+/// other options.
+std::vector<Scene> read_scenes(const PresetOptions& options, ProgressStyle progress,
+                               const std::vector<Override>& more = {});
 /// The files that these runs read.
 std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& presets, const std::vector<Scene>& scenes);
 

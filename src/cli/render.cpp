@@ -159,7 +159,8 @@ std::vector<Override> beside_overrides(const PresetText& text, const std::vector
 
 }  // namespace
 
-std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<Override>& more) {
+std::vector<Scene> read_scenes(const PresetOptions& options, ProgressStyle progress,
+                               const std::vector<Override>& more) {
     const auto overrides = overrides_of(options, more);
     const auto& stop = watch_interrupts();
     std::vector<Scene> scenes;
@@ -167,7 +168,8 @@ std::vector<Scene> read_scenes(const PresetOptions& options, const std::vector<O
     for (const auto& name : options.presets) {
         const auto text = find_preset(name, &stop);
         const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
-        scenes.push_back(make_scene(read_preset(text, all), stop));
+        ProgressReport report(progress, text.name, "samples");
+        scenes.push_back(make_scene(read_preset(text, all), stop, std::bind_front(&ProgressReport::of_proof, &report)));
         names.push_back(scenes.back().preset.name);
         check_names(names, options.presets);
     }
@@ -233,8 +235,8 @@ void add_render(CLI::App& app) {
         run.recording = options->recording;
         if (options->out == "-" && (run.shard || run.merge))
             throw bad_input("-o -: parts and their merge need a folder; give another --out");
-        const auto scenes =
-            read_scenes(*options, picture_overrides("video", options->size, options->format, options->quality));
+        const auto scenes = read_scenes(*options, options->progress,
+                                        picture_overrides("video", options->size, options->format, options->quality));
         // before the first one is rendered
         for (const auto& scene : scenes) check_encoder(video_options(scene));
         run_all(scenes, *options, run);
@@ -261,7 +263,7 @@ void add_still(CLI::App& app) {
         const auto at = seconds_of_option("--at", options->at);
         auto more = picture_overrides("video", options->size);
         more.push_back({"video.format", "\"png\"", "--format of still, which draws PNG"});
-        const auto scenes = read_scenes(*options, more);
+        const auto scenes = read_scenes(*options, options->progress, more);
         const Destination to(*options, scenes.size(), fmt::format(".{}", name_of(options->format)));
         for (const auto& scene : scenes)
             if (const auto name = still_name(scene, at, options->format); options->list_outputs)
@@ -291,7 +293,7 @@ void add_simulate(CLI::App& app) {
     add_recording_option(command, options->recording, "Also writes the motion to FILE, for render --recording");
     command.callback([options] {
         const RunOptions run{.pictures = false, .jobs = options->jobs, .columns = columns_of_option(options->columns)};
-        run_all(read_scenes(*options), *options, run);
+        run_all(read_scenes(*options, options->progress), *options, run);
     });
 }
 

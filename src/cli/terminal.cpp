@@ -186,6 +186,15 @@ void ProgressReport::operator()(const Progress& progress) {
     }
 }
 
+void ProgressReport::of_proof(long done, long total, const std::string& arithmetic) {
+    if (!arithmetic_.empty() && arithmetic != arithmetic_) {
+        note(fmt::format("{} does not suffice; again in {}", arithmetic_, arithmetic));
+        before_.reset();
+    }
+    arithmetic_ = arithmetic;
+    (*this)({done, total});
+}
+
 void ProgressReport::warn(const std::string& sentence) {
     clear();
     if (style_ == ProgressStyle::json)

@@ -60,6 +60,8 @@ public:
     void note(const std::string& sentence) {
         if (style_ != ProgressStyle::none) warn(sentence);
     }
+    /// Of a proof (scene/scene.hpp).
+    void of_proof(long done, long total, const std::string& arithmetic);
     /// Prints a warning, in every style.
     void warn(const std::string& sentence);
     /// Reports the end of the run and its files. Throws Error (exit 4) if that cannot be written, unless the reader has
@@ -76,6 +78,7 @@ private:
 
     ProgressStyle style_;
     std::string name_, unit_, streamed_;  // unit: "frames"
+    std::string arithmetic_{};            // of the last of_proof()
     Clock::time_point start_, shown_;
     std::optional<long> before_;  // progress at the first report, from an earlier run
     bool on_screen_ = false;

@@ -201,13 +201,13 @@ void check_provable(const Scene& scene) {
 }
 
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
-                           const std::function<void(long, long)>& report) {
+                           const ProofReport& report) {
     const auto sides = systems_of(scene);
+    Certificate all{.run_radius = radius};
     const auto watch = [&](long done, long total) {
         throw_if_set(stop);
-        if (report) report(done, total);
+        if (report) report(done, total, arithmetics[all.precision].words);
     };
-    Certificate all{.run_radius = radius};
     for (;; ++all.precision) {
         const bool is_last = all.precision + 1 == arithmetics.size();
         all.rows =

@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,10 +48,9 @@ struct Certificate {
 void check_provable(const Scene& scene);
 
 /// What is proved about a scene, with the fewest bits for which all angles (rad) and rates (rad/s) are known to 1e-6
-/// and the distance to 1 %, otherwise with the most. `report`: samples done and to do. Throws Error: as
-/// check_provable(); exit 130 soon after `stop` is set.
+/// and the distance to 1 %, otherwise with the most. Throws Error: as check_provable(); exit 130 soon after `stop` is set.
 Certificate certificate_of(const Scene& scene, double radius, int jobs, const std::atomic<bool>& stop,
-                           const std::function<void(long, long)>& report = {});
+                           const ProofReport& report = {});
 
 /// The radii of side a at all samples with a precision as Certificate::precision, rad; NaN where nothing is proved.
 std::vector<double> certified_radii(const Scene& scene, std::size_t precision, const std::atomic<bool>& stop);

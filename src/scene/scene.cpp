@@ -111,7 +111,7 @@ std::optional<std::string> not_finite(const Observation& seen) {
 
 }  // namespace
 
-Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
+Scene make_scene(const Preset& preset, const std::atomic<bool>& stop, const ProofReport& report) {
     const double wall_start = seconds_of(CLOCK_MONOTONIC), cpu_start = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     const bool chooses = preset.a.is_chosen() || preset.b.is_chosen();
     const auto chooser = chooses ? std::make_shared<MethodChooser>(preset, stop) : nullptr;
@@ -147,7 +147,8 @@ Scene make_scene(const Preset& preset, const std::atomic<bool>& stop) {
             "{}: [scene] certify is not for the layout \"ensemble\"; without it, doppel certify proves sides a and b",
             preset.name);
     if (preset.certify)
-        scene.certificate = std::make_shared<Certificate>(certificate_of(scene, usual_run_radius, cores(), stop));
+        scene.certificate =
+            std::make_shared<Certificate>(certificate_of(scene, usual_run_radius, cores(), stop, report));
     scene.made_wall_s = seconds_of(CLOCK_MONOTONIC) - wall_start;
     scene.made_cpu_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_start;
     return scene;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -135,6 +136,8 @@ auto for_side(const Preset& preset, char name, const Make& make) {
 
 class MethodChooser;
 struct Certificate;
+/// Samples done and to do; `arithmetic`, "quad". A proof begins again with more bits.
+using ProofReport = std::function<void(long done, long total, const char* arithmetic)>;
 
 /// A scene ready to run: the models are chosen, the clock is in whole numbers.
 struct Scene {
@@ -162,7 +165,7 @@ struct Scene {
 
 /// Throws Error: exit 2 if a system is invalid, the sides differ by less than their precision can represent, or an
 /// accuracy cannot be reached; exit 130 soon after `stop` is set (choosing by accuracy requires trial runs).
-Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false);
+Scene make_scene(const Preset& preset, const std::atomic<bool>& stop = false, const ProofReport& report = {});
 
 /// A side at a sample, or between two.
 struct SideState : Observation {

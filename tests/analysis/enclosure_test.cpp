@@ -273,6 +273,11 @@ TEST(Enclosure, EndsWhereTheProofEnds) {
     EXPECT_LT(sets.size(), 2400u);
     for (const auto& state : sets)
         for (const auto& x : state) EXPECT_LE(x.radius, 1e-8);
+    EnclosureSpec short_of_steps;
+    short_of_steps.most_steps = 100;
+    const auto beginning = enclosed<double>(right_angles, 3600, 0, short_of_steps);
+    EXPECT_GT(beginning.size(), 100u);
+    EXPECT_LT(beginning.size(), 500u);
     // a set too wide for any step
     EXPECT_LT(enclosed<double>(right_angles, 120, 0.4).size(), 60u);
     // so fast that no step is short enough; it can be stopped while it tries
