@@ -17,6 +17,8 @@ namespace {
 
 struct CertifyOptions : RunCommandOptions {
     double radius = usual_run_radius;  // rad
+
+    CertifyOptions() { wants_proof = false; }  // it makes its own
 };
 
 std::vector<std::string> certified_files(const std::string& name) {
@@ -80,7 +82,7 @@ void certify(const Scene& scene, const CertifyOptions& options, const std::files
 void certify_all(const CertifyOptions& options) {
     if (!(options.radius >= 1e-12 && options.radius <= 1e3))
         throw bad_input("--radius must be from 1e-12 to 1000 rad; it is {:g}", options.radius);
-    const auto scenes = read_scenes(options, options.progress, {{"scene.certify", "false"}});  // not twice
+    const auto scenes = read_scenes(options, options.progress);
     const Destination to(options, scenes.size(), ".csv");
     if (options.list_outputs) {
         for (const auto& scene : scenes) list_outputs(options, scene.preset.name, certified_files(scene.preset.name));

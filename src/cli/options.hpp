@@ -21,6 +21,7 @@ namespace doppel {
 struct PresetOptions {
     std::vector<std::string> presets, sets;
     std::string beside = {};
+    bool wants_proof = true;  // of presets with certify = true
 };
 
 /// Options of commands that write files.

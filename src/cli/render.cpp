@@ -168,8 +168,10 @@ std::vector<Scene> read_scenes(const PresetOptions& options, ProgressStyle progr
     for (const auto& name : options.presets) {
         const auto text = find_preset(name, &stop);
         const auto& all = options.beside.empty() ? overrides : beside_overrides(text, overrides, options.beside, stop);
-        ProgressReport report(progress, text.name, "samples");
-        scenes.push_back(make_scene(read_preset(text, all), stop, std::bind_front(&ProgressReport::of_proof, &report)));
+        auto preset = read_preset(text, all);
+        preset.certify = preset.certify && options.wants_proof;
+        ProgressReport report(progress, preset.name, "samples");
+        scenes.push_back(make_scene(preset, stop, std::bind_front(&ProgressReport::of_proof, &report)));
         names.push_back(scenes.back().preset.name);
         check_names(names, options.presets);
     }

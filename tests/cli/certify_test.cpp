@@ -127,6 +127,7 @@ TEST_F(Certify, EndsTheRowsWhereTheProofEnds) {
 
 TEST_F(Certify, TheKeyOfAPresetAddsTheProof) {
     const Words key = "--set scene.certify=true";
+    done(with(with("certify calm", key), brief));
     done(with(with("simulate calm", key), brief));
     const auto manifest = json::parse(bytes_of(folder / "out/calm/calm.json"));
     EXPECT_EQ(manifest["certificate"]["a"]["run_proved_until_s"], 0.5);
