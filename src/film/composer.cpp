@@ -24,11 +24,6 @@ Label card_line(std::string text, double size, Weight weight, Color color) {
 // px of a 1920×1080 picture: the height of all lines of a card, without its picture
 constexpr float card_words = 400;
 
-DisplayList faded(DisplayList list, float alpha) {
-    for (auto& item : list) std::visit([&](auto& shape) { shape.color.a *= alpha; }, item);
-    return list;
-}
-
 /// One of the film's panels, in the middle of the card; smaller if the lines need the space.
 PendulumPanel still_panel(const Layout& layout) {
     auto panel = layout.panels.front();
@@ -134,7 +129,8 @@ DisplayList Composer::card(const std::vector<Label>& above, const std::vector<La
         still_->frame(list);
     }
     write(below, still_ ? still_panel_.area.bottom + gap : top + height(above));
-    return faded(std::move(list), static_cast<float>(opacity));
+    for (auto& item : list) std::visit([&](auto& shape) { shape.color.a *= static_cast<float>(opacity); }, item);
+    return list;
 }
 
 DisplayList Composer::title_card(double opacity) const {

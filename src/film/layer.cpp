@@ -349,21 +349,13 @@ private:
     std::vector<Path> paths_;
 };
 
-double degrees(double rad) {
-    return rad * 180 / pi;
-}
+constexpr double degree = pi / 180;
 
-/// The fraction of the interval between two samples at which θ1 passes a whole number of turns upwards, if it does.
-std::optional<double> upward_passage(const Bob<double>& from, const Bob<double>& to, double dt) {
-    const double turns = std::floor(to.theta / (2 * pi));
-    if (!(turns > std::floor(from.theta / (2 * pi)))) return std::nullopt;
-    double low = 0, high = 1;
-    for (int i = 0; i < 40; ++i) {
-        const double middle = (low + high) / 2;
-        const bool beyond = hermite(from.theta, from.omega, to.theta, to.omega, dt, middle) >= 2 * pi * turns;
-        (beyond ? high : low) = middle;
-    }
-    return high;
+/// The fraction of the interval between two samples at which an angle passes a whole number of turns upwards, if it
+/// does.
+std::optional<double> upward_passage(double from, double to) {
+    const double turn = 2 * pi * std::floor(to / (2 * pi));
+    return turn > from ? std::optional((turn - from) / (to - from)) : std::nullopt;
 }
 
 class PhaseLayer final : public Layer {
@@ -406,7 +398,7 @@ public:
 
 private:
     Point at(double theta, double omega) const {
-        return {panel_.angle.at(degrees(std::remainder(theta, 2 * pi))), panel_.rate.at(degrees(omega))};
+        return {panel_.angle.at(std::remainder(theta, 2 * pi) / degree), panel_.rate.at(omega / degree)};
     }
     Point at(const Bob<double>& bob) const { return at(bob.theta, bob.omega); }
     Trail trail_of(std::size_t side) const {
@@ -417,15 +409,13 @@ private:
     void add_to_section(std::size_t side) {
         const auto& bobs = state_.bobs(side);
         if (const auto& last = last_bobs_[side]) {
-            const double dt = state_.time() - last_time_;
-            if (const auto share = upward_passage((*last)[0], bobs[0], dt)) {
+            if (const auto share = upward_passage((*last)[0].theta, bobs[0].theta)) {
                 const auto &from = (*last)[link_], &to = bobs[link_];
-                const double theta = hermite(from.theta, from.omega, to.theta, to.omega, dt, *share);
-                section_[side].push_back(at(theta, std::lerp(from.omega, to.omega, *share)));
+                section_[side].push_back(
+                    at(std::lerp(from.theta, to.theta, *share), std::lerp(from.omega, to.omega, *share)));
             }
         }
         last_bobs_[side] = bobs;
-        if (side == 1) last_time_ = state_.time();
     }
 
     const PhasePanel& panel_;
@@ -433,7 +423,6 @@ private:
     std::array<Trail, 2> trails_;
     std::array<std::optional<Bobs<double>>, 2> last_bobs_;  // for a section
     std::array<std::vector<Point>, 2> section_;
-    double last_time_ = 0;  // s
 };
 
 }  // namespace
