@@ -39,12 +39,6 @@ Json side_json(const Scene& scene, const Side& side, const SideRecord& record) {
     return json;
 }
 
-/// null if the speed changes.
-Json samples_per_frame(const FrameTimes& frames) {
-    if (!frames.changing.empty()) return nullptr;
-    return frames.stride.is_whole() ? Json(frames.stride.numerator) : Json(frames.stride.text());
-}
-
 /// The fonts of the film's text with their hashes, except the built-in one: fonts differ between machines.
 Json fonts_json(const Preset& preset) {
     std::string words = "0 " + preset.title + preset.subtitle.value_or("");  // every film contains digits
@@ -104,13 +98,18 @@ void add_warnings(const Scene& scene, RunRecord& record, const std::atomic<bool>
 
 void write_manifest(Transaction& parts, const std::string& name, const Scene& scene, const RunRecord& record) {
     const auto& outcome = record.motion.outcome;
+    const auto* stride = scene.frames.changing.empty() ? &scene.frames.stride : nullptr;  // none if the speed changes
     Json manifest = {
         {"doppel", program_json()},
         {"preset", scene.preset.name},
         {"resolved_preset", json_of_toml(resolved_toml(scene.preset))},
         {"samples", {{"first", record.first_sample}, {"last", record.last_sample}, {"of", scene.samples}}},
         {"frames",
-         {{"count", record.frames}, {"fps", scene.fps.text()}, {"samples_per_frame", samples_per_frame(scene.frames)}}},
+         {{"count", record.frames},
+          {"fps", scene.fps.text()},
+          {"samples_per_frame", !stride              ? Json()
+                                : stride->is_whole() ? Json(stride->numerator)
+                                                     : Json(stride->text())}}},
         {"steps", record.motion.a.effort.steps + record.motion.b.effort.steps},
         {"a", scene.a.replay ? track_json(*scene.a.replay, scene.preset.a.track)
                              : side_json(scene, scene.a, record.motion.a)},

@@ -21,6 +21,7 @@ struct Rect {
     int left = 0, top = 0, right = 0, bottom = 0;
 
     constexpr bool empty() const { return right <= left || bottom <= top; }
+    constexpr long area() const { return long{right - left} * (bottom - top); }
     friend constexpr bool operator==(const Rect&, const Rect&) = default;
 };
 

@@ -197,12 +197,8 @@ namespace {
 
 constexpr long rect_overhead = 3000;  // one more rectangle costs as much time as restoring and reading this many pixels
 
-long area(const Rect& r) {
-    return long{r.right - r.left} * (r.bottom - r.top);
-}
-
 bool cheaper_as_one(const Rect& a, const Rect& b) {
-    return area(united(a, b)) <= area(a) + area(b) + rect_overhead;
+    return united(a, b).area() <= a.area() + b.area() + rect_overhead;
 }
 
 /// Adds the parts of `rect` that lie outside all of disjoint[from…].

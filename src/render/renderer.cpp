@@ -15,7 +15,7 @@ namespace {
 std::vector<std::vector<Rect>> bands(const std::vector<Rect>& regions) {
     constexpr long maximum = 16'000'000;  // px
     long pixels = 0;
-    for (const Rect& r : regions) pixels += long{r.right - r.left} * (r.bottom - r.top);
+    for (const Rect& r : regions) pixels += r.area();
     if (pixels <= maximum) return {regions};
     std::vector<std::vector<Rect>> result;
     for (const Rect& r : regions) {
