@@ -75,9 +75,10 @@ template <class Scalar>
 std::unique_ptr<Stepper<Scalar>> make_constraints_stepper(const MotionSpec& spec) {
     const auto p = spec.chain->cast<Scalar>();
     if constexpr (std::is_same_v<Scalar, double>)
-        if (spec.stabilise == Stabilise::none && find_method(spec.method)->stabilised) {
+        if (spec.stabilise == Stabilise::none) {
+            const bool needs_rates = find_method(spec.method)->stabilised;
             if (p.links() == 2) return stepper_on<RodChain<Scalar, 2>>(p, spec);
-            if (p.links() == 3) return stepper_on<RodChain<Scalar, 3>>(p, spec);
+            if (p.links() == 3 && needs_rates) return stepper_on<RodChain<Scalar, 3>>(p, spec);
         }
     return stepper_on_stabilised<RodChain<Scalar, Eigen::Dynamic>>(p, spec);
 }
