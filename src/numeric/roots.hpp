@@ -25,8 +25,8 @@ struct Bernstein {
     static Bernstein of_powers(std::span<const double> a, double length,
                                std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-    /// Where it rises through `level`, in order, each in a bracket of its own; in the memory of b. Two roots closer than 1e-15 of the
-    /// length may be missed.
+    /// Where it rises through `level`, in order, each in a bracket of its own; in the memory of b. Two roots closer than
+    /// 1e-15 of the length may be missed.
     std::pmr::vector<Bracket> rises(double level = 0) const;
 };
 
