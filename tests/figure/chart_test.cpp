@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace doppel::chart_test {
 
@@ -172,6 +173,19 @@ TEST(Chart, OnPaperAllFormatsHaveTheSameTextsAndNoneIsLeftOut) {
     // with a height of its own, it keeps that
     const auto low = figure_of("fig6", {"scene.duration_s=2", "chart.width_cm=8.6", "chart.height_cm=4"});
     EXPECT_EQ(compose_figure(low, computed(low)).size, layout_of(low.chart).picture);
+}
+
+TEST(Chart, CellsOfMapsAreNotBlocks) {
+    for (const std::string name : {"flip-map", "kapitza-map", "parting-map", "stability", "stability-mass"}) {
+        const auto cells = figure_of(name).experiment->map();
+        const auto few = figure_of(name, {"grid.x.points=4", "grid.y.points=3"});
+        const auto page = compose_figure(few, computed(few));
+        ASSERT_FALSE(page.panels.empty());
+        for (const auto& [x, y, right] : page.panels) {
+            EXPECT_LT(page.scale * std::abs(x.to - x.from) / static_cast<float>(cells->columns), 3.2f) << name;
+            EXPECT_LT(page.scale * std::abs(y.to - y.from) / static_cast<float>(cells->rows), 2.2f) << name;
+        }
+    }
 }
 
 TEST(Chart, WithOnlyChaoticOrbitsSaysThatNoneIsRegular) {

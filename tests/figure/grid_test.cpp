@@ -508,7 +508,7 @@ TEST(Grid, NamesDriveAndDamping) {
         figure_of("bifurcation", {swept}).subtitle.find("torque \"motor\" amplitude 4.3247 N m, released from 10°") !=
         std::string::npos);
     EXPECT_EQ(figure_of("kapitza-map").subtitle,
-              "one link in angles, pivot direction 90°, released from 177°; Dormand–Prince 8(5,3), tolerance 10⁻⁶");
+              "one link in angles, pivot direction 90°, released from 177°; Dormand–Prince 5(4), tolerance 0.0001");
 }
 
 TEST(Grid, TwoToneMapsNameBothBranches) {
