@@ -171,7 +171,7 @@ Needs estimated_render(const Scene& scene, const SimulationEstimate& simulation,
     // on as much as is simulated in `begin_s`
     const auto& video = scene.preset.video;
     const bool is_page = video.format == FilmFormat::html;
-    const double begin_s = is_page ? 2 : 0.6, patience_s = 1;  // a page draws nothing in the meantime
+    const double begin_s = is_page ? 4 : 0.6, patience_s = 1;  // a page draws nothing in the meantime
     const auto samples = static_cast<double>(scene.samples);
     const double motions_s = simulation.seconds + seconds_of_members(scene, stop) * samples;
     const double sample_s = motions_s / samples;
